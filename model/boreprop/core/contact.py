@@ -1,0 +1,209 @@
+"""The two nonlinearities: stabilizers that touch the wall or not, and a bit tilt that saturates.
+
+Two ways to the same answer. The paper's linear complementarity problem (15) as matrices, with a solver and a residual;
+and, for the integrator, modes: with the contacts known, F follows from q̃ by elimination, so M, F_0, δ and F are linear
+functions of the hole, the RSS force and the weight, and which contacts hold is found by pivoting from the last mode.
+"""
+
+from dataclasses import dataclass
+from math import inf
+
+from .beam import Beam
+from .linear import dot, inverse
+
+Matrix = list[list[float]]
+
+
+@dataclass(frozen=True)
+class Loads:
+    """What bends the beam besides the contacts: offsets e_1 … e_n, F_RSS and sin⟨Θ⟩_1."""
+
+    e: list[float]
+    F_rss: float
+    sin_Theta_1: float
+
+
+@dataclass(frozen=True)
+class Row:
+    """A linear function of the loads: e · e_i + rss · F_RSS + g · sin⟨Θ⟩_1 + one."""
+
+    e: list[float]
+    rss: float
+    g: float
+    one: float = 0.0
+
+    def __call__(self, loads: Loads) -> float:
+        """Value under `loads`."""
+        return dot(self.e, loads.e) + self.rss * loads.F_rss + self.g * loads.sin_Theta_1 + self.one
+
+    def plus(self, factors: list[float], rows: "list[Row]") -> "Row":
+        """Add a sum of factors times rows."""
+        return Row(
+            [own + sum(f * row.e[i] for f, row in zip(factors, rows, strict=True)) for i, own in enumerate(self.e)],
+            self.rss + sum(f * row.rss for f, row in zip(factors, rows, strict=True)),
+            self.g + sum(f * row.g for f, row in zip(factors, rows, strict=True)),
+            self.one + sum(f * row.one for f, row in zip(factors, rows, strict=True)),
+        )
+
+
+class Mode:
+    """The beam with a known contact at each non-ideal stabilizer: 1 lower wall, −1 upper wall, 0 free.
+
+    In contact δ_i = −contact_i y*_i, so F_C = −K_C (q̃_C + contact_C y*_C) with K_C = (K⁻¹_CC)⁻¹, and F = 0 elsewhere.
+    """
+
+    def __init__(self, beam: Beam, y_star: tuple[float, ...], contact: tuple[int, ...]) -> None:
+        n = len(beam.s)
+        self.contact = contact
+        q = [
+            Row([(j == i) + (j == n - 1) * beam.delta_e[i] for j in range(n)], beam.delta_rss[i], beam.delta_g[i])
+            for i in range(n - 1)
+        ]
+        zero = Row([0.0] * n, 0.0, 0.0)
+        C = [i for i in range(n - 1) if contact[i]]
+        K_C = inverse([[beam.K_inv[i][j] for j in C] for i in C])
+        to_wall = [Row(q[i].e, q[i].rss, q[i].g, contact[i] * y_star[i]) for i in C]
+        self.F = [zero] * (n - 1)
+        for row, i in zip(K_C, C, strict=True):
+            self.F[i] = zero.plus([-k for k in row], to_wall)
+        e_n = [0.0] * (n - 1) + [1.0]
+        self.delta = [q[i].plus(beam.K_inv[i], self.F) for i in range(n - 1)]
+        self.M = Row([beam.M_e * c for c in e_n], beam.M_rss, beam.M_g).plus(beam.M_F, self.F)
+        self.F_0 = Row([beam.F0_e * c for c in e_n], beam.F0_rss, beam.F0_g).plus(beam.F0_F, self.F)
+
+
+class Modes:
+    """The modes of one beam, made when first asked for."""
+
+    def __init__(self, beam: Beam, y_star: tuple[float, ...]) -> None:
+        self.beam, self.y_star = beam, y_star
+        self._made: dict[tuple[int, ...], Mode] = {}
+
+    def __getitem__(self, contact: tuple[int, ...]) -> Mode:
+        if contact not in self._made:
+            self._made[contact] = Mode(self.beam, self.y_star, contact)
+        return self._made[contact]
+
+    def bounds(self, mode: Mode, i: int) -> tuple[Row, float, float]:
+        """What must lie between two bounds for stabilizer `i` to stay as it is in `mode`: F_i in contact, else δ_i.
+
+        Without clearance the stabilizer is held on both sides and nothing can change.
+        """
+        if self.y_star[i] == 0.0:
+            return mode.F[i], -inf, inf
+        if mode.contact[i]:
+            return mode.F[i], *((0.0, inf) if mode.contact[i] > 0 else (-inf, 0.0))
+        return mode.delta[i], -self.y_star[i], self.y_star[i]
+
+    def settle(self, loads: Loads, contact: tuple[int, ...]) -> Mode:
+        """The mode that satisfies (7) under `loads`, starting the search from `contact`.
+
+        Least-index pivoting: change the first stabilizer whose condition fails, until none does. K is positive
+        definite, so no set of contacts comes back and the search ends (Murty 1974; Júdice & Pires 1992 for two walls).
+        """
+        contact = tuple(c if y else 1 for c, y in zip(contact, self.y_star, strict=True))
+        while True:
+            mode = self[contact]
+            for i in range(len(contact)):
+                row, lower, upper = self.bounds(mode, i)
+                side = left(row(loads), lower, upper)
+                if side:
+                    contact = (*contact[:i], change(contact[i], side), *contact[i + 1 :])
+                    break
+            else:
+                return mode
+
+
+ROUNDING = 1e-13  # how far a force or deflection of order one may lie beyond its bound by rounding alone
+
+
+def left(value: float, lower: float, upper: float) -> int:
+    """1 if `value` is above its bounds, −1 if below, 0 between."""
+    return 1 if value > upper + ROUNDING else -1 if value < lower - ROUNDING else 0
+
+
+def change(contact: int, side: int) -> int:
+    """The contact after leaving the bounds on `side`: a touching stabilizer comes free, a free one touches δ = ±y*."""
+    return 0 if contact else -side
+
+
+def bit_tilt(F_0: float, eta_pi: float, psi_star: float) -> float:
+    """ψ = clip(F_0/(ηΠ), −ψ*, ψ*), eqs. (10) and (11)."""
+    return min(max(F_0 / eta_pi, -psi_star), psi_star)
+
+
+# The linear complementarity problem (15): w = M z + q, 0 ≤ w ⊥ z ≥ 0, z = (F_ℓ, F_u, F̂_ℓ, F̂_u)
+
+
+def lcp(
+    beam: Beam, y_star: tuple[float, ...], psi_star: float, eta_pi: float, loads: Loads
+) -> tuple[Matrix, list[float]]:
+    """M (2n × 2n) and q (2n) of the paper's LCP (15) for n stabilizers."""
+    m = len(y_star)
+    M = [[0.0] * (2 * m + 2) for _ in range(2 * m + 2)]
+    for i in range(m):
+        for j in range(m):
+            M[i][j] = M[m + i][m + j] = beam.K_inv[i][j]
+            M[i][m + j] = M[m + i][j] = -beam.K_inv[i][j]
+        M[2 * m][i] = M[2 * m + 1][m + i] = beam.F0_F[i] / eta_pi
+        M[2 * m][m + i] = M[2 * m + 1][i] = -beam.F0_F[i] / eta_pi
+    M[2 * m][2 * m] = M[2 * m + 1][2 * m + 1] = 1 / (2 * eta_pi)
+    M[2 * m][2 * m + 1] = M[2 * m + 1][2 * m] = -1 / (2 * eta_pi)
+    q_tilde = beam.q_tilde(loads.e, loads.F_rss, loads.sin_Theta_1)
+    q_hat = beam.bit_force(loads.e[-1], [0.0] * m, loads.F_rss, loads.sin_Theta_1) / eta_pi
+    q = [q_tilde[i] + y_star[i] for i in range(m)] + [-q_tilde[i] + y_star[i] for i in range(m)]
+    return M, [*q, q_hat + psi_star, -q_hat + psi_star]
+
+
+def residual(M: Matrix, q: list[float], z: list[float]) -> float:
+    """Max |min(z, Mz + q)|: zero where z solves the LCP."""
+    return max(abs(min(z_i, dot(row, z) + q_i)) for row, q_i, z_i in zip(M, q, z, strict=True))
+
+
+def lemke(M: Matrix, q: list[float]) -> list[float]:
+    """Solve 0 ≤ z ⊥ Mz + q ≥ 0 by Lemke's complementary pivoting, ties broken lexicographically.
+
+    Returns z. Raises `ArithmeticError` on a secondary ray, which cannot happen for (15): with its last two rows scaled
+    down M is positive semidefinite, and scaling rows does not change the problem.
+    """
+    size = len(q)
+    if min(q) >= 0:
+        return [0.0] * size
+    # columns: w, z, the artificial z_0, and the right-hand side
+    rows = [
+        [float(i == j) for j in range(size)] + [-m for m in M[i]] + [-1.0, q[i]] for i in range(size)
+    ]  # fmt: skip
+    basis = list(range(size))
+    artificial = 2 * size
+
+    def pivot(leaving: int, entering: int) -> None:
+        rows[leaving] = [value / rows[leaving][entering] for value in rows[leaving]]
+        for i in range(size):
+            factor = rows[i][entering]
+            if i != leaving and factor:
+                rows[i] = [a - factor * b for a, b in zip(rows[i], rows[leaving], strict=True)]
+        basis[leaving] = entering
+
+    def lexicographic(i: int, divisor: float) -> list[float]:
+        return [value / divisor for value in (rows[i][-1], *rows[i][:size])]
+
+    leaving = min(range(size), key=lambda i: lexicographic(i, 1.0))
+    entering = artificial
+    while True:
+        left_basis = basis[leaving]
+        pivot(leaving, entering)
+        if left_basis == artificial:
+            break
+        entering = left_basis + size if left_basis < size else left_basis - size
+        candidates = [i for i in range(size) if rows[i][entering] > 1e-11]
+        if not candidates:
+            raise ArithmeticError("the LCP has no solution that Lemke's method can reach (secondary ray)")
+        leaving = min(candidates, key=lambda i: lexicographic(i, rows[i][entering]))
+        tied = [i for i in candidates if basis[i] == artificial]
+        if tied and rows[tied[0]][-1] / rows[tied[0]][entering] <= rows[leaving][-1] / rows[leaving][entering] + 1e-14:
+            leaving = tied[0]
+    z = [0.0] * size
+    for i, variable in enumerate(basis):
+        if size <= variable < artificial:
+            z[variable - size] = rows[i][-1]
+    return z

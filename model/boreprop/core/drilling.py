@@ -1,0 +1,134 @@
+"""A drilling run in SI units: the shell around the propagation that `simulate` and the FMU share."""
+
+from typing import Any
+
+from .assembly import BitRock, BottomHoleAssembly, check_number, eta_pi, scale
+from .contact import bit_tilt, left
+from .hole import Survey
+from .propagation import RELATIVE_TOLERANCE, Propagation
+from .variables import BY_NAME
+
+
+def check_inputs(rss_force: float, active_weight_on_bit: float) -> None:
+    """Raise `ParameterError` unless the force is finite and the weight finite and positive."""
+    check_number("rss_force", rss_force)
+    check_number("active_weight_on_bit", active_weight_on_bit, above=0.0)
+
+
+class Drilling:
+    """A borehole as it is drilled, from the end of the survey on.
+
+    Parameters
+    ----------
+    bha, bit, survey
+        The drilling system and the existing hole.
+    active_weight_on_bit
+        N, positive.
+    rss_force
+        N, positive builds inclination.
+    relative_tolerance
+        Local error allowed in one step, relative to 1 rad and to ℓ₁.
+
+    Raises
+    ------
+    ParameterError
+        If an input or the tolerance is out of range.
+    """
+
+    def __init__(
+        self,
+        bha: BottomHoleAssembly,
+        bit: BitRock,
+        survey: Survey,
+        *,
+        active_weight_on_bit: float,
+        rss_force: float = 0.0,
+        relative_tolerance: float = RELATIVE_TOLERANCE,
+    ) -> None:
+        check_inputs(rss_force, active_weight_on_bit)
+        allowed = BY_NAME["relative_tolerance"]
+        check_number("relative_tolerance", relative_tolerance, at_least=allowed.min, at_most=allowed.max)
+        self._bha, self._bit = bha, bit
+        self._length, self._force = bha.length_scale, bha.force_scale
+        self.drilled_length = 0.0
+        self._propagation = Propagation(
+            scale(bha, bit),
+            survey,
+            self._length,
+            rss_force / self._force,
+            eta_pi(bha, bit, active_weight_on_bit),
+            relative_tolerance,
+        )
+
+    def advance(self, drilled_length: float, rss_force: float, active_weight_on_bit: float) -> str | None:
+        """Drill on under inputs held from here; None, or one line that says what failed and what helps.
+
+        Parameters
+        ----------
+        drilled_length
+            Where to stop, m from the start of the run. Where the bit is already: only the inputs are taken over.
+        rss_force, active_weight_on_bit
+            N.
+
+        Raises
+        ------
+        ParameterError
+            If an input is out of range or the length lies behind the bit. Nothing has moved then, nor after a failure.
+        """
+        check_inputs(rss_force, active_weight_on_bit)
+        check_number("drilled_length", drilled_length, at_least=self.drilled_length)
+        propagation = self._propagation
+        before = propagation.F_rss, propagation.eta_pi
+        inputs = rss_force / self._force, eta_pi(self._bha, self._bit, active_weight_on_bit)
+        state = propagation.save() if inputs != before else None
+        propagation.steer(*inputs)
+        failure = propagation.advance(drilled_length / self._length)
+        if failure is None:
+            self.drilled_length = drilled_length
+        elif state is not None:
+            propagation.restore(state)
+        return failure
+
+    def outputs(self) -> dict[str, float | int]:
+        """Every output of the table of variables where the bit is, by scalar name, in the order of the table."""
+        p, l1, F_star = self._propagation, self._length, self._force
+        scaled = p.scaled
+        theta, _ = p.state()
+        loads = p.loads()
+        mode = p.settled(loads)
+        F, delta, F_0 = [row(loads) for row in mode.F], [row(loads) for row in mode.delta], mode.F_0(loads)
+        psi_star = scaled.psi_star
+        psi = bit_tilt(F_0, p.eta_pi, psi_star)
+        Theta = theta - psi
+        # λ_i (⟨Θ⟩_i − θ) = e_i − e_{i−1}
+        offsets = [0.0, *loads.e]
+        averages = [theta + (offsets[i + 1] - offsets[i]) / lambda_i for i, lambda_i in enumerate(scaled.lambda_)]
+        x, z = p.position()
+        values: dict[str, float | int] = {
+            "drilled_length": self.drilled_length,
+            "bit_inclination": theta,
+            "borehole_inclination": Theta,
+            "bit_tilt": psi,
+        }
+        values |= {f"average_inclination[{i}]": average for i, average in enumerate(averages, 1)}
+        values |= {f"stabilizer_deflection[{i}]": d * l1 for i, d in enumerate(delta, 1)}
+        values |= {f"stabilizer_force[{i}]": f * F_star for i, f in enumerate(F, 1)}
+        values |= {f"stabilizer_contact[{i}]": (f > 0) - (f < 0) for i, f in enumerate(F, 1)}
+        return values | {
+            "bit_tilt_saturation": left(F_0 / p.eta_pi, -psi_star, psi_star),
+            "bit_lateral_force": F_0 * F_star,
+            "bit_moment": -mode.M(loads) * F_star * l1,
+            "borehole_curvature": (Theta - p.hole.Theta(p.xi - 1.0)) / l1,
+            "displacement": x * l1,
+            "true_vertical_depth": z * l1,
+            "eta_pi": p.eta_pi,
+        }
+
+    def save(self) -> dict[str, Any]:
+        """The whole evolving state, of numbers, strings, lists and tuples; JSON keeps it exactly."""
+        return {"drilled_length": self.drilled_length, "propagation": self._propagation.save()}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go back to a state from `save` of a run with the same parameters."""
+        self.drilled_length = state["drilled_length"]
+        self._propagation.restore(state["propagation"])

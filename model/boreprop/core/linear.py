@@ -1,0 +1,26 @@
+"""The little linear algebra the core needs, on lists of rows."""
+
+from operator import mul
+from typing import TypeVar
+
+Number = TypeVar("Number", float, complex)
+
+
+def dot(a: list[float], b: list[float]) -> float:
+    """Sum of the products of two lists."""
+    return sum(map(mul, a, b), 0.0)
+
+
+def inverse(matrix: list[list[Number]]) -> list[list[Number]]:
+    """Inverse of a regular matrix by Gauss–Jordan elimination with pivoting."""
+    size = len(matrix)
+    rows = [list(row) + [1.0 if i == j else 0.0 for j in range(size)] for i, row in enumerate(matrix)]
+    for column in range(size):
+        pivot = max(range(column, size), key=lambda i: abs(rows[i][column]))
+        rows[column], rows[pivot] = rows[pivot], rows[column]
+        rows[column] = [value / rows[column][column] for value in rows[column]]
+        for i in range(size):
+            if i != column:
+                factor = rows[i][column]
+                rows[i] = [a - factor * b for a, b in zip(rows[i], rows[column], strict=True)]
+    return [row[size:] for row in rows]

@@ -1,0 +1,470 @@
+"""The borehole propagation: the state (θ, Y), its right-hand side mode by mode, and the integrator.
+
+    εηΠ θ' = M ,   Y' = Θ = θ − ψ ,   ψ = clip(F_0/(ηΠ), −ψ*, ψ*)                                      (16), (17)
+
+with M and F_0 from the beam in the hole it drilled, Y(ξ − s_i). Within a mode (which stabilizers touch which wall, tilt
+saturated or not) this is linear but for sin⟨Θ⟩_1, so one step is one linear solve of Radau collocation. A step ends
+where the solution is not smooth: on a change of input, on an event (contact or saturation comes or goes), and where a
+stabilizer passes the kink that either left in the hole. The steps are the integrator's own: the bit may stop anywhere.
+"""
+
+from bisect import bisect_right, insort
+from collections.abc import Callable
+from math import cos, factorial, inf, isfinite, perm, sin
+from operator import itemgetter
+from typing import Any, NamedTuple
+
+from . import radau
+from .assembly import Scaled
+from .beam import Beam
+from .contact import ROUNDING, Loads, Mode, Modes, Row, bit_tilt, change, left
+from .hole import Hole, Survey
+
+RELATIVE_TOLERANCE = 1e-7
+
+SMALLEST_STEP = 1e-12
+LARGEST_STEP = 1.0  # ℓ₁: the shortest delay, so a step never needs a hole that is not yet drilled
+LARGEST_GROWTH = 8.0
+SAFETY = 0.85
+THETA_WEIGHT = 0.03  # θ forgets an error within εηΠ, Y carries it for the length of the BHA
+REST = 0.03  # what may be left of sin⟨Θ⟩_1 beyond its linear part, in tolerances of θ
+LAYERS = 12.0  # first step after a kink, in relaxation lengths of θ
+STRETCH = 1.3  # how much longer than planned a step may be if it then ends on the next kink
+SMOOTHEST_KINK = 3  # jumps in higher derivatives of the hole are left to the error estimate
+MERGE = 1e-9  # kinks closer than this are one
+ORIGIN_LIMIT = 8.0  # |Y| beyond which the origin of Y is moved to the bit
+GAUSS = [(0.5 - 0.15**0.5, 5 / 18), (0.5, 8 / 18), (0.5 + 0.15**0.5, 5 / 18)]  # nodes and weights on [0, 1]
+
+
+class Linear(NamedTuple):
+    """A `Row` under given inputs, on the state: theta θ + Y Y + Σ_i delayed[i] Y(ξ−s_i) + g sin⟨Θ⟩_1 + one."""
+
+    theta: float
+    Y: float
+    delayed: tuple[float, ...]
+    g: float
+    one: float
+
+    @classmethod
+    def of(cls, row: Row, s: tuple[float, ...], F_rss: float, scale: float) -> "Linear":
+        """`scale` times `row`, with e_i = Y − Y(ξ−s_i) − s_i θ put in."""
+        return cls(
+            theta=-scale * sum(c * s_i for c, s_i in zip(row.e, s, strict=True)),
+            Y=scale * sum(row.e),
+            delayed=tuple(-scale * c for c in row.e),
+            g=scale * row.g,
+            one=scale * (row.rss * F_rss + row.one),
+        )
+
+    def at(self, theta: float, Y: float, delayed: list[float], sine: float) -> float:
+        """Value at one point."""
+        value = self.theta * theta + self.Y * Y + self.g * sine + self.one
+        for c, Y_i in zip(self.delayed, delayed, strict=True):
+            value += c * Y_i
+        return value
+
+    def along(self, theta: float, Y: float, delayed: list[list[float]], sines: list[float]) -> list[float]:
+        """Values along a step with (θ, Y) held; `delayed` has one list for each stabilizer."""
+        held, g = self.theta * theta + self.Y * Y + self.one, self.g
+        values = [held + g * sine for sine in sines]
+        for c, Y_i in zip(self.delayed, delayed, strict=True):
+            if c:
+                values = [value + c * y for value, y in zip(values, Y_i, strict=True)]
+        return values
+
+
+class Bound(NamedTuple):
+    """What stays between `lower` and `upper` while a mode holds: of stabilizer `part`, or of the tilt (part n−1)."""
+
+    part: int
+    value: Linear
+    lower: float
+    upper: float
+
+
+class Law:
+    """The right-hand side in one mode under given inputs, and the bounds within which it holds."""
+
+    def __init__(self, scaled: Scaled, modes: Modes, mode: Mode, tilt: int, F_rss: float, eta_pi: float) -> None:
+        s, psi_star, contacts = scaled.s, scaled.psi_star, len(mode.contact)
+        psi = Linear.of(mode.F_0, s, F_rss, 1 / eta_pi)
+        self.theta_rate = Linear.of(mode.M, s, F_rss, 1 / (scaled.epsilon * eta_pi))
+        if tilt:
+            self.Theta = Linear(1.0, 0.0, (0.0,) * len(s), 0.0, -tilt * psi_star)
+        else:
+            self.Theta = Linear(1.0 - psi.theta, -psi.Y, tuple(-c for c in psi.delayed), -psi.g, -psi.one)
+        self.relaxation = 1 / abs(self.theta_rate.theta + self.Theta.Y)
+        # change of Θ per change of Y(ξ−s_i), θ having settled
+        self.gains = [
+            abs(a / self.theta_rate.theta) + abs(b)
+            for a, b in zip(self.theta_rate.delayed, self.Theta.delayed, strict=True)
+        ]
+        self.gains[0] += abs(self.theta_rate.g / self.theta_rate.theta) + abs(self.Theta.g)
+        tilt_bounds = {0: (-psi_star, psi_star), 1: (psi_star, inf), -1: (-inf, -psi_star)}
+        self.bounds = [Bound(contacts, psi, *tilt_bounds[tilt])]
+        for i in range(contacts):
+            row, lower, upper = modes.bounds(mode, i)
+            if (lower, upper) != (-inf, inf):
+                self.bounds.append(Bound(i, Linear.of(row, s, F_rss, 1.0), lower, upper))
+
+
+class Step(NamedTuple):
+    """A stretch [xi, end] of the run: the state as polynomials in t = (ξ − xi)/h, and why it ends."""
+
+    xi: float
+    h: float
+    theta: tuple[float, ...]  # coefficients of t^0 … t^S
+    Y: tuple[float, ...]
+    end: float
+    event: int | None = None  # the part whose bound is met at the end
+    side: int = 0  # and on which side
+    next_h: float = inf
+
+    def state(self, xi: float) -> tuple[float, float]:
+        """(θ, Y) at `xi`."""
+        t = (xi - self.xi) / self.h
+        a0, a1, a2, a3, a4, a5 = self.theta
+        b0, b1, b2, b3, b4, b5 = self.Y
+        theta = a0 + t * (a1 + t * (a2 + t * (a3 + t * (a4 + t * a5))))
+        return theta, b0 + t * (b1 + t * (b2 + t * (b3 + t * (b4 + t * b5))))
+
+    def derivative(self, order: int, xi: float) -> float:
+        """A derivative of Y at `xi`."""
+        t, value = (xi - self.xi) / self.h, 0.0
+        for m in range(radau.S, order - 1, -1):
+            value = value * t + perm(m, order) * self.Y[m]
+        return value / self.h**order
+
+    def displacement(self, xi: float) -> tuple[float, float]:
+        """∫ sin Θ dξ and ∫ cos Θ dξ from the start of the step to `xi`."""
+        _, c1, c2, c3, c4, c5 = self.Y
+        length, x, z = xi - self.xi, 0.0, 0.0
+        for node, weight in GAUSS:
+            t = node * length / self.h
+            Theta = (c1 + t * (2 * c2 + t * (3 * c3 + t * (4 * c4 + t * 5 * c5)))) / self.h
+            x += weight * sin(Theta)
+            z += weight * cos(Theta)
+        return x * length, z * length
+
+
+class Trial(NamedTuple):
+    """A step as the collocation gives it, before events cut it. Lists run over `radau.POINTS`."""
+
+    step: Step
+    thetas: list[float]
+    Ys: list[float]
+    delayed: list[list[float]]  # Y(ξ − s_i), a list for each stabilizer
+    sines: list[float]
+    error: float  # estimated, over the tolerance
+
+
+class Kink(NamedTuple):
+    """At `xi` stabilizer `i` passes a jump of size `jump` in derivative `order` of the hole's Y."""
+
+    xi: float
+    order: int
+    jump: float
+    i: int
+
+
+class Propagation:
+    """The bit at the front of its hole, dimensionless: `advance` moves it, `steer` changes the inputs.
+
+    A change of input restarts the integrator where the bit is, and nothing else does: results do not depend on where
+    the bit stops on the way.
+    """
+
+    def __init__(
+        self,
+        scaled: Scaled,
+        survey: Survey,
+        length_scale: float,
+        F_rss: float,
+        eta_pi: float,
+        relative_tolerance: float = RELATIVE_TOLERANCE,
+    ) -> None:
+        self.scaled = scaled
+        self.beam = Beam(scaled)
+        self.modes = Modes(self.beam, scaled.y_star)
+        self.tolerance = relative_tolerance
+        self.hole = Hole(survey, length_scale, scaled.s[-1])
+        self.xi = 0.0
+        self.F_rss, self.eta_pi = F_rss, eta_pi
+        self.contact: tuple[int, ...] = (0,) * len(scaled.y_star)
+        self.tilt = 0
+        self.path = (0.0, 0.0)  # ∫ sin Θ dξ, ∫ cos Θ dξ up to the start of the present step
+        self.origin = 0.0  # of Y
+        self.laws: dict[tuple[tuple[int, ...], int], Law] = {}  # by contact and tilt, under the present inputs
+        self.kinks: list[Kink] = []  # those ahead, in order
+        for kink, jump in self.hole.kinks:
+            self._add_images(kink, 2, jump)
+        self.step = self._standstill(self.hole.final_inclination, 0.0)
+        self._restart()
+
+    # moving
+
+    def steer(self, F_rss: float, eta_pi: float) -> None:
+        """Take over inputs; they act from where the bit is."""
+        if (F_rss, eta_pi) == (self.F_rss, self.eta_pi):
+            return
+        self.F_rss, self.eta_pi = F_rss, eta_pi
+        self._move_path(self.xi)
+        self.step = self._standstill(*self.step.state(self.xi))
+        self._restart()
+
+    def advance(self, xi: float) -> str | None:
+        """Drill on to `xi`. None, or what went wrong and what helps; then the bit has not moved."""
+        if xi > self.step.end:
+            before = self.save()
+            while xi > self.step.end:
+                failure = self._take_step()
+                if failure:
+                    self.restore(before)
+                    return failure
+        self.xi = xi
+        return None
+
+    # looking
+
+    def state(self) -> tuple[float, float]:
+        """θ and Y (counted from the start of the run) at the bit."""
+        theta, Y = self.step.state(self.xi)
+        return theta, Y + self.origin
+
+    def loads(self) -> Loads:
+        """What bends the beam where the bit is."""
+        theta, Y = self.step.state(self.xi)
+        delayed = [self.hole.Y(self.xi - s_i) for s_i in self.scaled.s]
+        e = [Y - Y_i - s_i * theta for Y_i, s_i in zip(delayed, self.scaled.s, strict=True)]
+        return Loads(e, self.F_rss, sin(Y - delayed[0]))
+
+    def settled(self, loads: Loads) -> Mode:
+        """The contacts under `loads`."""
+        return self.modes.settle(loads, self.contact)
+
+    def position(self) -> tuple[float, float]:
+        """Position of the bit in the vertical plane, sideways and down, from the start of the run."""
+        x, z = self.step.displacement(self.xi)
+        return self.path[0] + x, self.path[1] + z
+
+    # keeping
+
+    def save(self) -> dict[str, Any]:
+        """The whole evolving state; what it holds is never changed afterwards."""
+        return {
+            "xi": self.xi,
+            "F_rss": self.F_rss,
+            "eta_pi": self.eta_pi,
+            "contact": self.contact,
+            "tilt": self.tilt,
+            "path": self.path,
+            "origin": self.origin,
+            "kinks": self.kinks[:],
+            "step": self.step,
+            "hole": self.hole.save(),
+        }
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go back to a state from `save`, also after a journey through JSON."""
+        self.xi, self.origin, self.tilt = state["xi"], state["origin"], state["tilt"]
+        self.F_rss, self.eta_pi = state["F_rss"], state["eta_pi"]
+        self.contact, self.path = tuple(state["contact"]), (state["path"][0], state["path"][1])
+        self.kinks = [Kink(*kink) for kink in state["kinks"]]
+        xi, h, theta, Y, *rest = state["step"]
+        self.step = Step(xi, h, tuple(theta), tuple(Y), *rest)
+        self.hole.restore(state["hole"])
+        self.laws = {}
+
+    # the integrator
+
+    def _standstill(self, theta: float, Y: float) -> Step:
+        """A step of no length where the bit is."""
+        rest = (0.0,) * radau.S
+        return Step(self.xi, 1.0, (theta, *rest), (Y, *rest), self.xi)
+
+    def _restart(self) -> None:
+        """Find the mode under new inputs and mark the jump of Θ they make."""
+        self.laws = {}
+        loads = self.loads()
+        mode = self.settled(loads)
+        F_0, psi_star = mode.F_0(loads), self.scaled.psi_star
+        self.contact = mode.contact
+        self.tilt = left(F_0 / self.eta_pi, -psi_star, psi_star)
+        Theta = self.step.theta[0] - bit_tilt(F_0, self.eta_pi, psi_star)
+        self._add_images(self.xi, 1, abs(Theta - self.hole.Theta(self.xi)))
+
+    def _law(self) -> Law:
+        key = (self.contact, self.tilt)
+        if key not in self.laws:
+            mode = self.modes[self.contact]
+            self.laws[key] = Law(self.scaled, self.modes, mode, self.tilt, self.F_rss, self.eta_pi)
+        return self.laws[key]
+
+    def _switch(self, part: int, side: int) -> None:
+        """Go to the mode on the other side of a bound."""
+        if part < len(self.contact):
+            contact = change(self.contact[part], side)
+            self.contact = (*self.contact[:part], contact, *self.contact[part + 1 :])
+        else:
+            self.tilt = 0 if self.tilt else side
+
+    def _move_path(self, xi: float) -> None:
+        x, z = self.step.displacement(xi)
+        self.path = (self.path[0] + x, self.path[1] + z)
+
+    def _add_images(self, xi: float, order: int, jump: float) -> None:
+        """Mark where the stabilizers will pass a jump in a derivative of the hole's Y at `xi`."""
+        if order <= SMOOTHEST_KINK:
+            for i, s_i in enumerate(self.scaled.s):
+                insort(self.kinks, Kink(xi + s_i, order, jump, i))
+
+    def _kink_here(self, xi: float) -> int | None:
+        """Take the kinks up to `xi` off the list; the lowest derivative of Y that those at `xi` make jump, if any."""
+        passed = bisect_right(self.kinks, xi + MERGE, key=itemgetter(0))
+        orders = [kink.order + 1 for kink in self.kinks[:passed] if kink.xi >= xi - MERGE]
+        del self.kinks[:passed]
+        return min(orders, default=None)
+
+    def _next_kink(self, law: Law, xi: float, h: float) -> float:
+        """Where the next kink lies over which a step of length `h` must not pass; it may pass over slighter ones."""
+        for kink in self.kinks:
+            if kink.xi >= xi + h:
+                break
+            if law.gains[kink.i] * kink.jump * h ** (kink.order + 1) > self.tolerance * factorial(kink.order + 1):
+                return kink.xi
+        return inf
+
+    def _take_step(self) -> str | None:
+        """Append one step at the end of the last one; None, or why that failed and what helps."""
+        last = self.step
+        xi = last.end
+        self._move_path(xi)
+        theta, Y = last.state(xi)
+        if abs(Y) > ORIGIN_LIMIT:
+            self.hole.shift(Y)
+            self.origin += Y
+            Y = 0.0
+        self.hole.forget(xi - self.scaled.s[-1])
+
+        planned = resumed = last.next_h
+        kink = self._kink_here(xi)
+        if last.event is not None:
+            self._switch(last.event, last.side)
+            kink = 2
+        law = self._law()
+        if (kink is not None and kink <= SMOOTHEST_KINK) or last.end == last.xi:
+            planned = min(planned, LAYERS * law.relaxation)
+            if last.event is not None:
+                resumed = planned
+        stretch, switches = STRETCH, 0
+        while True:
+            h = min(planned, LARGEST_STEP)
+            to_kink = self._next_kink(law, xi, 2 * h) - xi
+            if to_kink < 2 * h:
+                h = to_kink if to_kink <= min(stretch * h, LARGEST_STEP) else to_kink / 2
+            if h < SMALLEST_STEP * max(1.0, xi):
+                return f"step size underflow at xi = {xi:.9g}: raise relative_tolerance (now {self.tolerance:g})"
+            trial = self._try(law, xi, h, theta, Y)
+            if not isfinite(trial.error):
+                return f"the state is not finite at xi = {xi:.9g}: check inputs and parameters"
+            growth = SAFETY * max(trial.error, 1e-12) ** (-1 / (radau.S + 1))
+            if trial.error > 1.0:
+                planned = resumed = h * max(growth, 0.1)
+                stretch = 1.0
+                continue
+            end, event, side = self._first_event(law, trial)
+            if event is not None and end - xi < SMALLEST_STEP * max(1.0, xi) and switches < 2 * len(law.bounds):
+                self._switch(event, side)  # met where the step starts
+                law = self._law()
+                switches += 1
+                continue
+            break
+        if h == to_kink and event is None:
+            end = xi + to_kink
+        next_h = max(resumed if h < resumed else 0.0, h * min(growth, LARGEST_GROWTH))
+        self.step = trial.step._replace(end=end, event=event, side=side, next_h=next_h)
+        self.hole.append(xi, h, self.step.Y)
+        if kink is not None:
+            self._add_images(xi, kink, abs(self.step.derivative(kink, xi) - last.derivative(kink, xi)))
+        return None
+
+    def _try(self, law: Law, xi: float, h: float, theta: float, Y: float) -> Trial:
+        """Collocation from (θ, Y) at `xi` over `h` in one mode."""
+        delayed = [self.hole.look_up(xi - s_i, h, radau.POINTS) for s_i in self.scaled.s]
+        rate, Theta = law.theta_rate, law.Theta
+        # sin⟨Θ⟩_1 about a value near its start, ⟨Θ⟩_1 = Y(ξ) − Y(ξ−1); its part with Y belongs to the Jacobian
+        near = Y - delayed[0][0]
+        sine, cosine = sin(near), cos(near)
+        J = (rate.theta, rate.Y + rate.g * cosine, Theta.theta, Theta.Y + Theta.g * cosine)
+        held = [sine + cosine * (Y - Y_1 - near) for Y_1 in delayed[0]]
+        allowed = REST * self.tolerance * (abs(rate.theta) + 1 / h)
+        while True:
+            f_theta = rate.along(theta, Y, delayed, held)
+            f_Y = Theta.along(theta, Y, delayed, held)
+            solved_theta, solved_Y = radau.collocate(h, J, f_theta, f_Y)
+            sines = [s + cosine * z for s, z in zip(held, solved_Y.values, strict=True)]
+            averages = [Y + z - Y_1 for z, Y_1 in zip(solved_Y.values, delayed[0], strict=True)]
+            far = max(max(averages) - near, near - min(averages))
+            if far * far / 2 * abs(rate.g) <= allowed:  # |sin(a + d) − sin a − d cos a| <= d²/2
+                break
+            rest = [sin(average) - s for average, s in zip(averages, sines, strict=True)]
+            if max(map(abs, rest)) * abs(rate.g) <= allowed:
+                break
+            held = [s + r for s, r in zip(held, rest, strict=True)]
+        error_theta, error_Y = radau.damped(h, J, solved_theta.defect, solved_Y.defect)
+        return Trial(
+            Step(xi, h, (theta, *solved_theta.coefficients), (Y, *solved_Y.coefficients), xi + h),
+            [theta + z for z in solved_theta.values],
+            [Y + z for z in solved_Y.values],
+            delayed,
+            sines,
+            max(THETA_WEIGHT * abs(error_theta), abs(error_Y)) / self.tolerance,
+        )
+
+    def _first_event(self, law: Law, trial: Trial) -> tuple[float, int | None, int]:
+        """Where a trial step first meets a bound of its mode, whose, and on which side; its end if it meets none."""
+        step = trial.step
+        first, event, first_side = step.xi + step.h, None, 0
+        for bound in law.bounds:
+            a, b = bound.value.theta, bound.value.Y
+            rest = bound.value.along(0.0, 0.0, trial.delayed, trial.sines)
+            values = [v + a * x + b * y for v, x, y in zip(rest, trial.thetas, trial.Ys, strict=True)]
+            if max(values) <= bound.upper + ROUNDING and min(values) >= bound.lower - ROUNDING:
+                continue
+            sides = [left(value, bound.lower, bound.upper) for value in values]
+            j = next(j for j, side in enumerate(sides) if side)
+            xi = self._locate(bound, sides[j], step, j)
+            if xi < first:
+                first, event, first_side = xi, bound.part, sides[j]
+        return first, event, first_side
+
+    def _locate(self, bound: Bound, side: int, step: Step, j: int) -> float:
+        """Where `bound` is crossed before the `j`-th point of a step, and after the point before it."""
+        limit = bound.upper if side > 0 else bound.lower
+
+        def beyond(xi: float) -> float:
+            theta, Y = step.state(xi)
+            delayed = [self.hole.Y(xi - s_i) for s_i in self.scaled.s]
+            return side * (bound.value.at(theta, Y, delayed, sin(Y - delayed[0])) - limit)
+
+        before = step.xi + radau.POINTS[j - 1] * step.h if j else step.xi
+        return crossing(beyond, before, step.xi + radau.POINTS[j] * step.h)
+
+
+def crossing(f: Callable[[float], float], a: float, b: float) -> float:
+    """Zero of `f` in [a, b], where f(a) <= 0 < f(b), by regula falsi with the Illinois weights."""
+    f_a, f_b = f(a), f(b)
+    if f_a >= 0 or f_b <= 0:
+        return a if f_a >= 0 else b
+    c = b
+    for _ in range(60):
+        c = (a * f_b - b * f_a) / (f_b - f_a)
+        f_c = f(c)
+        if abs(f_c) < ROUNDING / 100 or abs(b - a) < SMALLEST_STEP:
+            break
+        if (f_c > 0) == (f_b > 0):
+            f_a /= 2
+        else:
+            a, f_a = b, f_b
+        b, f_b = c, f_c
+    return c

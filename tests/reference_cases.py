@@ -1,0 +1,61 @@
+"""The reference trajectories in tests/reference, and the model set up for them.
+
+They are dimensionless and come from an independent fourth-order method of steps on a fixed grid of step 1e-5;
+cases.json gives the parameters and the largest difference to a run with half the step, which bounds their error.
+"""
+
+import json
+from itertools import accumulate
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from boreprop.core.assembly import Scaled
+from boreprop.core.contact import bit_tilt
+from boreprop.core.hole import Survey
+from boreprop.core.propagation import RELATIVE_TOLERANCE, Propagation
+
+FOLDER = Path(__file__).parent / "reference"
+CASES: dict[str, dict[str, Any]] = json.loads((FOLDER / "cases.json").read_text(encoding="utf-8"))
+
+
+def reference(name: str) -> np.ndarray:
+    """The rows of a reference trajectory, with the columns xi, theta, Theta, psi, Y, F_0, F_1, …"""
+    return np.genfromtxt(FOLDER / f"{name}.csv", delimiter=",", names=True)
+
+
+def start(name: str, relative_tolerance: float = RELATIVE_TOLERANCE) -> Propagation:
+    """The model at the start of a reference case."""
+    p = CASES[name]
+    scaled = Scaled(tuple(accumulate(p["lambda"])), tuple(p["y_star"]), p["delta"], p["w"], p["epsilon"], p["psi_star"])
+    survey = Survey(tuple(xi - p["survey_xi"][0] for xi in p["survey_xi"]), tuple(p["survey_inc"]))
+    return Propagation(scaled, survey, 1.0, p["force_values"][0], p["eta_pi"], relative_tolerance)
+
+
+def look(propagation: Propagation) -> dict[str, float]:
+    """What a reference trajectory has columns for, where the bit is."""
+    p = propagation
+    theta, Y = p.state()
+    loads = p.loads()
+    mode = p.settled(loads)
+    F_0 = mode.F_0(loads)
+    psi = bit_tilt(F_0, p.eta_pi, p.scaled.psi_star)
+    forces = {f"F_{i}": row(loads) for i, row in enumerate(mode.F, 1)}
+    return {"theta": theta, "Theta": theta - psi, "psi": psi, "Y": Y, "F_0": F_0, **forces}
+
+
+def run(name: str, relative_tolerance: float = RELATIVE_TOLERANCE) -> dict[str, np.ndarray]:
+    """The model's run of a reference case, at the rows of the reference."""
+    p = CASES[name]
+    changes = list(zip(p["force_breaks"], p["force_values"], strict=True))[1:]
+    propagation = start(name, relative_tolerance)
+    rows = []
+    for xi in reference(name)["xi"]:
+        while changes and changes[0][0] <= xi:
+            at, force = changes.pop(0)
+            assert propagation.advance(at) is None
+            propagation.steer(force, p["eta_pi"])
+        assert propagation.advance(float(xi)) is None
+        rows.append(look(propagation))
+    return {column: np.array([row[column] for row in rows]) for column in rows[0]}
