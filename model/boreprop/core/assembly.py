@@ -31,8 +31,9 @@ def check_increasing(name: str, values: tuple[float, ...]) -> None:
     """Raise `ParameterError` unless every value is finite and larger than the one before."""
     for value in values:
         check_number(name, value)
-    if any(after <= before for before, after in pairwise(values)):
-        raise ParameterError(name, "must increase", values)
+    for before, after in pairwise(values):
+        if after <= before:
+            raise ParameterError(name, "must increase", (before, after))
 
 
 @dataclass(frozen=True)

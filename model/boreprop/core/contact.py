@@ -132,6 +132,9 @@ def bit_tilt(F_0: float, eta_pi: float, psi_star: float) -> float:
     return min(max(F_0 / eta_pi, -psi_star), psi_star)
 
 
+PIVOT = 1e-10  # the least element that Lemke's method divides by, of rows with largest element one
+TIE = 1e-13  # ratios this close are equal
+
 # The linear complementarity problem (15): w = M z + q, 0 ≤ w ⊥ z ≥ 0, z = (F_ℓ, F_u, F̂_ℓ, F̂_u)
 
 
@@ -167,41 +170,40 @@ def lemke(M: Matrix, q: list[float]) -> list[float]:
     down M is positive semidefinite, and scaling rows does not change the problem.
     """
     size = len(q)
-    if min(q) >= 0:
-        return [0.0] * size
-    # columns: w, z, the artificial z_0, and the right-hand side
+    artificial = 2 * size  # the columns are w, z, the artificial z_0 and the right-hand side
+    scales = [1 / max(abs(m) for m in row) for row in M]
     rows = [
-        [float(i == j) for j in range(size)] + [-m for m in M[i]] + [-1.0, q[i]] for i in range(size)
-    ]  # fmt: skip
+        [float(i == j) for j in range(size)] + [-scales[i] * m for m in M[i]] + [-1.0, scales[i] * q[i]]
+        for i in range(size)
+    ]
     basis = list(range(size))
-    artificial = 2 * size
-
-    def pivot(leaving: int, entering: int) -> None:
+    leaving = min(range(size), key=lambda i: rows[i][-1])
+    if rows[leaving][-1] >= 0:
+        return [0.0] * size
+    entering = artificial
+    while True:
         rows[leaving] = [value / rows[leaving][entering] for value in rows[leaving]]
         for i in range(size):
             factor = rows[i][entering]
             if i != leaving and factor:
                 rows[i] = [a - factor * b for a, b in zip(rows[i], rows[leaving], strict=True)]
-        basis[leaving] = entering
-
-    def lexicographic(i: int, divisor: float) -> list[float]:
-        return [value / divisor for value in (rows[i][-1], *rows[i][:size])]
-
-    leaving = min(range(size), key=lambda i: lexicographic(i, 1.0))
-    entering = artificial
-    while True:
-        left_basis = basis[leaving]
-        pivot(leaving, entering)
+        basis[leaving], left_basis = entering, basis[leaving]
         if left_basis == artificial:
             break
         entering = left_basis + size if left_basis < size else left_basis - size
-        candidates = [i for i in range(size) if rows[i][entering] > 1e-11]
+        candidates = [i for i in range(size) if rows[i][entering] > PIVOT]
         if not candidates:
             raise ArithmeticError("the LCP has no solution that Lemke's method can reach (secondary ray)")
-        leaving = min(candidates, key=lambda i: lexicographic(i, rows[i][entering]))
-        tied = [i for i in candidates if basis[i] == artificial]
-        if tied and rows[tied[0]][-1] / rows[tied[0]][entering] <= rows[leaving][-1] / rows[leaving][entering] + 1e-14:
-            leaving = tied[0]
+        for column in (-1, *range(size)):
+            ratios = {i: rows[i][column] / rows[i][entering] for i in candidates}
+            least = min(ratios.values())
+            candidates = [i for i in candidates if ratios[i] <= least + TIE]
+            if len(candidates) == 1:
+                break
+            if column == -1 and artificial in (basis[i] for i in candidates):
+                candidates = [i for i in candidates if basis[i] == artificial]
+                break
+        leaving = candidates[0]
     z = [0.0] * size
     for i, variable in enumerate(basis):
         if size <= variable < artificial:

@@ -26,9 +26,10 @@ SMALLEST_STEP = 1e-12
 LARGEST_STEP = 1.0  # ℓ₁: the shortest delay, so a step never needs a hole that is not yet drilled
 LARGEST_GROWTH = 8.0
 SAFETY = 0.85
-THETA_WEIGHT = 0.03  # θ forgets an error within εηΠ, Y carries it for the length of the BHA
+THETA_WEIGHT = 0.1  # θ forgets an error within εηΠ, Y carries it for the length of the BHA
 REST = 0.03  # what may be left of sin⟨Θ⟩_1 beyond its linear part, in tolerances of θ
-LAYERS = 12.0  # first step after a kink, in relaxation lengths of θ
+ITERATIONS = 10  # on that rest; each gains two digits or more
+LAYERS = 8.0  # first step after a kink, in relaxation lengths of θ
 STRETCH = 1.3  # how much longer than planned a step may be if it then ends on the next kink
 SMOOTHEST_KINK = 3  # jumps in higher derivatives of the hole are left to the error estimate
 MERGE = 1e-9  # kinks closer than this are one
@@ -199,7 +200,7 @@ class Propagation:
         for kink, jump in self.hole.kinks:
             self._add_images(kink, 2, jump)
         self.step = self._standstill(self.hole.final_inclination, 0.0)
-        self._restart()
+        self._restart(self.hole.final_inclination)
 
     # moving
 
@@ -207,10 +208,11 @@ class Propagation:
         """Take over inputs; they act from where the bit is."""
         if (F_rss, eta_pi) == (self.F_rss, self.eta_pi):
             return
+        before = self.inclination()
         self.F_rss, self.eta_pi = F_rss, eta_pi
         self._move_path(self.xi)
         self.step = self._standstill(*self.step.state(self.xi))
-        self._restart()
+        self._restart(before)
 
     def advance(self, xi: float) -> str | None:
         """Drill on to `xi`. None, or what went wrong and what helps; then the bit has not moved."""
@@ -230,6 +232,12 @@ class Propagation:
         """θ and Y (counted from the start of the run) at the bit."""
         theta, Y = self.step.state(self.xi)
         return theta, Y + self.origin
+
+    def inclination(self) -> float:
+        """Θ at the bit, eq. (16): algebraic, it jumps with the inputs."""
+        loads = self.loads()
+        F_0 = self.settled(loads).F_0(loads)
+        return self.step.state(self.xi)[0] - bit_tilt(F_0, self.eta_pi, self.scaled.psi_star)
 
     def loads(self) -> Loads:
         """What bends the beam where the bit is."""
@@ -282,16 +290,15 @@ class Propagation:
         rest = (0.0,) * radau.S
         return Step(self.xi, 1.0, (theta, *rest), (Y, *rest), self.xi)
 
-    def _restart(self) -> None:
-        """Find the mode under new inputs and mark the jump of Θ they make."""
+    def _restart(self, Theta: float) -> None:
+        """Find the mode under new inputs and mark the jump of the inclination, which was Θ, that they make."""
         self.laws = {}
         loads = self.loads()
         mode = self.settled(loads)
         F_0, psi_star = mode.F_0(loads), self.scaled.psi_star
         self.contact = mode.contact
         self.tilt = left(F_0 / self.eta_pi, -psi_star, psi_star)
-        Theta = self.step.theta[0] - bit_tilt(F_0, self.eta_pi, psi_star)
-        self._add_images(self.xi, 1, abs(Theta - self.hole.Theta(self.xi)))
+        self._add_images(self.xi, 1, abs(self.inclination() - Theta))
 
     def _law(self) -> Law:
         key = (self.contact, self.tilt)
@@ -398,7 +405,7 @@ class Propagation:
         J = (rate.theta, rate.Y + rate.g * cosine, Theta.theta, Theta.Y + Theta.g * cosine)
         held = [sine + cosine * (Y - Y_1 - near) for Y_1 in delayed[0]]
         allowed = REST * self.tolerance * (abs(rate.theta) + 1 / h)
-        while True:
+        for _ in range(ITERATIONS):
             f_theta = rate.along(theta, Y, delayed, held)
             f_Y = Theta.along(theta, Y, delayed, held)
             solved_theta, solved_Y = radau.collocate(h, J, f_theta, f_Y)

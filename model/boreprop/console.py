@@ -1,0 +1,138 @@
+"""The shell that the three commands share: an application, one-line errors, progress.
+
+Bad input of any kind ends a command with exit status 2 and one line on stderr; Ctrl-C ends it with 130.
+"""
+
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from importlib.metadata import version
+from math import inf, nan
+from pathlib import Path
+from typing import Annotated, Any, NoReturn
+
+from .case import InputError
+from .core.assembly import ParameterError
+from .core.tables import TableError
+
+EXTRAS = {  # the extra that brings a package
+    "typer": "cli",
+    "rich": "cli",
+    "pydantic": "cli",
+    "tomli_w": "cli",
+    "matplotlib": "plot",
+    "pyarrow": "parquet",
+    "fmpy": "fmu",
+    "pythonfmu": "fmu",
+    "rerun": "viz",
+}
+
+
+def fail(message: str) -> NoReturn:
+    """End the process with exit status 2 and `message` as one line on stderr."""
+    print("error:", " ".join(message.split()), file=sys.stderr)
+    sys.exit(2)
+
+
+def fail_without(error: ModuleNotFoundError) -> NoReturn:
+    """`fail`, naming the extra that brings the missing package. Any other missing module is a bug and raised."""
+    package = (error.name or "").partition(".")[0]
+    if package not in EXTRAS:
+        raise error
+    fail(f"{package} must be installed for this: pip install 'boreprop[{EXTRAS[package]}]', got: {error}")
+
+
+try:
+    import typer as typer  # for the commands' modules, which get it from here: what they need may not be installed
+except ModuleNotFoundError as error:
+    fail_without(error)
+
+# click.ClickException, under whatever name this version of typer brings it
+ClickException: Any = typer.BadParameter.mro()[2]
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        print(version("boreprop"))
+        raise typer.Exit
+
+
+Version = Annotated[
+    bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit.")
+]
+"""The option --version of a command or callback: ``def command(version: Version = False)``."""
+
+
+def positive(text: str) -> float:
+    """Parse an option that takes a finite number > 0: ``typer.Option(parser=positive)``."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = nan
+    if not 0.0 < value < inf:
+        raise typer.BadParameter(f"must be a number > 0, got {text!r}")
+    return value
+
+
+def new_app(description: str) -> typer.Typer:
+    """An application to add commands to; start it with `run`."""
+    return typer.Typer(help=description, add_completion=False, pretty_exceptions_enable=False)
+
+
+def run(app: typer.Typer) -> NoReturn:
+    """Run `app` on the process's arguments and exit: 0, 2 with one line on stderr for bad input, 130 on Ctrl-C."""
+    try:
+        sys.exit(app(standalone_mode=False))
+    except ClickException as error:
+        context = getattr(error, "ctx", None)
+        fail(error.format_message() + (f" (see {context.command_path} --help)" if context else ""))
+    except (InputError, ParameterError, TableError) as error:
+        fail(str(error))
+    except ModuleNotFoundError as error:
+        fail_without(error)
+    except OSError as error:
+        fail(f"{error.filename}: {error.strerror}" if error.filename else str(error))
+    except (KeyboardInterrupt, typer.Abort):
+        sys.exit(130)
+    except RuntimeError as error:
+        from .simulation import SimulationError  # not before: it brings numpy
+
+        if not isinstance(error, SimulationError):
+            raise
+        fail(str(error))
+
+
+def check_output(path: str | Path, suffixes: tuple[str, ...] = ()) -> Path:
+    """`path`, if a file of that name could be written: called before the work, so that the work is not for nothing.
+
+    Raises
+    ------
+    InputError
+        If the name does not end in one of `suffixes`, its directory cannot be written to, or it is a directory itself.
+    """
+    path = Path(path)
+    if suffixes and path.suffix not in suffixes:
+        raise InputError(f"{path}: must end in {' or '.join(suffixes)}, got {path.suffix!r}")
+    if not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
+        raise InputError(f"{path}: must be in a directory that can be written to, got {str(path.parent)!r}")
+    if path.is_dir():
+        raise InputError(f"{path}: must be a file, got a directory")
+    return path
+
+
+@contextmanager
+def progress(description: str, total: float) -> Iterator[Callable[[float], None]]:
+    """A progress bar on stderr; yields the function that takes the amount completed so far, of `total`.
+
+    Nothing is shown, and rich is not even loaded, where stderr is not a terminal.
+    """
+    if not sys.stderr.isatty():
+        yield lambda _: None
+        return
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(description, total=total)
+        yield lambda completed: bar.update(task, completed=completed)

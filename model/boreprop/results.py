@@ -1,0 +1,215 @@
+"""What a run gives: columns over the drilled length, and the files that hold them with their case.
+
+A CSV file is read and written with the standard library alone; its case stands beside it (run.csv, run.case.toml).
+A Parquet file, with the extra [parquet], holds its case in its metadata.
+"""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from csv import reader
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .case import Case, InputError, dump_case, load_case, parse_case
+from .core.tables import read_columns
+from .core.variables import BY_NAME, INPUTS, OUTPUTS
+
+SUFFIXES = (".csv", ".parquet")
+CASE_KEY = b"boreprop.case"
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """A run, one row per sample.
+
+    Parameters
+    ----------
+    columns
+        Scalar name of the table of variables ("drilled_length", "stabilizer_force[1]", …) → values in SI units,
+        shape (rows,).
+    case
+        The case that was run, if it is known.
+    """
+
+    columns: dict[str, NDArray[np.float64]]
+    case: Case | None = None
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        """The column `name`; `InputError` if the run has none."""
+        if name not in self.columns:
+            raise InputError(f"the run must have a column {name!r}, got {', '.join(self.columns)}")
+        return self.columns[name]
+
+    def __len__(self) -> int:
+        return len(self["drilled_length"])
+
+    @property
+    def n(self) -> int:
+        """Number of stabilizers: the case's, or as many as there are average inclinations."""
+        if self.case is not None:
+            return len(self.case.bha.stabilizer_positions)
+        return sum(_variable(name) == "average_inclination" for name in self.columns)
+
+    def stack(self, name: str) -> NDArray[np.float64]:
+        """The columns ``name[1]``, ``name[2]``, … side by side, shape (rows, n) or (rows, n − 1)."""
+        columns = [self[scalar] for scalar in BY_NAME[name].names(self.n)]
+        return np.column_stack(columns) if columns else np.empty((len(self), 0))
+
+
+def write_trajectory(trajectory: Trajectory, path: str | Path) -> None:
+    """Write a run, and its case if it is known, to a .csv or .parquet file.
+
+    Nothing of that name changes before everything is written.
+
+    Raises
+    ------
+    InputError
+        If `path` ends in neither, or what writes it is not installed.
+    OSError
+        If the file cannot be written.
+    """
+    path = Path(path)
+    write = {".csv": _write_csv, ".parquet": _write_parquet}.get(path.suffix)
+    if write is None:
+        raise InputError(f"{path}: must end in {' or '.join(SUFFIXES)}, got {path.suffix!r}")
+    write(trajectory, path)
+
+
+def read_trajectory(path: str | Path, case: Case | None = None) -> Trajectory:
+    """Read a run written by `write_trajectory` or by any FMI tool.
+
+    Columns that are not in the table of variables are left out; of those that are, only drilled_length must be there.
+
+    Parameters
+    ----------
+    path
+        A .csv or .parquet file.
+    case
+        The case that was run. None: the one that stands beside or in the file, if there is one.
+
+    Raises
+    ------
+    InputError, TableError
+        If the file cannot be read, drilled_length is missing, a row is ragged, a value is not a finite number, or the
+        case has another number of stabilizers.
+    """
+    path = Path(path)
+    read = {".csv": _read_csv, ".parquet": _read_parquet}.get(path.suffix)
+    if read is None:
+        raise InputError(f"{path}: must end in {' or '.join(SUFFIXES)}, got {path.suffix!r}")
+    trajectory = read(path, case)
+    if not len(trajectory):
+        raise InputError(f"{path}: must have at least one row, got none")
+    found = Trajectory(trajectory.columns).n
+    if found not in (0, trajectory.n):
+        raise InputError(f"{path}: average_inclination: must have {trajectory.n} columns like its case, got {found}")
+    return trajectory
+
+
+def case_path(path: Path) -> Path:
+    """Where the case of a CSV file is: run.case.toml beside run.csv."""
+    return path.with_suffix(".case.toml")
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Yield a name beside `path` to write to; it takes its place at the end, or vanishes if something goes wrong."""
+    draft = path.with_name(f".{os.getpid()}.{path.name}")
+    try:
+        yield draft
+        os.replace(draft, path)
+    finally:
+        draft.unlink(missing_ok=True)
+
+
+def _variable(scalar_name: str) -> str:
+    return scalar_name.partition("[")[0]
+
+
+KNOWN = {"time", *(variable.name for variable in INPUTS + OUTPUTS)}
+
+
+def _known(names: list[str]) -> list[str]:
+    return [name for name in names if _variable(name) in KNOWN]
+
+
+def _typed(trajectory: Trajectory) -> dict[str, NDArray[Any]]:
+    """The columns, those of FMI's Integer variables as such."""
+    integers = {name for name in trajectory.columns if (v := BY_NAME.get(_variable(name))) and v.kind == "Integer"}
+    return {k: v.astype(np.int32) if k in integers else v for k, v in trajectory.columns.items()}
+
+
+def _write_csv(trajectory: Trajectory, path: Path) -> None:
+    columns = _typed(trajectory)
+    # repr is the shortest text that reads back as the same number
+    rows = zip(*(map(repr, column.tolist()) for column in columns.values()), strict=True)
+    with replacing(path) as draft:
+        with open(draft, "w", encoding="utf-8", newline="\n") as file:
+            file.write(",".join(columns) + "\n")
+            file.writelines(",".join(row) + "\n" for row in rows)
+        if trajectory.case is None:
+            case_path(path).unlink(missing_ok=True)  # of a run that is overwritten
+        else:
+            with replacing(case_path(path)) as case_draft:
+                case_draft.write_text(dump_case(trajectory.case), encoding="utf-8")
+
+
+def _read_csv(path: Path, case: Case | None) -> Trajectory:
+    read_columns(path, ("drilled_length",))  # so the file is sound, and the next line can be short
+    with open(path, newline="", encoding="utf-8-sig") as file:
+        names = _known(next(filter(None, reader(file))))
+    columns = {name: np.array(column) for name, column in zip(names, read_columns(path, tuple(names)), strict=True)}
+    if case is None and case_path(path).exists():
+        case = load_case(case_path(path))
+    return Trajectory(columns, case)
+
+
+def _write_parquet(trajectory: Trajectory, path: Path) -> None:
+    pyarrow, parquet = _pyarrow(path)
+    metadata = {} if trajectory.case is None else {CASE_KEY: dump_case(trajectory.case)}
+    with replacing(path) as draft:
+        parquet.write_table(pyarrow.table(_typed(trajectory), metadata=metadata), draft)
+
+
+def _read_parquet(path: Path, case: Case | None) -> Trajectory:
+    pyarrow, parquet = _pyarrow(path)
+    try:
+        with parquet.ParquetFile(path) as file:
+            names = _known(file.schema_arrow.names)
+            table, metadata = file.read(columns=names), file.schema_arrow.metadata or {}
+    except (OSError, pyarrow.ArrowException) as error:
+        raise InputError(f"{path}: must be a readable Parquet file, got: {error}") from error
+    if "drilled_length" not in names:
+        raise InputError(f"{path}: must have a column 'drilled_length', got {names}")
+    if case is None and CASE_KEY in metadata:
+        case = parse_case(metadata[CASE_KEY].decode(), path)
+    return Trajectory({name: _numbers(path, name, table.column(name)) for name in names}, case)
+
+
+def _numbers(path: Path, name: str, column: Any) -> NDArray[np.float64]:
+    """A Parquet column as finite floats."""
+    try:
+        values = np.asarray(column.to_numpy(), dtype=np.float64)
+    except (ValueError, TypeError) as error:
+        raise InputError(f"{path}: {name}: must hold numbers, got {column.type}") from error
+    bad = np.flatnonzero(~np.isfinite(values))
+    if bad.size:
+        raise InputError(f"{path}: {name}: row {bad[0] + 1}: must be a finite number, got {values[bad[0]]}")
+    return values
+
+
+def _pyarrow(path: Path) -> tuple[Any, Any]:
+    """The two modules; loaded here, as they take longer to load than a short run to compute."""
+    try:
+        import pyarrow
+        import pyarrow.parquet
+    except ModuleNotFoundError as error:
+        raise InputError(
+            f"{path}: must be .csv unless pyarrow is installed: pip install 'boreprop[parquet]'"
+        ) from error
+    return pyarrow, pyarrow.parquet

@@ -1,0 +1,40 @@
+"""What several test files need."""
+
+import shutil
+import subprocess
+import sysconfig
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+
+Command = Callable[..., subprocess.CompletedProcess[str]]
+
+
+@pytest.fixture(scope="session")
+def paper_case() -> Path:
+    """The case file of the paper's case."""
+    return EXAMPLES / "paper_case.toml"
+
+
+@pytest.fixture(scope="session")
+def paper_text(paper_case: Path) -> str:
+    """What is in it, without the comments (so that a text replaced is a value replaced)."""
+    lines = paper_case.read_text(encoding="utf-8").splitlines()
+    return "\n".join(line.partition("#")[0].rstrip() for line in lines)
+
+
+@pytest.fixture
+def command(tmp_path: Path) -> Command:
+    """Run an installed command in `tmp_path`: ``command("boreprop", "simulate", …)``."""
+
+    def run(name: str, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
+        program = shutil.which(name, path=sysconfig.get_path("scripts"))
+        assert program, f"{name} is not installed"
+        return subprocess.run(
+            [program, *map(str, arguments)], cwd=tmp_path, capture_output=True, text=True, encoding="utf-8", timeout=300
+        )
+
+    return run

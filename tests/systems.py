@@ -1,0 +1,33 @@
+"""Random drilling systems for property tests."""
+
+from itertools import accumulate
+
+from hypothesis import strategies as st
+
+from boreprop.core.assembly import Scaled
+from boreprop.core.contact import Loads
+
+spans = st.floats(0.3, 1.5)
+
+
+@st.composite
+def scaled_systems(draw: st.DrawFn, min_n: int = 1) -> Scaled:
+    """Any number of stabilizers, with and without clearance."""
+    n = draw(st.integers(min_n, 6))
+    s = tuple(accumulate([1.0, *(draw(spans) for _ in range(n - 1))]))
+    clearances = st.one_of(st.just(0.0), st.floats(1e-5, 5e-3))
+    return Scaled(
+        s=s,
+        y_star=tuple(draw(clearances) for _ in range(n - 1)),
+        Delta=draw(st.floats(0.0, 1.0)),
+        w=draw(st.floats(0.0, 1e-2)),
+        epsilon=draw(st.floats(0.01, 0.2)),
+        psi_star=draw(st.floats(1e-3, 0.05)),
+    )
+
+
+@st.composite
+def loads(draw: st.DrawFn, n: int) -> Loads:
+    """Offsets, RSS force and weight large enough to close any of the clearances above."""
+    offsets = [draw(st.floats(-0.02, 0.02)) for _ in range(n)]
+    return Loads(offsets, draw(st.floats(-0.01, 0.01)), draw(st.floats(-1.0, 1.0)))

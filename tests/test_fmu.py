@@ -1,0 +1,282 @@
+"""The FMU as a running component. Every FMU runs in a process of its own, where the model is nowhere but in the FMU."""
+
+import json
+import subprocess
+import sys
+import zipfile
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import product
+from math import degrees
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from boreprop.case import Case, Schedule, load_case
+from boreprop.core.assembly import BottomHoleAssembly
+from boreprop.core.variables import BY_NAME, OUTPUTS, scalar_names
+from boreprop.results import Trajectory, read_trajectory
+from boreprop.simulation import simulate
+from boreprop_fmu import build
+from boreprop_fmu.build import build_fmu
+from boreprop_fmu.description import DIRECT
+
+HERE = Path(__file__).parent
+
+
+def host(scenario: str, *arguments: object) -> Any:
+    """What a scenario of fmu_host.py gives."""
+    command = [sys.executable, HERE / "fmu_host.py", scenario, *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", timeout=300)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def assert_agrees(rows: list[dict[str, float]], expected: Trajectory, tolerance: float) -> None:
+    """Every output within `tolerance` of its largest value in the run, or of one of its unit."""
+    assert len(rows) == len(expected)
+    for name in rows[0]:
+        column = np.array([row[name] for row in rows])
+        scale = max(1.0, float(np.abs(expected[name]).max()))
+        assert np.abs(column - expected[name]).max() <= tolerance * scale, name
+
+
+@pytest.fixture(scope="module")
+def case(paper_case: Path) -> Case:
+    return load_case(paper_case)
+
+
+@pytest.fixture(scope="module")
+def three(case: Case) -> Case:
+    """A case with three stabilizers."""
+    return replace(case, bha=BottomHoleAssembly((3.0, 6.5, 11.0), (2e-3, 4e-3), 0.5, 1100.0, 8e6))
+
+
+@pytest.fixture(scope="module")
+def fmu(case: Case, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return build_fmu(case, tmp_path_factory.mktemp("fmu") / "two.fmu")
+
+
+@pytest.fixture(scope="module")
+def fmu_3(three: Case, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return build_fmu(three, tmp_path_factory.mktemp("fmu") / "three.fmu")
+
+
+@pytest.mark.parametrize(
+    ("step", "count", "forces"),
+    [
+        (9.0, 5, {0: 0.0, 2: 2e3, 3: -1e3}),  # longer than the BHA
+        (0.97, 40, {0: 1e3, 7: -2e3, 19: 500.0}),
+        (3.66e-3, 500, {0: 0.0, 100: 3e3, 250: -3e3}),  # ℓ₁/1000
+    ],
+    ids=["longer than the BHA", "about 1 m", "a thousandth of the first length"],
+)
+@pytest.mark.parametrize("stabilizers", [2, 3])
+def test_it_is_the_simulation_at_any_communication_step(
+    case: Case, three: Case, fmu: Path, fmu_3: Path, stabilizers: int, step: float, count: int, forces: dict[int, float]
+) -> None:
+    which, path = (case, fmu) if stabilizers == 2 else (three, fmu_3)
+    run = host("follow", path, json.dumps(forces), step, count, 0.0, 1.0)
+    assert run["own modules"]
+    schedule = Schedule(tuple(k * step for k in forces), tuple(forces.values()))
+    expected = simulate(replace(which, schedule=schedule), sample_interval=step, length=count * step)
+    assert_agrees(run["rows"], expected, 1e-9)
+
+
+def test_neither_the_clock_nor_the_rate_of_penetration_matters(case: Case, fmu: Path) -> None:
+    run = host("follow", fmu, json.dumps({0: 1e3, 11: -2e3}), 80.0, 40, 5e4, 0.00625)
+    schedule = Schedule((0.0, 5.5), (1e3, -2e3))
+    assert_agrees(run["rows"], simulate(replace(case, schedule=schedule), sample_interval=0.5, length=20.0), 1e-9)
+
+
+def test_rounding_does_not_add_up_over_many_steps(fmu: Path) -> None:
+    # 1e-4 m added up as many times would be 1e-11 m off
+    assert host("tick", fmu, 100_000, 0.1, 1e-3) == pytest.approx(10.0, rel=0, abs=1e-13)
+
+
+def test_at_rate_zero_nothing_changes(fmu: Path) -> None:
+    before, *after = host("standstill", fmu)
+    assert all(row == before for row in after)
+
+
+def test_outputs_follow_at_once_the_inputs_they_declare_and_no_others(fmu_3: Path) -> None:
+    changed = host("respond", fmu_3)
+    for output, name in product(scalar_names(OUTPUTS, 3), changed):
+        if BY_NAME[output.partition("[")[0]].kind == "Real":  # an Integer may or may not switch
+            assert (output in changed[name]) == (name in DIRECT.get(output.partition("[")[0], ())), (output, name)
+
+
+def test_outputs_before_the_first_step_are_those_of_the_initial_hole(case: Case, fmu: Path) -> None:
+    inside, after = host("initial", fmu, json.dumps({"rss_force": 4e3, "bit_tilt_limit": 0.01}))
+    changed = replace(case, bit=replace(case.bit, tilt_limit=0.01), schedule=Schedule((0.0,), (4e3,)))
+    expected = simulate(changed, sample_interval=1.0, length=1.0)
+    assert inside == after
+    assert inside == pytest.approx({name: expected[name][0] for name in inside}, rel=1e-12, abs=1e-12)
+
+
+def test_running_on_from_a_state_repeats_bit_by_bit(fmu_3: Path, tmp_path: Path) -> None:
+    first, restored, deserialized = host("rollback", fmu_3, tmp_path / "state")
+    assert first == restored
+    assert first == deserialized
+    assert first == host("resume", fmu_3, tmp_path / "state")
+
+
+def test_bad_input_moves_nothing_and_good_input_works_again(fmu: Path) -> None:
+    for name, status, moved, (level, category, message), again in host("bad_inputs", fmu):
+        assert (status, moved, again) == ("discard", False, "ok"), name
+        assert (level, category) == (3, "logStatusError")
+        assert message.startswith(f"{name}: must be ")
+        assert ", got " in message
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        ("flexural_stiffness", "-1", "flexural_stiffness: must be > 0, got -1.0"),
+        ("stabilizer_position[1]", "50", "stabilizer_positions: must increase, got (50.0, 7.32)"),
+        ("relative_tolerance", "nan", "relative_tolerance: must be "),
+        # what a survey file is called is no format for the logger's printf
+        ("survey_file", "no/%s%n.csv", "no/%%s%%n.csv: must be a readable CSV file"),
+    ],
+)
+def test_a_bad_parameter_stops_the_instance_until_it_is_reset(fmu: Path, name: str, value: str, message: str) -> None:
+    status, (level, category, logged), again = host("bad_parameter", fmu, name, value)
+    assert (status, again) == ("discard", "ok")
+    assert (level, category) == (3, "logStatusError")
+    assert logged.startswith(message)
+
+
+def test_a_bad_state_stops_the_instance_until_a_good_one_is_set(fmu: Path, fmu_3: Path) -> None:
+    reports = host("bad_states", fmu, fmu_3)
+    assert len(reports) == 5
+    for first, (level, category, message), after in reports:
+        assert (first, after) == ("discard", "ok")
+        assert (level, category) == (3, "logStatusError")
+        assert message.startswith("state: must be one of this FMU")
+
+
+def test_a_survey_file_takes_the_place_of_the_packed_survey(case: Case, fmu: Path, tmp_path: Path) -> None:
+    depths = (1000.0, 1004.0, 1010.0)
+    inclinations = (0.1, 0.13, 0.12)
+    lines = [f"{depth},{degrees(inclination)!r}" for depth, inclination in zip(depths, inclinations, strict=True)]
+    (tmp_path / "survey.csv").write_text("\n".join(["measured_depth,inclination_deg", *lines]))
+    _, row = host("initial", fmu, json.dumps({"survey_file": str(tmp_path / "survey.csv")}))
+    survey = replace(case.survey, measured_depth=depths, inclination=inclinations)
+    expected = simulate(replace(case, survey=survey), sample_interval=1.0, length=1.0)
+    assert row == pytest.approx({name: expected[name][0] for name in row}, rel=1e-9, abs=1e-12)
+
+
+def test_fmus_with_different_code_and_numbers_of_stabilizers_share_a_process(
+    case: Case, fmu: Path, fmu_3: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read = build.read_modules
+
+    def heavier(package: str) -> dict[str, bytes]:
+        modules = read(package)
+        assert package != "boreprop.core" or b"self.F0_g = 5 / 8" in modules["beam.py"]
+        return {name: text.replace(b"self.F0_g = 5 / 8", b"self.F0_g = 7 / 8") for name, text in modules.items()}
+
+    monkeypatch.setattr(build, "read_modules", heavier)
+    other = build_fmu(case, tmp_path / "other.fmu")
+    fmus = [fmu, other, fmu_3, fmu]
+    together = host("side_by_side", *fmus)
+    assert together == [host("side_by_side", path)[0] for path in fmus]
+    assert together[0] != together[1]
+
+
+def test_it_needs_the_standard_library_only(fmu: Path, tmp_path: Path) -> None:
+    with zipfile.ZipFile(fmu) as archive:
+        archive.extractall(tmp_path)
+    command = [sys.executable, "-I", "-S", HERE / "fmu_bare_host.py", tmp_path]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+    report = json.loads(done.stdout)
+    assert report == {"statuses": [0] * 40, "drilled": 20.0, "foreign": [], "log": []}
+
+
+Command = Callable[..., subprocess.CompletedProcess[str]]
+
+
+def test_the_command_runs_the_packed_schedule_exactly_whatever_the_step(
+    case: Case, command: Command, tmp_path: Path
+) -> None:
+    schedule = Schedule((0.0, 3.21, 9.0), (0.0, 4e3, -1e3))  # the force changes within a step, and at the end of one
+    changed = replace(case, length=20.0, schedule=schedule)
+    build_fmu(changed, tmp_path / "Borehole.fmu")
+    done = command("boreprop-fmu", "run", "Borehole.fmu", "--output", "run.csv", "--step", "1.5")
+    assert done.returncode == 0, done.stderr
+    run = read_trajectory(tmp_path / "run.csv")
+    expected = simulate(changed, sample_interval=1.5, length=20.0)
+    assert run.case == changed
+    assert list(run.columns) == [
+        "time",
+        "rss_force",
+        "active_weight_on_bit",
+        "rate_of_penetration",
+        *scalar_names(OUTPUTS, 2),
+    ]
+    np.testing.assert_allclose(run["time"], 1.5 * np.arange(14), rtol=0, atol=0)
+    rows = [{name: run[name][k] for name in scalar_names(OUTPUTS, 2)} for k in range(len(run))]
+    assert_agrees(rows, expected, 1e-9)
+    np.testing.assert_array_equal(run["rss_force"], expected["rss_force"])
+
+
+def test_the_command_runs_under_a_schedule_file_up_to_a_stop(
+    fmu: Path, case: Case, command: Command, tmp_path: Path
+) -> None:
+    (tmp_path / "schedule.csv").write_text("drilled_length,force\n0,500\n2.5,-500\n")
+    arguments = ["--schedule", "schedule.csv", "--step", "0.5", "--stop", "5"]
+    done = command("boreprop-fmu", "run", fmu, "--output", "run.csv", *arguments)
+    assert done.returncode == 0, done.stderr
+    run = read_trajectory(tmp_path / "run.csv")
+    assert run.case is not None
+    assert run.case.schedule == Schedule((0.0, 2.5), (500.0, -500.0))
+    assert run["rss_force"].tolist() == [500.0] * 5 + [-500.0] * 6
+
+
+def test_the_command_builds_what_build_fmu_builds(
+    fmu: Path, paper_case: Path, command: Command, tmp_path: Path
+) -> None:
+    done = command("boreprop-fmu", "build", paper_case, "--output", "Borehole.fmu")
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "Borehole.fmu").read_bytes() == fmu.read_bytes()
+
+
+def test_a_temporary_directory_that_pythonfmu_cannot_read_is_refused(
+    fmu: Path, command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "tü").mkdir()
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "tü"))
+    done = command("boreprop-fmu", "run", fmu, "--output", "run.csv")
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: the temporary directory (TMPDIR) must ")
+    assert not (tmp_path / "run.csv").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["run", "missing.fmu", "--output", "run.csv"], "missing.fmu: must be an FMI 2.0 co-simulation FMU, got: "),
+        (["run", "case.toml", "--output", "run.csv"], "case.toml: must be an FMI 2.0 co-simulation FMU, got: "),
+        (["run", "FMU", "--output", "run.txt"], "run.txt: must end in .csv or .parquet, got '.txt'"),
+        (["run", "FMU", "--output", "run.csv", "--step", "0"], "--step"),
+        (["run", "FMU", "--output", "run.csv", "--stop", "nan"], "--stop"),
+        (["run", "FMU", "--output", "run.csv", "--step", "1e-9"], "step: must give at most"),
+        (["run", "FMU", "--output", "run.csv", "--schedule", "ragged.csv"], "ragged.csv:3: must have 2 values"),
+        (["build", "case.toml", "--output", "Borehole.zip"], "Borehole.zip: must end in .fmu, got '.zip'"),
+        (["build", "case.toml", "--output", "Borehole.fmu"], "case.toml: "),
+    ],
+)
+def test_bad_input_to_the_command_is_one_line(
+    fmu: Path, command: Command, tmp_path: Path, arguments: list[str], message: str
+) -> None:
+    (tmp_path / "case.toml").write_text("[bha]\n")
+    (tmp_path / "ragged.csv").write_text("drilled_length,force\n0,1\n1\n")
+    inputs = set(tmp_path.iterdir())
+    done = command("boreprop-fmu", *[str(fmu) if argument == "FMU" else argument for argument in arguments])
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert set(tmp_path.iterdir()) == inputs

@@ -1,0 +1,96 @@
+"""The collocation step against matrix exponentials and its own definition."""
+
+from collections.abc import Callable
+from math import factorial
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.interpolate import pade
+from scipy.linalg import expm
+
+from boreprop.core import radau
+
+Jacobian = tuple[float, float, float, float]
+STIFF: Jacobian = (-1142.9, 1428.6, 143.9, -228.6)  # the paper's case, in contact, not saturated
+GENTLE: Jacobian = (-1.0, 0.4, 0.7, -0.3)
+
+
+def solve(h: float, J: Jacobian, x: np.ndarray, g: Callable[[float], np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """One step of x' = J x + g(ξ) from ξ = 0: x at the end, and the coefficients of the polynomials."""
+    f = np.array([np.array(J).reshape(2, 2) @ x + g(t * h) for t in radau.POINTS])
+    theta, Y = radau.collocate(h, J, list(f[:, 0]), list(f[:, 1]))
+    return x + [theta.values[-1], Y.values[-1]], np.array([[*theta.coefficients], [*Y.coefficients]])
+
+
+def test_nodes_are_the_right_radau_nodes() -> None:
+    """Roots of P_{S−1} − P_S on [0, 1]."""
+    legendre = np.zeros(radau.S + 1)
+    legendre[radau.S - 1], legendre[radau.S] = 1, -1
+    roots = np.sort(np.polynomial.legendre.legroots(legendre))
+    assert radau.NODES == pytest.approx((roots + 1) / 2, abs=1e-13)
+
+
+def test_eigenvalues_are_those_of_the_inverse_collocation_matrix() -> None:
+    t = np.array(radau.NODES)
+    powers = np.arange(1, radau.S + 1)
+    A = (t[:, None] ** powers) @ np.linalg.inv(powers * t[:, None] ** (powers - 1))
+    eigenvalues = np.linalg.eigvals(np.linalg.inv(A))
+    for gamma in radau.GAMMA:
+        assert np.abs(eigenvalues - gamma).min() < 1e-11
+
+
+@given(st.floats(1e-4, 1.0), st.sampled_from([STIFF, GENTLE]), st.integers(0, 2**32))
+def test_the_polynomial_meets_the_equation_at_every_node(h: float, J: Jacobian, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    x = random.normal(size=2)
+    forcing = random.normal(size=(2, 4))
+
+    def g(xi: float) -> np.ndarray:
+        return forcing @ np.cos(np.arange(4) * xi)
+
+    _, c = solve(h, J, x, g)
+    m = np.arange(1, radau.S + 1)
+    for t in radau.NODES:
+        slope = (c * m * t ** (m - 1)).sum(axis=1) / h
+        value = x + (c * t**m).sum(axis=1)
+        right = np.array(J).reshape(2, 2) @ value + g(t * h)
+        assert slope == pytest.approx(right, rel=1e-8, abs=1e-8 * np.abs(J).max())
+
+
+@given(st.floats(-200.0, 1.0))
+def test_a_step_multiplies_a_mode_by_the_padé_approximant_of_the_exponential(z: float) -> None:
+    """Radau IIA's stability function is the (S−1, S) Padé approximant: order 2S − 1, and → 0 as z → −∞."""
+    numerator, denominator = pade([1 / factorial(k) for k in range(2 * radau.S)], radau.S, radau.S - 1)
+    end, _ = solve(1.0, (z, 0.0, 0.0, z / 3), np.array([1.0, 1.0]), lambda _: np.zeros(2))
+    expected = [numerator(z) / denominator(z), numerator(z / 3) / denominator(z / 3)]
+    assert end == pytest.approx(expected, abs=1e-9)
+
+
+def test_a_long_step_from_a_state_at_rest_stays_at_rest() -> None:
+    J, constant = np.array(STIFF).reshape(2, 2), np.array([3.0, 1.0])
+    rest = np.linalg.solve(J, -constant)
+    end, _ = solve(1.0, STIFF, rest, lambda _: constant)
+    assert end == pytest.approx(rest, abs=1e-12)
+
+
+def test_a_coupled_step_is_the_matrix_exponential() -> None:
+    x, J = np.array([1.0, -0.5]), np.array(GENTLE).reshape(2, 2)
+    end, _ = solve(0.5, GENTLE, x, lambda _: np.zeros(2))
+    assert end == pytest.approx(expm(0.5 * J) @ x, abs=1e-10)
+
+
+def test_defect_is_that_of_the_polynomial_at_the_check() -> None:
+    x, h, J = np.array([1.0, -0.5]), 0.8, np.array(GENTLE).reshape(2, 2)
+
+    def g(xi: float) -> np.ndarray:
+        return np.array([np.sin(9 * xi), np.cos(7 * xi)])
+
+    f = np.array([J @ x + g(t * h) for t in radau.POINTS])
+    theta, Y = radau.collocate(h, GENTLE, list(f[:, 0]), list(f[:, 1]))
+    c, t, m = np.array([theta.coefficients, Y.coefficients]), radau.CHECK, np.arange(1, radau.S + 1)
+    value = x + (c * t**m).sum(axis=1)
+    expected = (c * m * t ** (m - 1)).sum(axis=1) - h * (J @ value + g(t * h))
+    assert [theta.defect, Y.defect] == pytest.approx(expected, abs=1e-12)
+    assert np.abs(expected).max() > 1e-4
