@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from systems import loads, scaled_systems
 
 from boreprop.core.assembly import Scaled
 from boreprop.core.beam import Beam, flexibility
 from boreprop.core.contact import Loads
+from systems import loads, scaled_systems
 
 EI = 1 / 3  # in units of F* ℓ₁²
 
 
 class ElementBeam:
-    """Deflection from the bit's axis, and the reactions at the bit, by assembling beam elements between the stations."""
+    """Deflection from the bit's axis, and the reactions at the bit, from beam elements between the stations."""
 
     def __init__(self, scaled: Scaled, at: Loads, contact: list[float], extra: float) -> None:
         # hung at s_n by the offset −e_n from the bit's axis, pushed by the contacts, the RSS and the weight

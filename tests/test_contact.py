@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from systems import loads, scaled_systems
 
 from boreprop.core.assembly import Scaled
 from boreprop.core.beam import Beam
 from boreprop.core.contact import Loads, Modes, bit_tilt, lcp, lemke, residual
+from systems import loads, scaled_systems
 
 System = tuple[Scaled, Loads, float, list[int]]
 

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from reference_cases import look, run, start
 from scipy.linalg import expm
-from systems import scaled_systems
 
 from boreprop.core.assembly import Scaled
 from boreprop.core.beam import Beam
 from boreprop.core.hole import Survey
 from boreprop.core.propagation import Law, Propagation, Trial
+from reference_cases import look, run, start
+from systems import scaled_systems
 
 ONE = Scaled(s=(1.0,), y_star=(), Delta=0.16, w=0.0, epsilon=0.1, psi_star=1.0)
 VERTICAL = Survey((0.0,), (0.0,))
@@ -194,6 +194,14 @@ def test_a_failed_advance_moves_nothing_and_says_what_helps(monkeypatch: pytest.
     assert "raise relative_tolerance" in failure
     assert json.dumps(propagation.save()) == before
     assert propagation.advance(4.0) is None
+
+
+@pytest.mark.parametrize("F_rss", [1e2, 1e6, 1e12, 1e300])
+def test_a_force_beyond_all_sense_fails_at_once(F_rss: float) -> None:
+    propagation = start("fig7_psi_2deg")
+    propagation.steer(F_rss, 0.01)
+    assert propagation.advance(5.0) is not None
+    assert propagation.xi == 0.0
 
 
 def test_a_straight_vertical_hole_stays_straight() -> None:

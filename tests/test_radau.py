@@ -21,7 +21,7 @@ def solve(h: float, J: Jacobian, x: np.ndarray, g: Callable[[float], np.ndarray]
     """One step of x' = J x + g(ξ) from ξ = 0: x at the end, and the coefficients of the polynomials."""
     f = np.array([np.array(J).reshape(2, 2) @ x + g(t * h) for t in radau.POINTS])
     theta, Y = radau.collocate(h, J, list(f[:, 0]), list(f[:, 1]))
-    return x + [theta.values[-1], Y.values[-1]], np.array([[*theta.coefficients], [*Y.coefficients]])
+    return x + np.array([theta.values[-1], Y.values[-1]]), np.array([theta.coefficients, Y.coefficients])
 
 
 def test_nodes_are_the_right_radau_nodes() -> None:

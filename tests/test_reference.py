@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from reference_cases import CASES, reference, run
 
 everywhere = pytest.mark.parametrize("name", CASES)

@@ -55,6 +55,33 @@ def simulate(
 
 
 @app.command()
+def summary(
+    run_file: Annotated[Path, typer.Argument(metavar="RUN.csv", help="A result file, .csv or .parquet.")],
+    case_file: Annotated[
+        Path | None, typer.Option("--case", metavar="CASE.toml", help="Its case, if it does not carry one.")
+    ] = None,
+) -> None:
+    """Print a run in a dozen numbers."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from .case import InputError, load_case
+    from .results import read_trajectory
+    from .summary import rows, summarize
+
+    trajectory = read_trajectory(run_file, load_case(case_file) if case_file else None)
+    if trajectory.case is None:
+        raise InputError(f"{run_file}: must carry its case, or be given one with --case, got neither")
+    if len(trajectory) < 2:
+        raise InputError(f"{run_file}: must have at least 2 rows, got {len(trajectory)}")
+    length_scale = trajectory.case.bha.length_scale
+    table = Table(str(run_file), "")
+    for row in rows(summarize(trajectory, length_scale), length_scale):
+        table.add_row(*row)
+    Console().print(table)
+
+
+@app.command()
 def figures(output: Annotated[Path, typer.Argument(metavar="OUT/", help="The directory to put them in.")]) -> None:
     """Draw the paper's figures 7 and 8 (PNG)."""
     from .figures import make_figures

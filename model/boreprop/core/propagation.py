@@ -10,7 +10,7 @@ stabilizer passes the kink that either left in the hole. The steps are the integ
 
 from bisect import bisect_right, insort
 from collections.abc import Callable
-from math import cos, factorial, inf, isfinite, perm, sin
+from math import cos, factorial, inf, isfinite, perm, pi, sin
 from operator import itemgetter
 from typing import Any, NamedTuple
 
@@ -32,6 +32,7 @@ ITERATIONS = 10  # on that rest; each gains two digits or more
 LAYERS = 8.0  # first step after a kink, in relaxation lengths of θ
 STRETCH = 1.3  # how much longer than planned a step may be if it then ends on the next kink
 SMOOTHEST_KINK = 3  # jumps in higher derivatives of the hole are left to the error estimate
+LARGEST_INCLINATION = 2 * pi  # beyond a full turn the inputs make no sense
 MERGE = 1e-9  # kinks closer than this are one
 ORIGIN_LIMIT = 8.0  # |Y| beyond which the origin of Y is moved to the bit
 GAUSS = [(0.5 - 0.15**0.5, 5 / 18), (0.5, 8 / 18), (0.5 + 0.15**0.5, 5 / 18)]  # nodes and weights on [0, 1]
@@ -389,6 +390,11 @@ class Propagation:
         if h == to_kink and event is None:
             end = xi + to_kink
         next_h = max(resumed if h < resumed else 0.0, h * min(growth, LARGEST_GROWTH))
+        turned, _ = trial.step.state(end)
+        if not abs(turned) <= LARGEST_INCLINATION:
+            return (
+                f"the bit turns over (theta = {turned:.3g} rad) at xi = {end:.9g}: check rss_force and the parameters"
+            )
         self.step = trial.step._replace(end=end, event=event, side=side, next_h=next_h)
         self.hole.append(xi, h, self.step.Y)
         if kink is not None:

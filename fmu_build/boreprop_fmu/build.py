@@ -1,0 +1,131 @@
+"""Packs the model, as code and numbers, into an FMI 2.0 co-simulation FMU on pythonfmu's runtime.
+
+The archive is written here and not by pythonfmu's own builder, which imports the slave into the building process and
+makes a different file every time. From pythonfmu come the binaries and the package that they call.
+"""
+
+import json
+import zipfile
+from dataclasses import asdict
+from hashlib import sha256
+from importlib.resources import files
+from pathlib import Path
+from uuid import UUID, uuid5
+
+from boreprop.case import Case, dump_case
+from boreprop.core.propagation import RELATIVE_TOLERANCE
+from boreprop.core.variables import BY_NAME
+from boreprop.results import replacing
+
+from .description import model_description
+
+IDENTIFIER = "Borehole"
+CAPABILITIES = {
+    "needsExecutionTool": False,
+    "canHandleVariableCommunicationStepSize": True,
+    "canInterpolateInputs": False,
+    "canBeInstantiatedOnlyOncePerProcess": False,
+    "canNotUseMemoryManagementFunctions": True,
+    "canGetAndSetFMUstate": True,
+    "canSerializeFMUstate": True,
+}
+CASE_FILE = "resources/case.toml"
+GUID_NAMESPACE = UUID("6f0a3c1e-9d1b-5a55-8a0e-0d6c1f9f7b11")
+STEP_SIZE = 0.1  # s, so 0.1 m at the start value of the rate of penetration
+EPOCH = (1980, 1, 1, 0, 0, 0)
+
+
+def build_fmu(case: Case, output: Path) -> Path:
+    """Write the FMU of `case` to `output` and return that path. Same case, same code: same bytes.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written; nothing is left behind then.
+    """
+    code = pack_code()
+    guid = str(uuid5(GUID_NAMESPACE, digest({**code, **pack_case(case, guid="")})))
+    archive = {**pack_case(case, guid), **code, **pack_runtime()}
+    with replacing(output) as draft, zipfile.ZipFile(draft, "w") as fmu:
+        for name in sorted(archive, key=lambda name: (name != "modelDescription.xml", name)):
+            entry = zipfile.ZipInfo(name, EPOCH)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            entry.external_attr = 0o644 << 16
+            fmu.writestr(entry, archive[name])
+    return output
+
+
+def pack_code() -> dict[str, bytes]:
+    """The slave and the core, each under a name that carries a hash of its content."""
+    core = read_modules("boreprop.core")
+    package = f"boreprop_core_{digest(core)[:16]}"
+    slave = files("boreprop_fmu").joinpath("slave.py").read_text(encoding="utf-8")
+    script = slave.replace("boreprop.core", package).encode()
+    module = f"boreprop_slave_{digest({package: script})[:16]}"
+    return {
+        "resources/slavemodule.txt": module.encode(),
+        f"resources/{module}.py": script,
+        **{f"resources/{package}/{name}": content for name, content in core.items()},
+    }
+
+
+def pack_case(case: Case, guid: str) -> dict[str, bytes]:
+    """The numbers: the description, what the slave starts from, and the case file for whoever runs the FMU."""
+    n = len(case.bha.stabilizer_positions)
+    start = start_values(case)
+    packed = {"guid": guid, "stabilizers": n, "start": start, "survey": asdict(case.survey)}
+    description = model_description(
+        IDENTIFIER,
+        guid,
+        n,
+        start,
+        stop_time=case.length,
+        step_size=STEP_SIZE,
+        capabilities=CAPABILITIES,
+    )
+    return {
+        "modelDescription.xml": description,
+        "resources/fmu.json": json.dumps(packed, indent=1).encode(),
+        CASE_FILE: dump_case(case).encode(),
+    }
+
+
+def pack_runtime() -> dict[str, bytes]:
+    """pythonfmu: the binaries under the FMU's name, and the package."""
+    archive = {f"resources/pythonfmu/{name}": content for name, content in read_modules("pythonfmu").items()}
+    for platform in files("pythonfmu").joinpath("resources/binaries").iterdir():
+        for binary in platform.iterdir():
+            archive[f"binaries/{platform.name}/{IDENTIFIER}{Path(binary.name).suffix}"] = binary.read_bytes()
+    return archive
+
+
+def start_values(case: Case) -> dict[str, float | str]:
+    """Start value of every input and parameter, by scalar name."""
+    bha, bit = case.bha, case.bit
+    n = len(bha.stabilizer_positions)
+    return {
+        "rss_force": case.schedule.rss_force[0],
+        "active_weight_on_bit": case.active_weight_on_bit,
+        "rate_of_penetration": 1.0,
+        **dict(zip(BY_NAME["stabilizer_position"].names(n), bha.stabilizer_positions, strict=True)),
+        **dict(zip(BY_NAME["stabilizer_clearance"].names(n), bha.stabilizer_clearances, strict=True)),
+        "rss_position": bha.rss_position,
+        "distributed_weight": bha.distributed_weight,
+        "flexural_stiffness": bha.flexural_stiffness,
+        "lateral_steering_resistance": bit.lateral_steering_resistance,
+        "angular_steering_resistance": bit.angular_steering_resistance,
+        "bit_tilt_limit": bit.tilt_limit,
+        "relative_tolerance": RELATIVE_TOLERANCE,
+        "survey_file": "",
+    }
+
+
+def read_modules(package: str) -> dict[str, bytes]:
+    """Sources of the modules of `package`, by file name."""
+    return {path.name: path.read_bytes() for path in files(package).iterdir() if path.name.endswith(".py")}
+
+
+def digest(archive: dict[str, bytes]) -> str:
+    """SHA-256 over names and contents, hexadecimal."""
+    lines = (f"{sha256(content).hexdigest()} {name}\n" for name, content in sorted(archive.items()))
+    return sha256("".join(lines).encode()).hexdigest()
