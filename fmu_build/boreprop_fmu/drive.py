@@ -224,11 +224,14 @@ def drive(
 
 
 def read_packed_case(fmu: str | Path) -> Case | None:
-    """The case that `build_fmu` packed in an FMU; None if it is not one of ours."""
-    with zipfile.ZipFile(fmu) as archive:
-        if CASE_FILE not in archive.namelist():
-            return None
-        return parse_case(archive.read(CASE_FILE).decode(), Path(fmu, CASE_FILE))
+    """The case that `build_fmu` packed in an FMU; None if it is not one of ours, `InputError` if it is no archive."""
+    try:
+        with zipfile.ZipFile(fmu) as archive:
+            if CASE_FILE not in archive.namelist():
+                return None
+            return parse_case(archive.read(CASE_FILE).decode(), Path(fmu, CASE_FILE))
+    except zipfile.BadZipFile as error:
+        raise InputError(f"{fmu}: must be an FMU, got: {error}") from error
 
 
 def _check_readable(directory: str) -> None:

@@ -7,7 +7,6 @@ from importlib.resources import files
 from pathlib import Path
 from time import monotonic, sleep
 from typing import Annotated, NoReturn
-from zipfile import BadZipFile
 
 from boreprop import console
 from boreprop.case import InputError, load_case
@@ -82,10 +81,7 @@ def load_run(source: Path, case: Path | None, fmu: Path | None) -> Trajectory:
     if fmu is not None:
         from boreprop_fmu.drive import read_packed_case
 
-        try:
-            packed = read_packed_case(fmu)
-        except BadZipFile as error:
-            raise InputError(f"{fmu}: must be an FMU, got: {error}") from error
+        packed = read_packed_case(fmu)
         if packed is None:
             raise InputError(f"{fmu}: must hold its case, as ours do, got an FMU without")
         return read_trajectory(source, packed)

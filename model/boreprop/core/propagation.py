@@ -65,10 +65,20 @@ class Linear(NamedTuple):
             value += c * Y_i
         return value
 
-    def along(self, theta: float, Y: float, delayed: list[list[float]], sines: list[float]) -> list[float]:
+    def held(self, theta: float, Y: float, delayed: list[list[float]], sines: list[float]) -> list[float]:
         """Values along a step with (θ, Y) held; `delayed` has one list for each stabilizer."""
-        held, g = self.theta * theta + self.Y * Y + self.one, self.g
-        values = [held + g * sine for sine in sines]
+        state, g = self.theta * theta + self.Y * Y + self.one, self.g
+        return self._add_delayed([state + g * sine for sine in sines], delayed)
+
+    def along(
+        self, thetas: list[float], Ys: list[float], delayed: list[list[float]], sines: list[float]
+    ) -> list[float]:
+        """Values along a step; `delayed` has one list for each stabilizer."""
+        a, b, g, one = self.theta, self.Y, self.g, self.one
+        values = [one + a * theta + b * Y + g * sine for theta, Y, sine in zip(thetas, Ys, sines, strict=True)]
+        return self._add_delayed(values, delayed)
+
+    def _add_delayed(self, values: list[float], delayed: list[list[float]]) -> list[float]:
         for c, Y_i in zip(self.delayed, delayed, strict=True):
             if c:
                 values = [value + c * y for value, y in zip(values, Y_i, strict=True)]
@@ -412,8 +422,8 @@ class Propagation:
         held = [sine + cosine * (Y - Y_1 - near) for Y_1 in delayed[0]]
         allowed = REST * self.tolerance * (abs(rate.theta) + 1 / h)
         for _ in range(ITERATIONS):
-            f_theta = rate.along(theta, Y, delayed, held)
-            f_Y = Theta.along(theta, Y, delayed, held)
+            f_theta = rate.held(theta, Y, delayed, held)
+            f_Y = Theta.held(theta, Y, delayed, held)
             solved_theta, solved_Y = radau.collocate(h, J, f_theta, f_Y)
             sines = [s + cosine * z for s, z in zip(held, solved_Y.values, strict=True)]
             averages = [Y + z - Y_1 for z, Y_1 in zip(solved_Y.values, delayed[0], strict=True)]
@@ -439,9 +449,7 @@ class Propagation:
         step = trial.step
         first, event, first_side = step.xi + step.h, None, 0
         for bound in law.bounds:
-            a, b = bound.value.theta, bound.value.Y
-            rest = bound.value.along(0.0, 0.0, trial.delayed, trial.sines)
-            values = [v + a * x + b * y for v, x, y in zip(rest, trial.thetas, trial.Ys, strict=True)]
+            values = bound.value.along(trial.thetas, trial.Ys, trial.delayed, trial.sines)
             if max(values) <= bound.upper + ROUNDING and min(values) >= bound.lower - ROUNDING:
                 continue
             sides = [left(value, bound.lower, bound.upper) for value in values]

@@ -1,0 +1,40 @@
+# Everything happens in .venv, which the first target that needs it makes. Without make: see the README.
+PYTHON ?= python3
+BIN = .venv/bin
+
+.PHONY: demo test lint bench clean
+
+demo: .venv/all.installed  # the main job: case file, FMU, run, viewer recording, figures, summary; results in out/
+	mkdir -p out
+	$(BIN)/boreprop-fmu build examples/build_section.toml --output out/Borehole.fmu
+	$(BIN)/boreprop-fmu run out/Borehole.fmu --schedule examples/build_section_rss.csv --output out/run.csv
+	$(BIN)/boreprop-view out/run.csv --save out/run.rrd
+	$(BIN)/boreprop figures out
+	$(BIN)/boreprop summary out/run.csv
+	@printf '\nResults are in %s/out:\n' "$$PWD"
+	@printf '  %-15s %s\n' \
+		Borehole.fmu    'the FMU, for any FMI 2.0 co-simulation tool' \
+		run.csv         'the run, and its case in run.case.toml' \
+		run.rrd         'the recording: $(BIN)/rerun out/run.rrd' \
+		'figure_*.png'  'figures 7 and 8 of the paper'
+
+test: .venv/dev.installed  # the whole suite
+	$(BIN)/python -m pytest
+
+lint: .venv/dev.installed  # style, types and the import contract
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: .venv/dev.installed  # speed, side by side with a fixed-step Runge–Kutta method
+	$(BIN)/python benchmarks/integrator.py
+
+clean:
+	rm -rf .venv out dist build .*_cache .hypothesis
+
+.venv/%.installed: pyproject.toml
+	@echo 'Installing into .venv: a minute or two the first time'
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[$*]"
+	@touch $@

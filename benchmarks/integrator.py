@@ -1,0 +1,73 @@
+"""The integrator against fixed-step RK4, side by side in one run: error in Y, time, ratio.
+
+    python benchmarks/integrator.py
+
+RK4 is hard-coded for two stabilizers (rk4_two_stabilizers.py). Both are measured against the reference trajectories in
+tests/reference. Times are the least of several runs taken in turn, ratios their median, pair by pair.
+"""
+
+import sys
+from pathlib import Path
+from statistics import median
+from time import perf_counter
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+from rk4_two_stabilizers import rk4
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+from reference_cases import CASES, look, reference, start
+
+PAIRS = 5
+WANTED_ERROR = 1e-6
+# relative tolerance of ours; RK4's steps per ℓ₁: the usual one, and the coarsest of these that reaches the wanted error
+TOLERANCE = 5e-8
+GRIDS = {"fig7_psi_2deg": (2000, 16000), "fig8_clearance_2e-3": (2000, 1000)}
+
+
+def ours(name: str) -> None:
+    """Drill a reference case to its end."""
+    propagation = start(name, TOLERANCE)
+    assert propagation.advance(CASES[name]["length"]) is None
+
+
+def ours_error(name: str) -> float:
+    """Largest error in Y over the rows of the reference."""
+    propagation, rows = start(name, TOLERANCE), reference(name)
+    errors = []
+    for row in rows:
+        propagation.advance(float(row["xi"]))
+        errors.append(abs(look(propagation)["Y"] - row["Y"]))
+    return max(errors)
+
+
+def rk4_error(name: str, m: int) -> float:
+    """Largest error in Y over the rows of the reference, with m steps per ℓ₁."""
+    rows = reference(name)
+    _, Y = rk4(CASES[name], m)
+    return float(np.abs(np.array(Y)[np.rint(rows["xi"] * m).astype(int)] - rows["Y"]).max())
+
+
+def seconds(function: object, *arguments: object) -> float:
+    """Time of one call."""
+    begin = perf_counter()
+    function(*arguments)  # type: ignore[operator]
+    return perf_counter() - begin
+
+
+def main() -> None:
+    """Print a table."""
+    table = Table("case", "method", "error in Y", "time (s)", "ours is faster by", title=f"{PAIRS} pairs")
+    for name, grids in GRIDS.items():
+        table.add_row(name, f"ours, tolerance {TOLERANCE:g}", f"{ours_error(name):.1e}", "", "")
+        for m in grids:
+            pairs = [(seconds(ours, name), seconds(rk4, CASES[name], m)) for _ in range(PAIRS)]
+            mine, theirs = (min(times) for times in zip(*pairs, strict=True))
+            ratio = median(b / a for a, b in pairs)
+            table.add_row("", f"RK4, h = 1/{m}", f"{rk4_error(name, m):.1e}", f"{mine:.4f} : {theirs:.3f}", f"{ratio:.1f}")
+    Console(width=110).print(table)
+
+
+if __name__ == "__main__":
+    main()
