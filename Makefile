@@ -29,11 +29,14 @@ lint: .venv/dev.installed  # style, types and the import contract
 
 bench: .venv/dev.installed  # speed, side by side with a fixed-step Runge–Kutta method
 	$(BIN)/python benchmarks/integrator.py
+	$(BIN)/python benchmarks/whole_process.py
 
 clean:
 	rm -rf .venv out dist build .*_cache .hypothesis
 
 .venv/%.installed: pyproject.toml
+	@$(PYTHON) -c 'import sys; v = sys.version.split()[0]; sys.exit(v and sys.version_info < (3, 11) and \
+		"Python 3.11 or later is needed, got " + v + "; name one: make PYTHON=python3.11 $(MAKECMDGOALS)")'
 	@echo 'Installing into .venv: a minute or two the first time'
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[$*]"

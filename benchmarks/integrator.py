@@ -16,13 +16,15 @@ from rich.console import Console
 from rich.table import Table
 from rk4_two_stabilizers import rk4
 
+from boreprop.core.propagation import RELATIVE_TOLERANCE
+
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from reference_cases import CASES, look, reference, start
 
 PAIRS = 5
 WANTED_ERROR = 1e-6
 # relative tolerance of ours; RK4's steps per ℓ₁: the usual one, and the coarsest of these that reaches the wanted error
-TOLERANCE = 5e-8
+TOLERANCE = RELATIVE_TOLERANCE
 GRIDS = {"fig7_psi_2deg": (2000, 16000), "fig8_clearance_2e-3": (2000, 1000)}
 
 
@@ -65,7 +67,9 @@ def main() -> None:
             pairs = [(seconds(ours, name), seconds(rk4, CASES[name], m)) for _ in range(PAIRS)]
             mine, theirs = (min(times) for times in zip(*pairs, strict=True))
             ratio = median(b / a for a, b in pairs)
-            table.add_row("", f"RK4, h = 1/{m}", f"{rk4_error(name, m):.1e}", f"{mine:.4f} : {theirs:.3f}", f"{ratio:.1f}")
+            table.add_row(
+                "", f"RK4, h = 1/{m}", f"{rk4_error(name, m):.1e}", f"{mine:.4f} : {theirs:.3f}", f"{ratio:.1f}"
+            )
     Console(width=110).print(table)
 
 

@@ -69,3 +69,11 @@ def rk4(case: dict, m: int) -> tuple[list[float], list[float]]:
         slope.append(f(theta, Y, b1, b2)[1])
         thetas.append(theta)
     return thetas, past[2 * m :]
+
+
+if __name__ == "__main__":
+    import json
+    from pathlib import Path
+
+    cases = json.loads((Path(__file__).parents[1] / "tests" / "reference" / "cases.json").read_text(encoding="utf-8"))
+    rk4(cases["fig7_psi_2deg"], 2000)

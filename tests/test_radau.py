@@ -12,16 +12,18 @@ from scipy.linalg import expm
 
 from boreprop.core import radau
 
-Jacobian = tuple[float, float, float, float]
-STIFF: Jacobian = (-1142.9, 1428.6, 143.9, -228.6)  # the paper's case, in contact, not saturated
-GENTLE: Jacobian = (-1.0, 0.4, 0.7, -0.3)
+STIFF: radau.Jacobian = (-1142.9, 1428.6, 143.9, -228.6)  # the paper's case, in contact, not saturated
+GENTLE: radau.Jacobian = (-1.0, 0.4, 0.7, -0.3)
 
 
-def solve(h: float, J: Jacobian, x: np.ndarray, g: Callable[[float], np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+def solve(
+    h: float, J: radau.Jacobian, x: np.ndarray, g: Callable[[float], np.ndarray]
+) -> tuple[np.ndarray, np.ndarray]:
     """One step of x' = J x + g(ξ) from ξ = 0: x at the end, and the coefficients of the polynomials."""
     f = np.array([np.array(J).reshape(2, 2) @ x + g(t * h) for t in radau.POINTS])
-    theta, Y = radau.collocate(h, J, list(f[:, 0]), list(f[:, 1]))
-    return x + np.array([theta.values[-1], Y.values[-1]]), np.array([theta.coefficients, Y.coefficients])
+    parts = radau.collocate(h, J, list(f[:, 0]), list(f[:, 1]))
+    coefficients = np.array([radau.coefficients(start, part)[1:] for start, part in zip(x, parts, strict=True)])
+    return np.array([radau.values(start, part)[-1] for start, part in zip(x, parts, strict=True)]), coefficients
 
 
 def test_nodes_are_the_right_radau_nodes() -> None:
@@ -42,7 +44,7 @@ def test_eigenvalues_are_those_of_the_inverse_collocation_matrix() -> None:
 
 
 @given(st.floats(1e-4, 1.0), st.sampled_from([STIFF, GENTLE]), st.integers(0, 2**32))
-def test_the_polynomial_meets_the_equation_at_every_node(h: float, J: Jacobian, seed: int) -> None:
+def test_the_polynomial_meets_the_equation_at_every_node(h: float, J: radau.Jacobian, seed: int) -> None:
     random = np.random.default_rng(seed)
     x = random.normal(size=2)
     forcing = random.normal(size=(2, 4))
@@ -81,16 +83,15 @@ def test_a_coupled_step_is_the_matrix_exponential() -> None:
     assert end == pytest.approx(expm(0.5 * J) @ x, abs=1e-10)
 
 
-def test_defect_is_that_of_the_polynomial_at_the_check() -> None:
-    x, h, J = np.array([1.0, -0.5]), 0.8, np.array(GENTLE).reshape(2, 2)
+@given(st.integers(0, 2**32))
+def test_values_and_slope_are_those_of_the_coefficients(seed: int) -> None:
+    start, *parts = np.random.default_rng(seed).normal(size=6)
+    polynomial = np.polynomial.Polynomial(radau.coefficients(start, tuple(parts)))
+    assert radau.values(start, tuple(parts)) == pytest.approx(polynomial(np.array(radau.POINTS)), abs=1e-12)
+    assert radau.slope(tuple(parts)) == pytest.approx(polynomial.deriv()(radau.CHECK), abs=1e-12)
 
-    def g(xi: float) -> np.ndarray:
-        return np.array([np.sin(9 * xi), np.cos(7 * xi)])
 
-    f = np.array([J @ x + g(t * h) for t in radau.POINTS])
-    theta, Y = radau.collocate(h, GENTLE, list(f[:, 0]), list(f[:, 1]))
-    c, t, m = np.array([theta.coefficients, Y.coefficients]), radau.CHECK, np.arange(1, radau.S + 1)
-    value = x + (c * t**m).sum(axis=1)
-    expected = (c * m * t ** (m - 1)).sum(axis=1) - h * (J @ value + g(t * h))
-    assert [theta.defect, Y.defect] == pytest.approx(expected, abs=1e-12)
-    assert np.abs(expected).max() > 1e-4
+def test_an_error_is_the_defect_with_its_stiff_part_damped() -> None:
+    h, defects = 0.3, np.array([1.0, -2.0])
+    expected = np.linalg.solve(np.eye(2) - h * np.array(STIFF).reshape(2, 2) / radau.GAMMA[0].real, defects)
+    assert radau.error(h, STIFF, *defects) == pytest.approx(expected)

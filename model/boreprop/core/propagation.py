@@ -29,7 +29,7 @@ SAFETY = 0.85
 THETA_WEIGHT = 0.1  # θ forgets an error within εηΠ, Y carries it for the length of the BHA
 REST = 0.03  # what may be left of sin⟨Θ⟩_1 beyond its linear part, in tolerances of θ
 ITERATIONS = 10  # on that rest; each gains two digits or more
-LAYERS = 8.0  # first step after a kink, in relaxation lengths of θ
+LAYERS = 16.0  # first step after a kink, in relaxation lengths of θ
 STRETCH = 1.3  # how much longer than planned a step may be if it then ends on the next kink
 SMOOTHEST_KINK = 3  # jumps in higher derivatives of the hole are left to the error estimate
 LARGEST_INCLINATION = 2 * pi  # beyond a full turn the inputs make no sense
@@ -51,7 +51,7 @@ class Linear(NamedTuple):
     def of(cls, row: Row, s: tuple[float, ...], F_rss: float, scale: float) -> "Linear":
         """`scale` times `row`, with e_i = Y − Y(ξ−s_i) − s_i θ put in."""
         return cls(
-            theta=-scale * sum(c * s_i for c, s_i in zip(row.e, s, strict=True)),
+            theta=-scale * sum(c * s_i for c, s_i in zip(row.e, s)),
             Y=scale * sum(row.e),
             delayed=tuple(-scale * c for c in row.e),
             g=scale * row.g,
@@ -61,27 +61,30 @@ class Linear(NamedTuple):
     def at(self, theta: float, Y: float, delayed: list[float], sine: float) -> float:
         """Value at one point."""
         value = self.theta * theta + self.Y * Y + self.g * sine + self.one
-        for c, Y_i in zip(self.delayed, delayed, strict=True):
+        for c, Y_i in zip(self.delayed, delayed):
             value += c * Y_i
         return value
 
     def held(self, theta: float, Y: float, delayed: list[list[float]], sines: list[float]) -> list[float]:
         """Values along a step with (θ, Y) held; `delayed` has one list for each stabilizer."""
-        state, g = self.theta * theta + self.Y * Y + self.one, self.g
-        return self._add_delayed([state + g * sine for sine in sines], delayed)
+        state, g, c = self.theta * theta + self.Y * Y + self.one, self.g, self.delayed[0]
+        return self._add_others([state + g * sine + c * Y_1 for sine, Y_1 in zip(sines, delayed[0])], delayed)
 
     def along(
         self, thetas: list[float], Ys: list[float], delayed: list[list[float]], sines: list[float]
     ) -> list[float]:
         """Values along a step; `delayed` has one list for each stabilizer."""
-        a, b, g, one = self.theta, self.Y, self.g, self.one
-        values = [one + a * theta + b * Y + g * sine for theta, Y, sine in zip(thetas, Ys, sines, strict=True)]
-        return self._add_delayed(values, delayed)
+        a, b, c, g, one = self.theta, self.Y, self.delayed[0], self.g, self.one
+        points = zip(thetas, Ys, delayed[0], sines)
+        return self._add_others(
+            [one + a * theta + b * Y + c * Y_1 + g * sine for theta, Y, Y_1, sine in points], delayed
+        )
 
-    def _add_delayed(self, values: list[float], delayed: list[list[float]]) -> list[float]:
-        for c, Y_i in zip(self.delayed, delayed, strict=True):
+    def _add_others(self, values: list[float], delayed: list[list[float]]) -> list[float]:
+        """Add the parts of stabilizers 2 … n."""
+        for c, Y_i in zip(self.delayed[1:], delayed[1:]):
             if c:
-                values = [value + c * y for value, y in zip(values, Y_i, strict=True)]
+                values = [value + c * y for value, y in zip(values, Y_i)]
         return values
 
 
@@ -108,8 +111,7 @@ class Law:
         self.relaxation = 1 / abs(self.theta_rate.theta + self.Theta.Y)
         # change of Θ per change of Y(ξ−s_i), θ having settled
         self.gains = [
-            abs(a / self.theta_rate.theta) + abs(b)
-            for a, b in zip(self.theta_rate.delayed, self.Theta.delayed, strict=True)
+            abs(a / self.theta_rate.theta) + abs(b) for a, b in zip(self.theta_rate.delayed, self.Theta.delayed)
         ]
         self.gains[0] += abs(self.theta_rate.g / self.theta_rate.theta) + abs(self.Theta.g)
         tilt_bounds = {0: (-psi_star, psi_star), 1: (psi_star, inf), -1: (-inf, -psi_star)}
@@ -254,7 +256,7 @@ class Propagation:
         """What bends the beam where the bit is."""
         theta, Y = self.step.state(self.xi)
         delayed = [self.hole.Y(self.xi - s_i) for s_i in self.scaled.s]
-        e = [Y - Y_i - s_i * theta for Y_i, s_i in zip(delayed, self.scaled.s, strict=True)]
+        e = [Y - Y_i - s_i * theta for Y_i, s_i in zip(delayed, self.scaled.s)]
         return Loads(e, self.F_rss, sin(Y - delayed[0]))
 
     def settled(self, loads: Loads) -> Mode:
@@ -338,6 +340,8 @@ class Propagation:
 
     def _kink_here(self, xi: float) -> int | None:
         """Take the kinks up to `xi` off the list; the lowest derivative of Y that those at `xi` make jump, if any."""
+        if not self.kinks or self.kinks[0].xi > xi + MERGE:
+            return None
         passed = bisect_right(self.kinks, xi + MERGE, key=itemgetter(0))
         orders = [kink.order + 1 for kink in self.kinks[:passed] if kink.xi >= xi - MERGE]
         del self.kinks[:passed]
@@ -405,7 +409,7 @@ class Propagation:
             return (
                 f"the bit turns over (theta = {turned:.3g} rad) at xi = {end:.9g}: check rss_force and the parameters"
             )
-        self.step = trial.step._replace(end=end, event=event, side=side, next_h=next_h)
+        self.step = Step(xi, h, trial.step.theta, trial.step.Y, end, event, side, next_h)
         self.hole.append(xi, h, self.step.Y)
         if kink is not None:
             self._add_images(xi, kink, abs(self.step.derivative(kink, xi) - last.derivative(kink, xi)))
@@ -424,25 +428,31 @@ class Propagation:
         for _ in range(ITERATIONS):
             f_theta = rate.held(theta, Y, delayed, held)
             f_Y = Theta.held(theta, Y, delayed, held)
-            solved_theta, solved_Y = radau.collocate(h, J, f_theta, f_Y)
-            sines = [s + cosine * z for s, z in zip(held, solved_Y.values, strict=True)]
-            averages = [Y + z - Y_1 for z, Y_1 in zip(solved_Y.values, delayed[0], strict=True)]
+            parts_theta, parts_Y = radau.collocate(h, J, f_theta, f_Y)
+            Ys = radau.values(Y, parts_Y)
+            averages = [Y_t - Y_1 for Y_t, Y_1 in zip(Ys, delayed[0])]
+            sines = [sine + cosine * (average - near) for average in averages]
             far = max(max(averages) - near, near - min(averages))
             if far * far / 2 * abs(rate.g) <= allowed:  # |sin(a + d) − sin a − d cos a| <= d²/2
                 break
-            rest = [sin(average) - s for average, s in zip(averages, sines, strict=True)]
+            assumed = [s + cosine * (Y_t - Y) for s, Y_t in zip(held, Ys)]
+            sines = [sin(average) for average in averages]
+            rest = [s - linear for s, linear in zip(sines, assumed)]
             if max(map(abs, rest)) * abs(rate.g) <= allowed:
                 break
-            held = [s + r for s, r in zip(held, rest, strict=True)]
-        error_theta, error_Y = radau.damped(h, J, solved_theta.defect, solved_Y.defect)
-        return Trial(
-            Step(xi, h, (theta, *solved_theta.coefficients), (Y, *solved_Y.coefficients), xi + h),
-            [theta + z for z in solved_theta.values],
-            [Y + z for z in solved_Y.values],
-            delayed,
-            sines,
-            max(THETA_WEIGHT * abs(error_theta), abs(error_Y)) / self.tolerance,
+            held = [s + r for s, r in zip(held, rest)]
+        thetas = radau.values(theta, parts_theta)
+        at = radau.AT_CHECK
+        moved_theta, moved_Y = thetas[at] - theta, Ys[at] - Y
+        error_theta, error_Y = radau.error(
+            h,
+            J,
+            radau.slope(parts_theta) - h * (f_theta[at] + J[0] * moved_theta + J[1] * moved_Y),
+            radau.slope(parts_Y) - h * (f_Y[at] + J[2] * moved_theta + J[3] * moved_Y),
         )
+        step = Step(xi, h, radau.coefficients(theta, parts_theta), radau.coefficients(Y, parts_Y), xi + h)
+        error = max(THETA_WEIGHT * abs(error_theta), abs(error_Y)) / self.tolerance
+        return Trial(step, thetas, Ys, delayed, sines, error)
 
     def _first_event(self, law: Law, trial: Trial) -> tuple[float, int | None, int]:
         """Where a trial step first meets a bound of its mode, whose, and on which side; its end if it meets none."""
@@ -454,13 +464,13 @@ class Propagation:
                 continue
             sides = [left(value, bound.lower, bound.upper) for value in values]
             j = next(j for j, side in enumerate(sides) if side)
-            xi = self._locate(bound, sides[j], step, j)
+            xi = self._locate(bound, sides[j], step, j, values[j])
             if xi < first:
                 first, event, first_side = xi, bound.part, sides[j]
         return first, event, first_side
 
-    def _locate(self, bound: Bound, side: int, step: Step, j: int) -> float:
-        """Where `bound` is crossed before the `j`-th point of a step, and after the point before it."""
+    def _locate(self, bound: Bound, side: int, step: Step, j: int, value: float) -> float:
+        """Where `bound` is crossed between the point before the `j`-th of a step and that one, where it has `value`."""
         limit = bound.upper if side > 0 else bound.lower
 
         def beyond(xi: float) -> float:
@@ -469,22 +479,23 @@ class Propagation:
             return side * (bound.value.at(theta, Y, delayed, sin(Y - delayed[0])) - limit)
 
         before = step.xi + radau.POINTS[j - 1] * step.h if j else step.xi
-        return crossing(beyond, before, step.xi + radau.POINTS[j] * step.h)
+        return crossing(beyond, before, step.xi + radau.POINTS[j] * step.h, side * (value - limit))
 
 
-def crossing(f: Callable[[float], float], a: float, b: float) -> float:
-    """Zero of `f` in [a, b], where f(a) <= 0 < f(b), by regula falsi with the Illinois weights."""
-    f_a, f_b = f(a), f(b)
-    if f_a >= 0 or f_b <= 0:
-        return a if f_a >= 0 else b
+def crossing(f: Callable[[float], float], a: float, b: float, f_b: float) -> float:
+    """Zero of `f` in [a, b], where f(a) <= 0 < f(b) = f_b, by regula falsi with the weights of Anderson and Björck."""
+    f_a = f(a)
+    if f_a >= 0:
+        return a
     c = b
     for _ in range(60):
         c = (a * f_b - b * f_a) / (f_b - f_a)
         f_c = f(c)
-        if abs(f_c) < ROUNDING / 100 or abs(b - a) < SMALLEST_STEP:
+        if abs(f_c) < ROUNDING / 10 or abs(b - a) < SMALLEST_STEP:
             break
         if (f_c > 0) == (f_b > 0):
-            f_a /= 2
+            weight = 1 - f_c / f_b
+            f_a *= weight if weight > 0 else 0.5
         else:
             a, f_a = b, f_b
         b, f_b = c, f_c

@@ -6,8 +6,6 @@ eigenvalues of the collocation matrix split that solve into one 2×2 solve per e
 Ordinary Differential Equations II, sections IV.5 and IV.8).
 """
 
-from typing import NamedTuple
-
 from .linear import inverse
 
 S = 5
@@ -55,69 +53,80 @@ def _at(t: float, derivative: int = 0) -> tuple[float, ...]:
 
 
 # W holds one complex number for each eigenvalue, W_k = (γ_k − hJ)⁻¹ h f_k, where f_k is the share of the right-hand
-# side in eigenvector k. Its five parts (real; real, imaginary; real, imaginary) times a row of these tables give:
+# side in eigenvector k. A step of one component is the five parts of its W (real; real, imaginary; real, imaginary);
+# times a row of these tables they give
 CHECK = 0.72  # a point well between two nodes, where the polynomial need not meet the equation
 POINTS = sorted([*NODES, CHECK])
-_CHECK_INDEX = POINTS.index(CHECK)
+AT_CHECK = POINTS.index(CHECK)
 _VALUES = [_at(t) for t in POINTS]  # the step's polynomial at the points, less its start
 _COEFFICIENTS = [_in_real_parts([v[m] for v in _EIGENPOLYNOMIALS]) for m in range(S)]  # and its coefficients of t … t^S
 _SLOPE = _at(CHECK, derivative=1)
-_FROM_W = [*_VALUES, *_COEFFICIENTS, _SLOPE]
-# and this one the parts of f from its values at the points (the check has no share)
-_INTO_W = [
-    (*row[:_CHECK_INDEX], 0.0, *row[_CHECK_INDEX:])
+# and this one the parts of f from its values at the points, the check having no share
+_INTO_PARTS = [
+    (*row[:AT_CHECK], 0.0, *row[AT_CHECK:])
     for row in inverse([list(row) for row, t in zip(_VALUES, POINTS, strict=True) if t != CHECK])
 ]
 
-
-class Solution(NamedTuple):
-    """One component of a collocation step."""
-
-    values: list[float]  # at the points, less the start
-    coefficients: list[float]  # of t … t^S
-    defect: float  # at the check: h times (slope − right-hand side)
+Parts = tuple[float, float, float, float, float]
+Jacobian = tuple[float, float, float, float]  # row by row
 
 
-def collocate(
-    h: float, J: tuple[float, float, float, float], f_theta: list[float], f_Y: list[float]
-) -> tuple[Solution, Solution]:
-    """One step of length `h` for θ and Y.
+def collocate(h: float, J: Jacobian, f_theta: list[float], f_Y: list[float]) -> tuple[Parts, Parts]:
+    """One step of length `h` for θ and Y, for `values`, `coefficients` and `error`.
 
-    `f_theta` and `f_Y` are the right-hand sides at the points with (θ, Y) held at the start of the step; `J` is row
-    by row.
+    `f_theta` and `f_Y` are the right-hand sides at the points with (θ, Y) held at the start of the step.
     """
     h11, h12, h21, h22 = h * J[0], h * J[1], h * J[2], h * J[3]
-    p1, p2, p3, p4, p5, p6 = f_theta
-    q1, q2, q3, q4, q5, q6 = f_Y
-    f = [a * p1 + b * p2 + c * p3 + d * p4 + e * p5 + g * p6 for a, b, c, d, e, g in _INTO_W]
-    g = [a * q1 + b * q2 + c * q3 + d * q4 + e * q5 + g * q6 for a, b, c, d, e, g in _INTO_W]
+    f1, f2, f3, f4, f5 = _into_parts(f_theta)
+    g1, g2, g3, g4, g5 = _into_parts(f_Y)
     # (γ − hJ) W = h (f, g), by Cramer's rule
     gamma = GAMMA[0].real
     s11, s22 = gamma - h11, gamma - h22
     scale = h / (s11 * s22 - h12 * h21)
-    p1, q1 = scale * (s22 * f[0] + h12 * g[0]), scale * (h21 * f[0] + s11 * g[0])
-    (p2, p3), (q2, q3) = _solve_complex(GAMMA[1], h, h11, h12, h21, h22, complex(f[1], f[2]), complex(g[1], g[2]))
-    (p4, p5), (q4, q5) = _solve_complex(GAMMA[2], h, h11, h12, h21, h22, complex(f[3], f[4]), complex(g[3], g[4]))
-    theta = [a * p1 + b * p2 + c * p3 + d * p4 + e * p5 for a, b, c, d, e in _FROM_W]
-    Y = [a * q1 + b * q2 + c * q3 + d * q4 + e * q5 for a, b, c, d, e in _FROM_W]
-    at, after = _CHECK_INDEX, S + 1
-    defect_theta = theta[-1] - h * f_theta[at] - h11 * theta[at] - h12 * Y[at]
-    defect_Y = Y[-1] - h * f_Y[at] - h21 * theta[at] - h22 * Y[at]
-    return Solution(theta[:after], theta[after:-1], defect_theta), Solution(Y[:after], Y[after:-1], defect_Y)
+    theta_1, Y_1 = scale * (s22 * f1 + h12 * g1), scale * (h21 * f1 + s11 * g1)
+    z11, z22, f, g = GAMMA[1] - h11, GAMMA[1] - h22, complex(f2, f3), complex(g2, g3)
+    factor = h / (z11 * z22 - h12 * h21)
+    theta_2, Y_2 = factor * (z22 * f + h12 * g), factor * (h21 * f + z11 * g)
+    z11, z22, f, g = GAMMA[2] - h11, GAMMA[2] - h22, complex(f4, f5), complex(g4, g5)
+    factor = h / (z11 * z22 - h12 * h21)
+    theta_3, Y_3 = factor * (z22 * f + h12 * g), factor * (h21 * f + z11 * g)
+    return (
+        (theta_1, theta_2.real, theta_2.imag, theta_3.real, theta_3.imag),
+        (Y_1, Y_2.real, Y_2.imag, Y_3.real, Y_3.imag),
+    )
 
 
-def _solve_complex(
-    gamma: complex, h: float, h11: float, h12: float, h21: float, h22: float, f: complex, g: complex
-) -> tuple[tuple[float, float], tuple[float, float]]:
-    s11, s22 = gamma - h11, gamma - h22
-    scale = h / (s11 * s22 - h12 * h21)
-    theta, Y = scale * (s22 * f + h12 * g), scale * (h21 * f + s11 * g)
-    return (theta.real, theta.imag), (Y.real, Y.imag)
+def _into_parts(f: list[float]) -> list[float]:
+    f1, f2, f3, f4, f5, f6 = f
+    return [a * f1 + b * f2 + c * f3 + d * f4 + e * f5 + g * f6 for a, b, c, d, e, g in _INTO_PARTS]
 
 
-def damped(h: float, J: tuple[float, float, float, float], defect_theta: float, defect_Y: float) -> tuple[float, float]:
-    """(1 − hJ/γ)⁻¹ times a defect, γ the real eigenvalue: an error estimate that stiffness does not blow up."""
-    h11, h12, h21, h22 = [h * j / GAMMA[0].real for j in J]
+def values(start: float, parts: Parts) -> list[float]:
+    """The component at the points."""
+    p1, p2, p3, p4, p5 = parts
+    return [start + a * p1 + b * p2 + c * p3 + d * p4 + e * p5 for a, b, c, d, e in _VALUES]
+
+
+def coefficients(start: float, parts: Parts) -> tuple[float, ...]:
+    """Coefficients of t^0 … t^S of the component."""
+    p1, p2, p3, p4, p5 = parts
+    return (start, *[a * p1 + b * p2 + c * p3 + d * p4 + e * p5 for a, b, c, d, e in _COEFFICIENTS])
+
+
+def slope(parts: Parts) -> float:
+    """Derivative of the component at the check, times h."""
+    a, b, c, d, e = _SLOPE
+    p1, p2, p3, p4, p5 = parts
+    return a * p1 + b * p2 + c * p3 + d * p4 + e * p5
+
+
+def error(h: float, J: Jacobian, defect_theta: float, defect_Y: float) -> tuple[float, float]:
+    """Errors of θ and Y from h times the defects at the check, slope less right-hand side.
+
+    (1 − hJ/γ)⁻¹ times the defects, γ the real eigenvalue: stiffness does not blow that up.
+    """
+    scale = h / GAMMA[0].real
+    h11, h12, h21, h22 = scale * J[0], scale * J[1], scale * J[2], scale * J[3]
     determinant = (1 - h11) * (1 - h22) - h12 * h21
     return (
         ((1 - h22) * defect_theta + h12 * defect_Y) / determinant,
