@@ -1,1 +1,1 @@
-"""The borehole model as an FMI 2.0 co-simulation FMU: `build` packs it, `drive` runs it."""
+"""The model as an FMI 2.0 co-simulation FMU, and FMUs driven through fmpy."""

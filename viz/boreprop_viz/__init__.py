@@ -1,1 +1,1 @@
-"""boreprop."""
+"""Runs drawn with Rerun."""

@@ -356,24 +356,27 @@ class Propagation:
                 return kink.xi
         return inf
 
-    def _take_step(self) -> str | None:
-        """Append one step at the end of the last one; None, or why that failed and what helps."""
-        last = self.step
-        xi = last.end
-        self._move_path(xi)
-        theta, Y = last.state(xi)
+    def _leave(self, last: Step) -> tuple[float, float, int | None]:
+        """Draw the consequences of how the last step ended: θ and Y there, and the order of a kink of Y, if any."""
+        self._move_path(last.end)
+        theta, Y = last.state(last.end)
         if abs(Y) > ORIGIN_LIMIT:
             self.hole.shift(Y)
             self.origin += Y
             Y = 0.0
-        self.hole.forget(xi - self.scaled.s[-1])
-
-        planned = resumed = last.next_h
-        kink = self._kink_here(xi)
+        self.hole.forget(last.end - self.scaled.s[-1])
+        kink = self._kink_here(last.end)
         if last.event is not None:
             self._switch(last.event, last.side)
             kink = 2
+        return theta, Y, kink
+
+    def _take_step(self) -> str | None:
+        """Append one step at the end of the last one; None, or why that failed and what helps."""
+        last, xi = self.step, self.step.end
+        theta, Y, kink = self._leave(last)
         law = self._law()
+        planned = resumed = last.next_h
         if (kink is not None and kink <= SMOOTHEST_KINK) or last.end == last.xi:
             planned = min(planned, LAYERS * law.relaxation)
             if last.event is not None:
