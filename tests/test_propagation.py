@@ -4,6 +4,7 @@ import gc
 import json
 import sys
 from dataclasses import replace
+from itertools import pairwise
 from math import inf, pi, radians
 
 import numpy as np
@@ -15,7 +16,7 @@ from scipy.linalg import expm
 from boreprop.core.assembly import Scaled
 from boreprop.core.beam import Beam
 from boreprop.core.hole import Survey
-from boreprop.core.propagation import Law, Propagation, Trial
+from boreprop.core.propagation import Law, Propagation, Trial, crossing, extremes
 from reference_cases import look, run, start
 from systems import scaled_systems
 
@@ -233,6 +234,36 @@ def test_any_system_drills(scaled: Scaled, eta_pi: float, F_rss: float, inclinat
     assert all(np.isfinite(list(look(propagation).values())))
 
 
+@settings(max_examples=40, deadline=None)
+@given(scaled_systems(), st.floats(0.005, 1.0), st.floats(-3e-3, 3e-3))
+def test_the_drilled_hole_has_everywhere_the_inclination_that_the_contact_problem_gives(
+    scaled: Scaled, eta_pi: float, F_rss: float
+) -> None:
+    """Y' of the step's polynomial against Θ from the contact problem solved afresh: no event is passed over.
+
+    Θ = θ − F_0/(ηΠ) multiplies what the step leaves of error in θ and Y by about 1/(ηΠ).
+    """
+    propagation = Propagation(scaled, Survey((0.0, 1.0), (0.5, 0.5 + radians(0.5))), 1.0, F_rss, eta_pi, 1e-9)
+    while propagation.step.end < 3.0:
+        assert propagation._take_step() is None
+        step = propagation.step
+        for xi in np.linspace(step.xi, step.end, 12)[1:-1]:
+            propagation.xi = float(xi)
+            assert step.derivative(1, float(xi)) == pytest.approx(propagation.inclination(), abs=1e-6 + 1e-7 / eta_pi)
+
+
+def test_a_short_stay_beyond_a_bound_between_the_points_of_a_step_is_found() -> None:
+    """A tilt that leaves saturation and comes back within a step half an ℓ₁ long: loose and tight tolerances agree."""
+    scaled = Scaled((1.0, 1.7966442656541493), (9.314e-4,), 0.5938, 7.5747e-3, 0.060913, 2.5946e-3)
+    ends = []
+    for tolerance in (1e-5, 1e-8, 1e-11):
+        survey = Survey((0.0, 0.5, 1.0), (1.26505, 1.26505, 1.25687))
+        propagation = Propagation(scaled, survey, 1.0, 3.4404e-3, 0.019786, tolerance)
+        propagation.advance(1.1)
+        ends.append(propagation.state()[1])
+    assert ends == pytest.approx([ends[-1]] * 3, abs=2e-6)
+
+
 @settings(max_examples=10, deadline=None)
 @given(scaled_systems(min_n=2), st.floats(0.02, 1.0))
 def test_a_tighter_tolerance_gives_the_same_run(scaled: Scaled, eta_pi: float) -> None:
@@ -271,3 +302,21 @@ def test_work_and_memory_per_length_do_not_grow_over_ten_kilometres() -> None:
     assert per_kilometre.max() <= 1.05 * per_kilometre.min()
     assert max(blocks[1:]) <= blocks[0] + 2000  # a history of 10 km would be 100 000 pieces
     assert max(kept) <= 1.3 * min(kept)
+
+
+@given(st.floats(-2.0, 2.0), st.floats(0.1, 2.0), st.floats(-1.0, 1.0), st.lists(st.floats(0.0, 1.0), min_size=3))
+def test_the_extreme_of_a_parabola_is_found_exactly(a: float, b: float, c: float, inner: list[float]) -> None:
+    xs = sorted({round(x, 3) for x in inner} | {0.0, 0.5, 1.0})
+    found = extremes([(x, a + b * (x - c) ** 2) for x in xs])
+    brackets = [(before, after) for before, after in pairwise(xs) if before < c < after]
+    if found:
+        assert found == pytest.approx([c] * len(found), abs=1e-9)
+    else:
+        assert not brackets or c < xs[1] or c > xs[-2]
+
+
+def test_a_crossing_is_found_to_rounding() -> None:
+    assert crossing(lambda x: x**3 - 0.1, 0.0, 1.0, 0.9) == pytest.approx(0.1 ** (1 / 3), abs=1e-12)
+    assert crossing(lambda x: 1e-9 * (np.exp(20 * x) - 2.0), 0.0, 1.0, 1e-9 * (np.exp(20) - 2)) == pytest.approx(
+        np.log(2.0) / 20, abs=1e-5
+    )

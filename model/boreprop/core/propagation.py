@@ -33,6 +33,7 @@ LAYERS = 16.0  # first step after a kink, in relaxation lengths of θ
 STRETCH = 1.3  # how much longer than planned a step may be if it then ends on the next kink
 SMOOTHEST_KINK = 3  # jumps in higher derivatives of the hole are left to the error estimate
 LARGEST_INCLINATION = 2 * pi  # beyond a full turn the inputs make no sense
+NEAR = 0.3  # how far beyond its values at the points of a step a value may lie between them, over their range
 MERGE = 1e-9  # kinks closer than this are one
 ORIGIN_LIMIT = 8.0  # |Y| beyond which the origin of Y is moved to the bit
 GAUSS = [(0.5 - 0.15**0.5, 5 / 18), (0.5, 8 / 18), (0.5 + 0.15**0.5, 5 / 18)]  # nodes and weights on [0, 1]
@@ -109,17 +110,18 @@ class Law:
         else:
             self.Theta = Linear(1.0 - psi.theta, -psi.Y, tuple(-c for c in psi.delayed), -psi.g, -psi.one)
         self.relaxation = 1 / abs(self.theta_rate.theta + self.Theta.Y)
-        # change of Θ per change of Y(ξ−s_i), θ having settled
-        self.gains = [
-            abs(a / self.theta_rate.theta) + abs(b) for a, b in zip(self.theta_rate.delayed, self.Theta.delayed)
-        ]
-        self.gains[0] += abs(self.theta_rate.g / self.theta_rate.theta) + abs(self.Theta.g)
         tilt_bounds = {0: (-psi_star, psi_star), 1: (psi_star, inf), -1: (-inf, -psi_star)}
         self.bounds = [Bound(contacts, psi, *tilt_bounds[tilt])]
         for i in range(contacts):
             row, lower, upper = modes.bounds(mode, i)
             if (lower, upper) != (-inf, inf):
                 self.bounds.append(Bound(i, Linear.of(row, s, F_rss, 1.0), lower, upper))
+        # change per change of Y(ξ−s_i): of Θ, θ having settled, or of what the bounds are on
+        self.gains = [
+            max(abs(a / self.theta_rate.theta) + abs(b), *(abs(bound.value.delayed[i]) for bound in self.bounds))
+            for i, (a, b) in enumerate(zip(self.theta_rate.delayed, self.Theta.delayed))
+        ]
+        self.gains[0] += abs(self.theta_rate.g / self.theta_rate.theta) + abs(self.Theta.g)
 
 
 class Step(NamedTuple):
@@ -463,26 +465,44 @@ class Propagation:
         first, event, first_side = step.xi + step.h, None, 0
         for bound in law.bounds:
             values = bound.value.along(trial.thetas, trial.Ys, trial.delayed, trial.sines)
-            if max(values) <= bound.upper + ROUNDING and min(values) >= bound.lower - ROUNDING:
+            low, high = min(values), max(values)
+            near = NEAR * (high - low)
+            if low - near >= bound.lower and high + near <= bound.upper:
                 continue
-            sides = [left(value, bound.lower, bound.upper) for value in values]
-            j = next(j for j, side in enumerate(sides) if side)
-            xi = self._locate(bound, sides[j], step, j, values[j])
-            if xi < first:
-                first, event, first_side = xi, bound.part, sides[j]
+            met = self._meet(bound, step, values)
+            if met and met[0] < first:
+                first, event, first_side = met[0], bound.part, met[1]
         return first, event, first_side
 
-    def _locate(self, bound: Bound, side: int, step: Step, j: int, value: float) -> float:
-        """Where `bound` is crossed between the point before the `j`-th of a step and that one, where it has `value`."""
-        limit = bound.upper if side > 0 else bound.lower
+    def _meet(self, bound: Bound, step: Step, values: list[float]) -> tuple[float, int] | None:
+        """Where a step first meets one bound, and on which side, given the bound's value at the points."""
 
-        def beyond(xi: float) -> float:
+        def value(xi: float) -> float:
             theta, Y = step.state(xi)
             delayed = [self.hole.Y(xi - s_i) for s_i in self.scaled.s]
-            return side * (bound.value.at(theta, Y, delayed, sin(Y - delayed[0])) - limit)
+            return bound.value.at(theta, Y, delayed, sin(Y - delayed[0]))
 
-        before = step.xi + radau.POINTS[j - 1] * step.h if j else step.xi
-        return crossing(beyond, before, step.xi + radau.POINTS[j] * step.h, side * (value - limit))
+        known = [(step.xi, value(step.xi)), *((step.xi + t * step.h, v) for t, v in zip(radau.POINTS, values))]
+        known += [(xi, value(xi)) for xi in extremes(known)]  # it may leave and come back between two points
+        known.sort()
+        sides = [left(v, bound.lower, bound.upper) for _, v in known]
+        if not any(sides):
+            return None
+        j = next(j for j, side in enumerate(sides) if side)
+        side = sides[j]
+        limit = bound.upper if side > 0 else bound.lower
+        (before, _), (after, beyond) = known[max(j - 1, 0)], known[j]
+        return crossing(lambda xi: side * (value(xi) - limit), before, after, side * (beyond - limit)), side
+
+
+def extremes(points: list[tuple[float, float]]) -> list[float]:
+    """Where a smooth function through points (x, y), in order of x, has extremes: a parabola through each three."""
+    found = []
+    for (x0, y0), (x1, y1), (x2, y2) in zip(points, points[1:], points[2:]):
+        if (y1 - y0) * (y2 - y1) < 0:
+            slope, later = (y1 - y0) / (x1 - x0), (y2 - y1) / (x2 - x1)
+            found.append((x0 + x1) / 2 - slope * (x2 - x0) / 2 / (later - slope))
+    return found
 
 
 def crossing(f: Callable[[float], float], a: float, b: float, f_b: float) -> float:
