@@ -27,6 +27,7 @@ EXTRAS = {  # the extra that brings a package
     "pythonfmu": "fmu",
     "rerun": "viz",
 }
+COMMANDS = {"boreprop_viz": "viz", "boreprop_fmu": "fmu"}  # a command's package: its own extra, which brings [cli] too
 
 
 def fail(message: str) -> NoReturn:
@@ -40,7 +41,10 @@ def fail_without(error: ModuleNotFoundError) -> NoReturn:
     package = (error.name or "").partition(".")[0]
     if package not in EXTRAS:
         raise error
-    fail(f"{package} must be installed for this: pip install 'boreprop[{EXTRAS[package]}]', got: {error}")
+    extra = EXTRAS[package]
+    if extra == "cli":
+        extra = next((own for command, own in COMMANDS.items() if command in sys.modules), extra)
+    fail(f"{package} must be installed for this: pip install 'boreprop[{extra}]', got: {error}")
 
 
 try:

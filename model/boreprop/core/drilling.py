@@ -78,16 +78,13 @@ class Drilling:
         check_inputs(rss_force, active_weight_on_bit)
         check_number("drilled_length", drilled_length, at_least=self.drilled_length)
         drilled_length, rss_force = float(drilled_length), float(rss_force)  # numpy's own would slow down what follows
-        propagation = self._propagation
-        before = propagation.F_rss, propagation.eta_pi
-        inputs = rss_force / self._force, eta_pi(self._bha, self._bit, active_weight_on_bit)
-        state = propagation.save() if inputs != before else None
-        propagation.steer(*inputs)
-        failure = propagation.advance(drilled_length / self._length)
+        failure = self._propagation.drill(
+            drilled_length / self._length,
+            rss_force / self._force,
+            eta_pi(self._bha, self._bit, active_weight_on_bit),
+        )
         if failure is None:
             self.drilled_length = drilled_length
-        elif state is not None:
-            propagation.restore(state)
         return failure
 
     def outputs(self) -> dict[str, float | int]:

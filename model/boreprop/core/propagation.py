@@ -184,7 +184,7 @@ class Kink(NamedTuple):
 
 
 class Propagation:
-    """The bit at the front of its hole, dimensionless: `advance` moves it, `steer` changes the inputs.
+    """The bit at the front of its hole, dimensionless: `drill` moves it, the rest looks.
 
     A change of input restarts the integrator where the bit is, and nothing else does: results do not depend on where
     the bit stops on the way.
@@ -219,27 +219,40 @@ class Propagation:
 
     # moving
 
+    def drill(self, xi: float, F_rss: float, eta_pi: float) -> str | None:
+        """Drill on to `xi` under inputs that act from where the bit is.
+
+        None, or what went wrong and what helps; then nothing has changed.
+        """
+        inputs = F_rss, eta_pi
+        if inputs == (self.F_rss, self.eta_pi) and xi <= self.step.end:
+            self.xi = xi
+            return None
+        before = self.save()
+        if inputs != (self.F_rss, self.eta_pi):
+            self._steer(F_rss, eta_pi)
+        while xi > self.step.end:
+            failure = self._take_step()
+            if failure:
+                self.restore(before)
+                return failure
+        self.xi = xi
+        return None
+
+    def advance(self, xi: float) -> str | None:
+        """Drill on to `xi` under the inputs as they are, see `drill`."""
+        return self.drill(xi, self.F_rss, self.eta_pi)
+
     def steer(self, F_rss: float, eta_pi: float) -> None:
-        """Take over inputs; they act from where the bit is."""
-        if (F_rss, eta_pi) == (self.F_rss, self.eta_pi):
-            return
+        """Take over inputs where the bit is."""
+        self.drill(self.xi, F_rss, eta_pi)
+
+    def _steer(self, F_rss: float, eta_pi: float) -> None:
         before = self.inclination()
         self.F_rss, self.eta_pi = F_rss, eta_pi
         self._move_path(self.xi)
         self.step = self._standstill(*self.step.state(self.xi))
         self._restart(before)
-
-    def advance(self, xi: float) -> str | None:
-        """Drill on to `xi`. None, or what went wrong and what helps; then the bit has not moved."""
-        if xi > self.step.end:
-            before = self.save()
-            while xi > self.step.end:
-                failure = self._take_step()
-                if failure:
-                    self.restore(before)
-                    return failure
-        self.xi = xi
-        return None
 
     # looking
 
@@ -313,7 +326,8 @@ class Propagation:
         F_0, psi_star = mode.F_0(loads), self.scaled.psi_star
         self.contact = mode.contact
         self.tilt = left(F_0 / self.eta_pi, -psi_star, psi_star)
-        self._add_images(self.xi, 1, abs(self.inclination() - Theta))
+        now = self.step.theta[0] - bit_tilt(F_0, self.eta_pi, psi_star)
+        self._add_images(self.xi, 1, abs(now - Theta))
 
     def _law(self) -> Law:
         key = (self.contact, self.tilt)
