@@ -16,7 +16,8 @@ from scipy.linalg import expm
 from boreprop.core.assembly import Scaled
 from boreprop.core.beam import Beam
 from boreprop.core.hole import Survey
-from boreprop.core.propagation import Law, Propagation, Trial, crossing, extremes
+from boreprop.core.law import Law
+from boreprop.core.propagation import Propagation, Trial, crossing, extremes
 from reference_cases import look, run, start
 from systems import scaled_systems
 

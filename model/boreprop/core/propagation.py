@@ -1,11 +1,9 @@
-"""The borehole propagation: the state (θ, Y), its right-hand side mode by mode, and the integrator.
+"""The borehole propagation: the state (θ, Y) and the integrator that advances it.
 
-    εηΠ θ' = M ,   Y' = Θ = θ − ψ ,   ψ = clip(F_0/(ηΠ), −ψ*, ψ*)                                      (16), (17)
-
-with M and F_0 from the beam in the hole it drilled, Y(ξ − s_i). Within a mode (which stabilizers touch which wall, tilt
-saturated or not) this is linear but for sin⟨Θ⟩_1, so one step is one linear solve of Radau collocation. A step ends
-where the solution is not smooth: on a change of input, on an event (contact or saturation comes or goes), and where a
-stabilizer passes the kink that either left in the hole. The steps are the integrator's own: the bit may stop anywhere.
+Within a mode the right-hand side (`law`) is linear but for sin⟨Θ⟩_1, so one step is one linear solve of Radau
+collocation (`radau`). A step ends where the solution is not smooth: on a change of input, on an event (contact or
+saturation comes or goes), and where a stabilizer passes the kink that either left in the hole. The steps are the
+integrator's own: the bit may stop anywhere.
 """
 
 from bisect import bisect_right, insort
@@ -17,8 +15,9 @@ from typing import Any, NamedTuple
 from . import radau
 from .assembly import Scaled
 from .beam import Beam
-from .contact import ROUNDING, Loads, Mode, Modes, Row, bit_tilt, change, left
+from .contact import ROUNDING, Loads, Mode, Modes, bit_tilt, change, left
 from .hole import Hole, Survey
+from .law import Bound, Law
 
 RELATIVE_TOLERANCE = 1e-7
 
@@ -37,91 +36,6 @@ NEAR = 0.3  # how far beyond its values at the points of a step a value may lie 
 MERGE = 1e-9  # kinks closer than this are one
 ORIGIN_LIMIT = 8.0  # |Y| beyond which the origin of Y is moved to the bit
 GAUSS = [(0.5 - 0.15**0.5, 5 / 18), (0.5, 8 / 18), (0.5 + 0.15**0.5, 5 / 18)]  # nodes and weights on [0, 1]
-
-
-class Linear(NamedTuple):
-    """A `Row` under given inputs, on the state: theta θ + Y Y + Σ_i delayed[i] Y(ξ−s_i) + g sin⟨Θ⟩_1 + one."""
-
-    theta: float
-    Y: float
-    delayed: tuple[float, ...]
-    g: float
-    one: float
-
-    @classmethod
-    def of(cls, row: Row, s: tuple[float, ...], F_rss: float, scale: float) -> "Linear":
-        """`scale` times `row`, with e_i = Y − Y(ξ−s_i) − s_i θ put in."""
-        return cls(
-            theta=-scale * sum(c * s_i for c, s_i in zip(row.e, s)),
-            Y=scale * sum(row.e),
-            delayed=tuple(-scale * c for c in row.e),
-            g=scale * row.g,
-            one=scale * (row.rss * F_rss + row.one),
-        )
-
-    def at(self, theta: float, Y: float, delayed: list[float], sine: float) -> float:
-        """Value at one point."""
-        value = self.theta * theta + self.Y * Y + self.g * sine + self.one
-        for c, Y_i in zip(self.delayed, delayed):
-            value += c * Y_i
-        return value
-
-    def held(self, theta: float, Y: float, delayed: list[list[float]], sines: list[float]) -> list[float]:
-        """Values along a step with (θ, Y) held; `delayed` has one list for each stabilizer."""
-        state, g, c = self.theta * theta + self.Y * Y + self.one, self.g, self.delayed[0]
-        return self._add_others([state + g * sine + c * Y_1 for sine, Y_1 in zip(sines, delayed[0])], delayed)
-
-    def along(
-        self, thetas: list[float], Ys: list[float], delayed: list[list[float]], sines: list[float]
-    ) -> list[float]:
-        """Values along a step; `delayed` has one list for each stabilizer."""
-        a, b, c, g, one = self.theta, self.Y, self.delayed[0], self.g, self.one
-        points = zip(thetas, Ys, delayed[0], sines)
-        return self._add_others(
-            [one + a * theta + b * Y + c * Y_1 + g * sine for theta, Y, Y_1, sine in points], delayed
-        )
-
-    def _add_others(self, values: list[float], delayed: list[list[float]]) -> list[float]:
-        """Add the parts of stabilizers 2 … n."""
-        for c, Y_i in zip(self.delayed[1:], delayed[1:]):
-            if c:
-                values = [value + c * y for value, y in zip(values, Y_i)]
-        return values
-
-
-class Bound(NamedTuple):
-    """What stays between `lower` and `upper` while a mode holds: of stabilizer `part`, or of the tilt (part n−1)."""
-
-    part: int
-    value: Linear
-    lower: float
-    upper: float
-
-
-class Law:
-    """The right-hand side in one mode under given inputs, and the bounds within which it holds."""
-
-    def __init__(self, scaled: Scaled, modes: Modes, mode: Mode, tilt: int, F_rss: float, eta_pi: float) -> None:
-        s, psi_star, contacts = scaled.s, scaled.psi_star, len(mode.contact)
-        psi = Linear.of(mode.F_0, s, F_rss, 1 / eta_pi)
-        self.theta_rate = Linear.of(mode.M, s, F_rss, 1 / (scaled.epsilon * eta_pi))
-        if tilt:
-            self.Theta = Linear(1.0, 0.0, (0.0,) * len(s), 0.0, -tilt * psi_star)
-        else:
-            self.Theta = Linear(1.0 - psi.theta, -psi.Y, tuple(-c for c in psi.delayed), -psi.g, -psi.one)
-        self.relaxation = 1 / abs(self.theta_rate.theta + self.Theta.Y)
-        tilt_bounds = {0: (-psi_star, psi_star), 1: (psi_star, inf), -1: (-inf, -psi_star)}
-        self.bounds = [Bound(contacts, psi, *tilt_bounds[tilt])]
-        for i in range(contacts):
-            row, lower, upper = modes.bounds(mode, i)
-            if (lower, upper) != (-inf, inf):
-                self.bounds.append(Bound(i, Linear.of(row, s, F_rss, 1.0), lower, upper))
-        # change per change of Y(ξ−s_i): of Θ, θ having settled, or of what the bounds are on
-        self.gains = [
-            max(abs(a / self.theta_rate.theta) + abs(b), *(abs(bound.value.delayed[i]) for bound in self.bounds))
-            for i, (a, b) in enumerate(zip(self.theta_rate.delayed, self.Theta.delayed))
-        ]
-        self.gains[0] += abs(self.theta_rate.g / self.theta_rate.theta) + abs(self.Theta.g)
 
 
 class Step(NamedTuple):
