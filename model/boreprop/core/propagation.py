@@ -328,12 +328,13 @@ class Propagation:
                 stretch = 1.0
                 continue
             end, event, side = self._first_event(law, trial)
-            if event is not None and end - xi < SMALLEST_STEP * max(1.0, xi) and switches < 2 * len(law.bounds):
-                self._switch(event, side)  # met where the step starts
-                law = self._law()
-                switches += 1
-                continue
-            break
+            if event is None or end - xi >= SMALLEST_STEP * max(1.0, xi):
+                break
+            if switches == 2 * len(law.bounds):
+                return f"no contact mode holds at xi = {xi:.9g}: change relative_tolerance (now {self.tolerance:g})"
+            self._switch(event, side)  # met where the step starts
+            law = self._law()
+            switches += 1
         if h == to_kink and event is None:
             end = xi + to_kink
         next_h = max(resumed if h < resumed else 0.0, h * min(growth, LARGEST_GROWTH))
@@ -410,17 +411,26 @@ class Propagation:
             delayed = [self.hole.Y(xi - s_i) for s_i in self.scaled.s]
             return bound.value.at(theta, Y, delayed, sin(Y - delayed[0]))
 
-        known = [(step.xi, value(step.xi)), *((step.xi + t * step.h, v) for t, v in zip(radau.POINTS, values))]
-        known += [(xi, value(xi)) for xi in extremes(known)]  # it may leave and come back between two points
+        start = step.xi, value(step.xi)
+        known = [(step.xi + t * step.h, v) for t, v in zip(radau.POINTS, values)]
+        # it may leave and come back between two points
+        known += [(xi, value(xi)) for xi in extremes([start, *known]) if xi > known[0][0]]
         known.sort()
-        sides = [left(v, bound.lower, bound.upper) for _, v in known]
-        if not any(sides):
-            return None
-        j = next(j for j, side in enumerate(sides) if side)
-        side = sides[j]
+        before = step.xi  # where by rounding the value may lie beyond the bound that it has just come from
+        for after, beyond in known:
+            side = left(beyond, bound.lower, bound.upper)
+            if side:
+                return self._crossing(value, bound, side, before, after, beyond), side
+            before = after
+        return None
+
+    @staticmethod
+    def _crossing(
+        value: Callable[[float], float], bound: Bound, side: int, before: float, after: float, beyond: float
+    ) -> float:
+        """Where `value` leaves its bounds on `side` between two positions, the second with a value `beyond`."""
         limit = bound.upper if side > 0 else bound.lower
-        (before, _), (after, beyond) = known[max(j - 1, 0)], known[j]
-        return crossing(lambda xi: side * (value(xi) - limit), before, after, side * (beyond - limit)), side
+        return crossing(lambda xi: side * (value(xi) - limit), before, after, side * (beyond - limit))
 
 
 def extremes(points: list[tuple[float, float]]) -> list[float]:
