@@ -7,6 +7,7 @@ tests/reference. Times are the least of several runs taken in turn, ratios their
 """
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from statistics import median
 from time import perf_counter
@@ -37,7 +38,7 @@ def ours(name: str) -> None:
 def ours_error(name: str) -> float:
     """Largest error in Y over the rows of the reference."""
     propagation, rows = start(name, TOLERANCE), reference(name)
-    errors = []
+    errors: list[float] = []
     for row in rows:
         propagation.advance(float(row["xi"]))
         errors.append(abs(look(propagation)["Y"] - row["Y"]))
@@ -51,10 +52,10 @@ def rk4_error(name: str, m: int) -> float:
     return float(np.abs(np.array(Y)[np.rint(rows["xi"] * m).astype(int)] - rows["Y"]).max())
 
 
-def seconds(function: object, *arguments: object) -> float:
+def seconds(function: Callable[..., object], *arguments: object) -> float:
     """Time of one call."""
     begin = perf_counter()
-    function(*arguments)  # type: ignore[operator]
+    function(*arguments)
     return perf_counter() - begin
 
 

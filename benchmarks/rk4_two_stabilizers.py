@@ -6,9 +6,10 @@ interpolation. Contact and saturation are clips. No events, no error control, F_
 
 from itertools import pairwise
 from math import sin
+from typing import Any
 
 
-def rk4(case: dict, m: int) -> tuple[list[float], list[float]]:
+def rk4(case: dict[str, Any], m: int) -> tuple[list[float], list[float]]:
     """θ and Y on the grid ξ = k/m, k = 0 … length·m, of one of the reference cases with two stabilizers."""
     w, eta_pi, epsilon = case["w"], case["eta_pi"], case["epsilon"]
     psi_star, y_star = case["psi_star"], case["y_star"][0]
@@ -17,7 +18,7 @@ def rk4(case: dict, m: int) -> tuple[list[float], list[float]]:
     g_delta, g_moment, g_force = -w / 4, w / 2, 5 / 4 * w
     rate = 1 / (epsilon * eta_pi)
     h = 1 / m
-    survey = list(zip(case["survey_xi"], case["survey_inc"], strict=True))
+    survey: list[tuple[float, float]] = list(zip(case["survey_xi"], case["survey_inc"], strict=True))
 
     def inclination(xi: float) -> float:
         for (a, inc_a), (b, inc_b) in pairwise(survey):

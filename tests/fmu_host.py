@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from math import nan
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 from fmpy import extract, read_model_description
 from fmpy.fmi1 import FMICallException
@@ -62,7 +63,7 @@ class Instance:
             put = {"Real": self.slave.setReal, "String": self.slave.setString}[self.variables[name].type]
             put([self.variables[name].valueReference], [value])
 
-    def get(self, name: str) -> float:
+    def get(self, name: str) -> Any:
         get = {"Real": self.slave.getReal, "Integer": self.slave.getInteger, "String": self.slave.getString}
         return get[self.variables[name].type]([self.variables[name].valueReference])[0]
 

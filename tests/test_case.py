@@ -3,6 +3,7 @@
 from dataclasses import replace
 from math import pi
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
@@ -196,5 +197,6 @@ def test_a_survey_file_without_a_station_is_named(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["bit_diameter", "active_weight_on_bit", "length"])
 def test_a_case_made_in_python_is_checked_too(paper_case: Path, name: str) -> None:
+    change: dict[str, Any] = {name: 0.0}
     with pytest.raises(ParameterError, match=rf"{name}: must be > 0, got 0\.0"):
-        replace(load_case(paper_case), **{name: 0.0})
+        replace(load_case(paper_case), **change)

@@ -17,7 +17,7 @@ from boreprop.results import read_trajectory
 from boreprop.simulation import SimulationError
 from conftest import Command
 
-MODEL = Path(__file__).parents[1] / "model"
+ROOT = Path(__file__).parents[1]
 
 
 def assert_refused(result: subprocess.CompletedProcess[str], *named: str) -> None:
@@ -164,10 +164,12 @@ def test_figures_refuses_a_directory_that_is_a_file(command: Command, tmp_path: 
     assert (tmp_path / "out").read_text() == "mine"
 
 
-def test_without_the_extra_the_command_says_what_to_install() -> None:
-    program = f"import sys; sys.path.insert(0, {str(MODEL)!r}); from boreprop.app import main; main()"
+@pytest.mark.parametrize(("package", "extra"), [("boreprop", "cli"), ("boreprop_fmu", "fmu"), ("boreprop_viz", "viz")])
+def test_without_its_extra_a_command_says_what_to_install(package: str, extra: str) -> None:
+    folders = [str(ROOT / folder) for folder in ("model", "fmu_build", "viz")]
+    program = f"import sys; sys.path[:0] = {folders}; from {package}.app import main; main()"
     bare = [sys.executable, "-S", "-c", program]  # -S: no site-packages, so the standard library alone
-    assert_refused(subprocess.run(bare, capture_output=True, text=True), "typer", "pip install 'boreprop[cli]'")
+    assert_refused(subprocess.run(bare, capture_output=True, text=True), "typer", f"pip install 'boreprop[{extra}]'")
 
 
 def run_raising(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -28,7 +28,7 @@ HERE = Path(__file__).parent
 
 def host(scenario: str, *arguments: object) -> Any:
     """What a scenario of fmu_host.py gives."""
-    command = [sys.executable, HERE / "fmu_host.py", scenario, *map(str, arguments)]
+    command = [sys.executable, str(HERE / "fmu_host.py"), scenario, *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", timeout=300)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
@@ -189,7 +189,7 @@ def test_fmus_with_different_code_and_numbers_of_stabilizers_share_a_process(
 def test_it_needs_the_standard_library_only(fmu: Path, tmp_path: Path) -> None:
     with zipfile.ZipFile(fmu) as archive:
         archive.extractall(tmp_path)
-    command = [sys.executable, "-I", "-S", HERE / "fmu_bare_host.py", tmp_path]
+    command = [sys.executable, "-I", "-S", str(HERE / "fmu_bare_host.py"), str(tmp_path)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stderr
     report = json.loads(done.stdout)

@@ -87,10 +87,10 @@ def test_a_display_value_is_what_an_engineer_expects(description: Element) -> No
 
 def test_start_values_are_those_of_the_case(description: Element, case: Case) -> None:
     start = {
-        scalar.get("name"): typed.get("start")
+        scalar.attrib["name"]: typed.attrib["start"]
         for scalar in description.findall("ModelVariables/ScalarVariable")
         for typed in scalar
-        if typed.get("start") is not None
+        if "start" in typed.attrib
     }
     assert float(start["stabilizer_position[2]"]) == case.bha.stabilizer_positions[1]
     assert float(start["stabilizer_clearance[1]"]) == case.bha.stabilizer_clearances[0]

@@ -49,7 +49,7 @@ def test_the_polynomial_meets_the_equation_at_every_node(h: float, J: radau.Jaco
     forcing = random.normal(size=(2, 4))
 
     def g(xi: float) -> np.ndarray:
-        return forcing @ np.cos(np.arange(4) * xi)
+        return np.asarray(forcing @ np.cos(np.arange(4) * xi))
 
     _, c = solve(h, J, x, g)
     m = np.arange(1, radau.S + 1)

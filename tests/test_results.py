@@ -100,7 +100,7 @@ def test_a_missing_column_is_named(trajectory: Trajectory) -> None:
 def test_numpy_reads_the_csv_file(trajectory: Trajectory, tmp_path: Path) -> None:
     write_trajectory(trajectory, tmp_path / "run.csv")
     table = np.genfromtxt(tmp_path / "run.csv", names=True, delimiter=",", deletechars="")
-    assert list(table.dtype.names) == list(trajectory.columns)
+    assert table.dtype.names == tuple(trajectory.columns)
     for name, column in trajectory.columns.items():
         np.testing.assert_array_equal(table[name], column)
 

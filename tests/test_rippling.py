@@ -1,5 +1,7 @@
 """Rippling, found in made-up signals and in the reference trajectories."""
 
+from math import radians
+
 import numpy as np
 import pytest
 
@@ -10,7 +12,7 @@ XI = np.linspace(0.0, 60.0, 3001)
 
 
 def wave(wavelength: float, amplitude_deg: float) -> np.ndarray:
-    return np.radians(amplitude_deg) * np.sin(2 * np.pi * XI / wavelength)
+    return radians(amplitude_deg) * np.sin(2 * np.pi * XI / wavelength)
 
 
 @pytest.mark.parametrize(

@@ -18,23 +18,24 @@ from boreprop_viz import record as recording
 from boreprop_viz.record import record
 from boreprop_viz.scene import Array, BitFrame
 from boreprop_viz.style import scales
+from conftest import Command
 
 LENGTH = 40.0
 
 
 @pytest.fixture(scope="module")
-def case(paper_case) -> Case:
+def case(paper_case: Path) -> Case:
     forces = Schedule((0.0, 10.0, 20.0), (0.0, 3000.0, -2000.0))
     return replace(load_case(paper_case), length=LENGTH, schedule=forces)
 
 
 @pytest.fixture(scope="module")
-def run(case) -> Trajectory:
+def run(case: Case) -> Trajectory:
     return simulate(case, sample_interval=LENGTH / 300)
 
 
 @pytest.fixture(scope="module")
-def recorded(run, tmp_path_factory) -> Path:
+def recorded(run: Trajectory, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("recording") / "run.rrd"
     record(run, save=path)
     return path
@@ -59,20 +60,22 @@ def stacked(path: Path, entity: str, component: str) -> Array:
     return np.array(list(read(path, entity, component).values()), dtype=float)
 
 
-def test_the_timeline_is_the_drilled_length_in_millimetres(recorded, run):
+def test_the_timeline_is_the_drilled_length_in_millimetres(recorded: Path, run: Trajectory) -> None:
     ticks = list(read(recorded, "bit_frame/bha", "LineStrips2D:strips"))
     assert ticks == np.rint(1000 * run["drilled_length"]).astype(int).tolist()
     assert ticks[-1] == 1000 * LENGTH
 
 
-def test_the_drilled_hole_is_the_path_of_the_bit(recorded, run):
+def test_the_drilled_hole_is_the_path_of_the_bit(recorded: Path, run: Trajectory) -> None:
     pieces = stacked(recorded, "vertical_section/drilled_hole", "LineStrips2D:strips")[:, 0]
     bit = np.column_stack((run["displacement"], run["true_vertical_depth"]))
     np.testing.assert_allclose(pieces[:, 0], bit[:-1], atol=1e-5)
     np.testing.assert_allclose(pieces[:, 1], bit[1:], atol=1e-5)
 
 
-def test_the_walls_are_a_hole_radius_from_the_axis_times_the_factor(recorded, run, case):
+def test_the_walls_are_a_hole_radius_from_the_axis_times_the_factor(
+    recorded: Path, run: Trajectory, case: Case
+) -> None:
     factor = scales(run, case).lateral
     axis = stacked(recorded, "bit_frame/hole_axis", "LineStrips2D:strips")[:, 0]
     walls = stacked(recorded, "bit_frame/walls", "LineStrips2D:strips")
@@ -81,7 +84,7 @@ def test_the_walls_are_a_hole_radius_from_the_axis_times_the_factor(recorded, ru
         np.testing.assert_array_equal(wall[..., 1], axis[..., 1])
 
 
-def test_the_blades_have_their_clearance_from_the_wall(recorded, run, case):
+def test_the_blades_have_their_clearance_from_the_wall(recorded: Path, run: Trajectory, case: Case) -> None:
     blades = stacked(recorded, "bit_frame/stabilizers", "LineStrips2D:strips")
     widths = (blades[:, :, 1, 0] - blades[:, :, 0, 0]) / scales(run, case).lateral
     clearances = np.array([*case.bha.stabilizer_clearances, 0.0])
@@ -90,7 +93,9 @@ def test_the_blades_have_their_clearance_from_the_wall(recorded, run, case):
 
 
 @pytest.mark.parametrize(("entity", "column"), [("contact_force/1", "stabilizer_force[1]"), ("rss_force", "rss_force")])
-def test_an_arrow_is_drawn_only_where_there_is_a_force_and_is_as_long_as_it(recorded, run, case, entity, column):
+def test_an_arrow_is_drawn_only_where_there_is_a_force_and_is_as_long_as_it(
+    recorded: Path, run: Trajectory, case: Case, entity: str, column: str
+) -> None:
     arrows = read(recorded, f"bit_frame/{entity}", "Arrows2D:vectors")
     labels = read(recorded, f"bit_frame/{entity}", "Arrows2D:labels")
     drawn = np.array([sum((vector[0] for vector in vectors), 0.0) for vectors in arrows.values()])
@@ -102,7 +107,7 @@ def test_an_arrow_is_drawn_only_where_there_is_a_force_and_is_as_long_as_it(reco
         assert labels[tick] == ([f"{abs(force) / 1000:.3g} kN"] if force else [])
 
 
-def test_a_contact_force_ends_at_its_contact_point_on_the_wall(recorded, case):
+def test_a_contact_force_ends_at_its_contact_point_on_the_wall(recorded: Path, case: Case) -> None:
     tips = {}
     for tick, vectors in read(recorded, "bit_frame/contact_force/1", "Arrows2D:vectors").items():
         tips[tick] = np.array(vectors)
@@ -129,19 +134,23 @@ def test_a_contact_force_ends_at_its_contact_point_on_the_wall(recorded, case):
         ("rss_force/rss_force", "rss_force", 1e-3),
     ],
 )
-def test_a_plot_shows_degrees_and_kilonewtons(recorded, run, entity, column, factor):
+def test_a_plot_shows_degrees_and_kilonewtons(
+    recorded: Path, run: Trajectory, entity: str, column: str, factor: float
+) -> None:
     shown = stacked(recorded, f"plots/{entity}", "Scalars:scalars")[:, 0]
     np.testing.assert_allclose(shown, factor * run[column], rtol=1e-14)
 
 
-def test_the_plot_of_the_bit_tilt_shows_its_limits(recorded, case):
+def test_the_plot_of_the_bit_tilt_shows_its_limits(recorded: Path, case: Case) -> None:
     for side, limit in (("lower", -case.bit.tilt_limit), ("upper", case.bit.tilt_limit)):
         ends = read(recorded, f"plots/bit_tilt/{side}_limit", "Scalars:scalars")
         assert (min(ends), max(ends)) == (0, 1000 * LENGTH)
         np.testing.assert_allclose(list(ends.values()), np.degrees(limit))
 
 
-def test_what_is_drawn_does_not_depend_on_the_batches(recorded, run, tmp_path, monkeypatch):
+def test_what_is_drawn_does_not_depend_on_the_batches(
+    recorded: Path, run: Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(recording, "BATCH", 37)
     record(run, save=tmp_path / "other.rrd")
     for entity in ("vertical_section/drilled_hole", "vertical_section/bha", "bit_frame/walls", "bit_frame/bha"):
@@ -149,21 +158,21 @@ def test_what_is_drawn_does_not_depend_on_the_batches(recorded, run, tmp_path, m
         np.testing.assert_allclose(other, stacked(recorded, entity, "LineStrips2D:strips"), atol=1e-5)
 
 
-def test_rerun_finds_the_file_whole(recorded):
+def test_rerun_finds_the_file_whole(recorded: Path) -> None:
     verified = subprocess.run(
         [sys.executable, "-m", "rerun", "rrd", "verify", recorded], capture_output=True, text=True, timeout=60
     )
     assert verified.returncode == 0, verified.stderr
 
 
-def test_a_run_that_stands_still_is_drawn(run, tmp_path):
+def test_a_run_that_stands_still_is_drawn(run: Trajectory, tmp_path: Path) -> None:
     twice = Trajectory({name: np.repeat(column, 2) for name, column in run.columns.items()}, run.case)
     record(twice, save=tmp_path / "twice.rrd")
     pieces = stacked(tmp_path / "twice.rrd", "vertical_section/drilled_hole", "LineStrips2D:strips")
     assert len(pieces) == len(run) - 1
 
 
-def test_a_recording_replaces_the_old_file_only_when_it_is_whole(run, tmp_path):
+def test_a_recording_replaces_the_old_file_only_when_it_is_whole(run: Trajectory, tmp_path: Path) -> None:
     path = tmp_path / "run.rrd"
     path.write_text("old")
 
@@ -184,7 +193,9 @@ def test_a_recording_replaces_the_old_file_only_when_it_is_whole(run, tmp_path):
         ({"drilled_length": [0.0, 1.0]}, "must have a column"),
     ],
 )
-def test_a_run_that_cannot_be_drawn_is_refused(case, tmp_path, columns, message):
+def test_a_run_that_cannot_be_drawn_is_refused(
+    case: Case, tmp_path: Path, columns: dict[str, list[float]], message: str
+) -> None:
     broken = Trajectory({name: np.array(column) for name, column in columns.items()}, case)
     with pytest.raises(InputError, match=message):
         record(broken, save=tmp_path / "run.rrd")
@@ -192,13 +203,15 @@ def test_a_run_that_cannot_be_drawn_is_refused(case, tmp_path, columns, message)
 
 
 @pytest.mark.parametrize("address", ["nowhere", "rerun+http://127.0.0.1:1/proxy"])
-def test_an_address_without_a_viewer_is_refused(run, tmp_path, address):
+def test_an_address_without_a_viewer_is_refused(run: Trajectory, tmp_path: Path, address: str) -> None:
     with pytest.raises(ConnectionError, match=f"must listen at .* got {re.escape(repr(address))}"):
         record(run, save=tmp_path / "run.rrd", connect=address)
     assert not list(tmp_path.iterdir())
 
 
-def test_the_command_draws_a_run_with_the_case_that_stands_beside_it(command, run, tmp_path):
+def test_the_command_draws_a_run_with_the_case_that_stands_beside_it(
+    command: Command, run: Trajectory, tmp_path: Path
+) -> None:
     write_trajectory(run, tmp_path / "run.csv")
     done = command("boreprop-view", "run.csv", "--save", "run.rrd")
     assert (done.returncode, done.stderr) == (0, "")
@@ -207,7 +220,7 @@ def test_the_command_draws_a_run_with_the_case_that_stands_beside_it(command, ru
     np.testing.assert_array_equal(shown, np.degrees(run["bit_tilt"]))
 
 
-def test_the_command_runs_a_case_file(command, paper_text, tmp_path):
+def test_the_command_runs_a_case_file(command: Command, paper_text: str, tmp_path: Path) -> None:
     (tmp_path / "short.toml").write_text(paper_text.replace("= 219.6", "= 2.0"), encoding="utf-8")
     done = command("boreprop-view", "short.toml", "--save", "short.rrd")
     assert (done.returncode, done.stderr) == (0, "")
@@ -226,7 +239,9 @@ def test_the_command_runs_a_case_file(command, paper_text, tmp_path):
         (["a.toml", "--case", "b.toml"], "a.toml: must be a run to be given a case, got a case file"),
     ],
 )
-def test_bad_input_is_one_line_and_leaves_no_file(command, run, tmp_path, arguments, error):
+def test_bad_input_is_one_line_and_leaves_no_file(
+    command: Command, run: Trajectory, tmp_path: Path, arguments: list[str], error: str
+) -> None:
     write_trajectory(replace(run, case=None), tmp_path / "run.csv")
     done = command("boreprop-view", *arguments)
     assert (done.returncode, done.stdout) == (2, "")

@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -26,7 +27,7 @@ THREE = Case(
 
 
 @pytest.fixture(scope="module", params=["paper", "three stabilizers"])
-def drilled(request, paper_case) -> Shapes:
+def drilled(request: pytest.FixtureRequest, paper_case: Path) -> Shapes:
     """The shapes of a run that touches both walls."""
     case = THREE if request.param == "three stabilizers" else replace(load_case(paper_case), length=60.0)
     run = simulate(case, sample_interval=0.01)
@@ -52,7 +53,7 @@ def row(case: Case, **values: float | list[float]) -> Trajectory:
     return Trajectory({name: np.array([value]) for name, value in columns.items()}, case)
 
 
-def test_a_path_of_few_stations_is_exactly_an_arc():
+def test_a_path_of_few_stations_is_exactly_an_arc() -> None:
     length, curvature, start = np.array([0.0, 11.0, 130.0, 200.0]), 3e-3, 0.2
     inclination = start + curvature * length
     x = (math.cos(start) - np.cos(inclination)) / curvature
@@ -60,7 +61,7 @@ def test_a_path_of_few_stations_is_exactly_an_arc():
     np.testing.assert_allclose(path(length, inclination), np.column_stack((x, z)), atol=1e-11)
 
 
-def test_an_existing_hole_ends_at_the_origin_and_goes_on_straight_above_its_survey():
+def test_an_existing_hole_ends_at_the_origin_and_goes_on_straight_above_its_survey() -> None:
     hole = existing_hole(Survey((2594.0, 2600.0), (0.3, 0.5)), reach=20.0, spacing=0.1)
     assert hole.length[0] == -20.0
     np.testing.assert_array_equal(hole.position[-1], 0.0)
@@ -70,13 +71,13 @@ def test_an_existing_hole_ends_at_the_origin_and_goes_on_straight_above_its_surv
     np.testing.assert_allclose(np.linalg.norm(hole.at(np.array(-6.0))), 2 * radius * math.sin(0.1), atol=1e-12)
 
 
-def test_a_hole_keeps_every_position_from_the_given_length_on():
+def test_a_hole_keeps_every_position_from_the_given_length_on() -> None:
     hole = Hole(np.array([-2.0, -1.0, 0.0, 3.0]), np.arange(8.0).reshape(4, 2))
     lengths = np.linspace(-0.5, 3.0, 9)
     np.testing.assert_array_equal(hole.since(-0.5).at(lengths), hole.at(lengths))
 
 
-def test_in_the_bit_frame_a_hole_of_constant_curvature_is_a_parabola():
+def test_in_the_bit_frame_a_hole_of_constant_curvature_is_a_parabola() -> None:
     curvature, top = 2e-3, THREE.bha.stabilizer_positions[-1]
     hole = existing_hole(Survey((0.0, 30.0), (0.4, 0.4 + 30.0 * curvature)), reach=20.0, spacing=0.01)
     ends = np.array([0.0, *THREE.bha.stabilizer_positions])
@@ -86,7 +87,7 @@ def test_in_the_bit_frame_a_hole_of_constant_curvature_is_a_parabola():
     np.testing.assert_allclose(axis, -curvature * frame.s_hole * (top - frame.s_hole) / 2, atol=2e-5)
 
 
-def test_the_hole_axis_at_the_stabilizers_is_what_the_averages_say_however_coarse_the_path():
+def test_the_hole_axis_at_the_stabilizers_is_what_the_averages_say_however_coarse_the_path() -> None:
     averages = np.array([0.41, 0.43, 0.40])
     hole = existing_hole(Survey((0.0, 20.0), (0.38, 0.42)), reach=20.0, spacing=20.0)
     frame = BitFrame(THREE)
@@ -120,7 +121,7 @@ def finite_element_beam(s: Array, stiffness: float, slope: float, weight: float,
     return solution[::2]
 
 
-def test_the_bha_has_the_shape_of_a_finite_element_beam_under_the_same_loads():
+def test_the_bha_has_the_shape_of_a_finite_element_beam_under_the_same_loads() -> None:
     frame, bha = BitFrame(THREE), THREE.bha
     averages, forces, rss = [0.99, 1.01, 1.02], [8e3, -3e3], 5e3
     rows = row(THREE, bit_inclination=1.015, average_inclination=averages, stabilizer_force=forces, rss_force=rss)
@@ -140,7 +141,7 @@ def test_the_bha_has_the_shape_of_a_finite_element_beam_under_the_same_loads():
     np.testing.assert_allclose(shapes.bha_axis[0], expected, atol=1e-9)
 
 
-def test_bha_and_hole_are_as_far_apart_at_the_stabilizers_as_the_model_says(drilled):
+def test_bha_and_hole_are_as_far_apart_at_the_stabilizers_as_the_model_says(drilled: Shapes) -> None:
     at = drilled.frame.at_stabilizer
     apart = drilled.bha_axis[:, at] - drilled.hole_axis[:, at]
     np.testing.assert_allclose(apart[:, :-1], drilled.rows.stack("stabilizer_deflection"), atol=1e-9)
@@ -149,7 +150,7 @@ def test_bha_and_hole_are_as_far_apart_at_the_stabilizers_as_the_model_says(dril
     np.testing.assert_allclose(drilled.hole_axis[:, 0], 0.0, atol=1e-12)
 
 
-def test_a_blade_touches_the_wall_where_there_is_contact_and_only_there(drilled):
+def test_a_blade_touches_the_wall_where_there_is_contact_and_only_there(drilled: Shapes) -> None:
     low, high = drilled.walls[:, 0, drilled.frame.at_stabilizer], drilled.walls[:, 1, drilled.frame.at_stabilizer]
     gap_low, gap_high = drilled.blades[..., 0] - low, high - drilled.blades[..., 1]
     contact = drilled.rows.stack("stabilizer_contact")
@@ -159,14 +160,14 @@ def test_a_blade_touches_the_wall_where_there_is_contact_and_only_there(drilled)
     assert np.all(gap_high[:, :-1][contact != -1] > 0.0)
 
 
-def test_a_contact_point_is_where_wall_and_blade_meet(drilled):
+def test_a_contact_point_is_where_wall_and_blade_meet(drilled: Shapes) -> None:
     contact = drilled.rows.stack("stabilizer_contact")
     touching = np.where(contact == 1, drilled.blades[:, :-1, 0], drilled.blades[:, :-1, 1])
     np.testing.assert_allclose(drilled.contact_points[contact != 0], touching[contact != 0], atol=1e-8)
     assert np.all(np.isnan(drilled.contact_points[contact == 0]))
 
 
-def test_the_hole_between_the_stabilizers_follows_the_inclination_that_was_drilled(drilled):
+def test_the_hole_between_the_stabilizers_follows_the_inclination_that_was_drilled(drilled: Shapes) -> None:
     # Y by the trapezoidal rule over Θ, which the path and the averages were not made from
     length, inclination = drilled.rows["drilled_length"], drilled.rows["borehole_inclination"]
     Y = np.append(0.0, np.cumsum(np.diff(length) * (inclination[1:] + inclination[:-1]) / 2))
@@ -175,7 +176,7 @@ def test_the_hole_between_the_stabilizers_follows_the_inclination_that_was_drill
     np.testing.assert_allclose(drilled.hole_axis[last], expected, atol=5e-4)
 
 
-def test_in_the_vertical_section_the_bha_starts_at_the_bit_and_ends_in_the_hole(drilled):
+def test_in_the_vertical_section_the_bha_starts_at_the_bit_and_ends_in_the_hole(drilled: Shapes) -> None:
     section = drilled.bha_in_section
     position, top = bit_positions(drilled.rows), drilled.frame.stabilizer[-1]
     np.testing.assert_allclose(section[:, 0], position, atol=1e-12)
