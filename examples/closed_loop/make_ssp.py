@@ -1,0 +1,51 @@
+"""Build the two FMUs and pack them with SystemStructure.ssd as an SSP: ``python make_ssp.py closed_loop.ssp``."""
+
+import zipfile
+from hashlib import sha256
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Annotated
+
+from pythonfmu.builder import FmuBuilder
+
+from boreprop import console
+from boreprop.case import load_case
+from boreprop.console import typer
+from boreprop.results import replacing
+from boreprop_fmu.build import build_fmu
+
+HERE = Path(__file__).parent
+
+app = console.new_app("Pack the controller and the borehole as an SSP.")
+
+
+@app.command()
+def make_ssp(
+    output: Annotated[Path, typer.Argument(metavar="SYSTEM.ssp", help="The SSP.")],
+) -> None:
+    """Build both FMUs and pack them."""
+    console.check_output(output, (".ssp",))
+    case = load_case(HERE.parent / "build_section.toml")
+    with TemporaryDirectory() as directory, replacing(output) as draft, zipfile.ZipFile(draft, "w") as ssp:
+        ssp.write(HERE / "SystemStructure.ssd", "SystemStructure.ssd")
+        for fmu in (build_fmu(case, Path(directory, "Borehole.fmu")), build_controller(Path(directory))):
+            ssp.write(fmu, f"resources/{fmu.name}")
+    print(f"{output}: {output.stat().st_size / 1e6:.1f} MB")
+
+
+def build_controller(directory: Path) -> Path:
+    """Build InclinationController.fmu in `directory` and return its path.
+
+    The script's name carries a hash of its content: the interpreter finds modules by name, process-wide, and would give
+    the first controller's code to every other one.
+    """
+    code = (HERE / "controller.py").read_bytes()
+    script = directory / f"controller_{sha256(code).hexdigest()[:16]}.py"
+    script.write_bytes(code)
+    options = {"needsExecutionTool": False, "canGetAndSetFMUstate": True, "canSerializeFMUstate": True}
+    built: Path = FmuBuilder.build_FMU(script, directory, **options)
+    return built
+
+
+if __name__ == "__main__":
+    console.run(app)
