@@ -26,6 +26,7 @@ EXTRAS = {  # the extra that brings a package
     "fmpy": "fmu",
     "pythonfmu": "fmu",
     "rerun": "viz",
+    "libcosimpy": "dev",
 }
 COMMANDS = {"boreprop_viz": "viz", "boreprop_fmu": "fmu"}  # a command's package: its own extra, which brings [cli] too
 
