@@ -30,6 +30,7 @@ lint: .venv/dev.installed  # style, types and the import contract
 bench: .venv/dev.installed  # speed, side by side with a fixed-step Runge–Kutta method
 	$(BIN)/python benchmarks/integrator.py
 	$(BIN)/python benchmarks/whole_process.py
+	$(BIN)/python benchmarks/fmu_cost.py
 
 clean:
 	rm -rf .venv out dist build .*_cache .hypothesis

@@ -135,7 +135,7 @@ def test_bad_input_moves_nothing_and_good_input_works_again(fmu: Path) -> None:
     ("name", "value", "message"),
     [
         ("flexural_stiffness", "-1", "flexural_stiffness: must be > 0, got -1.0"),
-        ("stabilizer_position[1]", "50", "stabilizer_positions: must increase, got (50.0, 7.32)"),
+        ("stabilizer_position[1]", "50", "stabilizer_position: must increase, got (50.0, 7.32)"),
         ("relative_tolerance", "nan", "relative_tolerance: must be "),
         # what a survey file is called is no format for the logger's printf
         ("survey_file", "no/%s%n.csv", "no/%%s%%n.csv: must be a readable CSV file"),

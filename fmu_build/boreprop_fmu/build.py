@@ -1,7 +1,7 @@
 """Packs the model, as code and numbers, into an FMI 2.0 co-simulation FMU on pythonfmu's runtime.
 
 The archive is written here and not by pythonfmu's own builder, which imports the slave into the building process and
-makes a different file every time. From pythonfmu come the binaries and the package that they call.
+makes a different file every time. From pythonfmu come the binaries and the base class of the slave.
 """
 
 import json
@@ -18,6 +18,8 @@ from boreprop.core.variables import BY_NAME
 from boreprop.results import replacing
 
 from .description import model_description
+from .documentation import documentation
+from .icon import icon
 
 IDENTIFIER = "Borehole"
 CAPABILITIES = {
@@ -30,8 +32,21 @@ CAPABILITIES = {
     "canSerializeFMUstate": True,
 }
 CASE_FILE = "resources/case.toml"
+RUNTIME_MODULES = ("default_experiment", "enums", "fmi2slave", "logmsg", "variables", "_version")
 GUID_NAMESPACE = UUID("6f0a3c1e-9d1b-5a55-8a0e-0d6c1f9f7b11")
 STEP_SIZE = 0.1  # s, so 0.1 m at the start value of the rate of penetration
+SCRIPT = '''"""What pythonfmu starts. It compiles this for every instance, and wants a class with methods of its own."""
+
+from {package}.slave import Borehole as Slave
+
+
+class Borehole(Slave):
+    def __init__(self, **kwargs):
+        super().__init__(**kwargs)
+
+    def do_step(self, current_time, step_size):
+        return super().do_step(current_time, step_size)
+'''
 EPOCH = (1980, 1, 1, 0, 0, 0)
 
 
@@ -45,7 +60,7 @@ def build_fmu(case: Case, output: Path) -> Path:
     """
     code = pack_code()
     guid = str(uuid5(GUID_NAMESPACE, digest({**code, **pack_case(case, guid="")})))
-    archive = {**pack_case(case, guid), **code, **pack_runtime()}
+    archive = {**pack_case(case, guid), **code, **pack_runtime(), **pack_manual(case)}
     with replacing(output) as draft, zipfile.ZipFile(draft, "w") as fmu:
         for name in sorted(archive, key=lambda name: (name != "modelDescription.xml", name)):
             entry = zipfile.ZipInfo(name, EPOCH)
@@ -56,11 +71,12 @@ def build_fmu(case: Case, output: Path) -> Path:
 
 
 def pack_code() -> dict[str, bytes]:
-    """The slave and the core, each under a name that carries a hash of its content."""
-    core = read_modules("boreprop.core")
-    package = f"boreprop_core_{digest(core)[:16]}"
+    """The core with the slave, and the script that starts it, each under a name that carries a hash of its content."""
     slave = files("boreprop_fmu").joinpath("slave.py").read_text(encoding="utf-8")
-    script = slave.replace("boreprop.core", package).encode()
+    slave = slave.replace("from boreprop.core.", "from .").replace("from pythonfmu.", f"from {base_class()[0]}.")
+    core = {**read_modules("boreprop.core"), "slave.py": slave.encode()}
+    package = f"boreprop_core_{digest(core)[:16]}"
+    script = SCRIPT.format(package=package).encode()
     module = f"boreprop_slave_{digest({package: script})[:16]}"
     return {
         "resources/slavemodule.txt": module.encode(),
@@ -91,12 +107,18 @@ def pack_case(case: Case, guid: str) -> dict[str, bytes]:
 
 
 def pack_runtime() -> dict[str, bytes]:
-    """pythonfmu: the binaries under the FMU's name, and the package."""
-    archive = {f"resources/pythonfmu/{name}": content for name, content in read_modules("pythonfmu").items()}
+    """pythonfmu: the binaries under the FMU's name, and the base class of the slave."""
+    package, modules = base_class()
+    archive = {f"resources/{package}/{name}": content for name, content in modules.items()}
     for platform in files("pythonfmu").joinpath("resources/binaries").iterdir():
         for binary in platform.iterdir():
             archive[f"binaries/{platform.name}/{IDENTIFIER}{Path(binary.name).suffix}"] = binary.read_bytes()
     return archive
+
+
+def pack_manual(case: Case) -> dict[str, bytes]:
+    """What people see: the icon and the documentation."""
+    return {"model.png": icon(), "documentation/index.html": documentation(case)}
 
 
 def start_values(case: Case) -> dict[str, float | str]:
@@ -118,6 +140,16 @@ def start_values(case: Case) -> dict[str, float | str]:
         "relative_tolerance": RELATIVE_TOLERANCE,
         "survey_file": "",
     }
+
+
+def base_class() -> tuple[str, dict[str, bytes]]:
+    """A package with pythonfmu's base class and its name, which carries a hash too: the binaries ask for none.
+
+    Without pythonfmu's `__init__`, which would load its builder whenever an FMU starts.
+    """
+    modules = read_modules("pythonfmu")
+    needed = {"__init__.py": b"", **{f"{name}.py": modules[f"{name}.py"] for name in RUNTIME_MODULES}}
+    return f"boreprop_slave_base_{digest(needed)[:16]}", needed
 
 
 def read_modules(package: str) -> dict[str, bytes]:

@@ -122,6 +122,7 @@ def _add_variable(
         display = UNITS[unit][1]
         if display:
             typed.set("displayUnit", display[0])
+        typed.set("nominal", repr(variable.nominal))
     number = repr if variable.kind == "Real" else "{:d}".format
     if isfinite(variable.min):
         typed.set("min", number(variable.min))

@@ -1,8 +1,8 @@
 """The slave inside the FMU: values in, `Drilling` on, values out. No physics.
 
-This file is the FMU's script. `build_fmu` renames it, and the package it imports, after their content: the embedded
-interpreter finds modules by name, process-wide, and an FMU must run its own code only. Everything is imported here, at
-the top: the directory an FMU was unpacked in may be gone before the process ends.
+`build_fmu` packs this file into the core and renames that package after its content: the embedded interpreter finds
+modules by name, process-wide, and an FMU must run its own code only. Everything is imported here, at the top: the
+directory an FMU was unpacked in may be gone before the process ends.
 
 pythonfmu makes fmi2Fatal of an exception in any callback. So none leaves a callback: bad input is logged, the step
 discarded, nothing has moved, and the next step with good input works.
@@ -26,6 +26,11 @@ from boreprop.core.variables import BY_NAME, VARIABLES, Variable
 
 STATE_FORMAT = "boreprop-fmu-state-1"
 NOTHING: dict[str, Any] = {"Real": nan, "Integer": 0, "Boolean": False, "String": ""}  # the value of what has none
+FMI_NAME = {  # of what the model calls otherwise
+    "tilt_limit": "bit_tilt_limit",
+    "stabilizer_positions": "stabilizer_position",
+    "stabilizer_clearances": "stabilizer_clearance",
+}
 
 
 class SlaveError(ValueError):
@@ -154,15 +159,23 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         path = self._given["survey_file"]
         if not path:
             return self._survey
-        measured_depth, inclination_deg = read_columns(path, ("measured_depth", "inclination_deg"))
-        return Survey(measured_depth, tuple(map(radians, inclination_deg)))
+        try:
+            measured_depth, inclination_deg = read_columns(path, ("measured_depth", "inclination_deg"))
+            return Survey(measured_depth, tuple(map(radians, inclination_deg)))
+        except TableError as error:  # begins with the path
+            raise SlaveError(f"{error} (survey_file)") from error
+        except ParameterError as error:
+            raise SlaveError(f"{path}: {error} (survey_file)") from error
 
     def _ready(self) -> Drilling:
         """The drilling system, made when it is first needed."""
         if self._fault:
             raise SlaveError(self._fault)
         if self._drilling is None:
-            self._drilling = self._build(self._read_survey())
+            try:
+                self._drilling = self._build(self._read_survey())
+            except ParameterError as error:
+                raise ParameterError(FMI_NAME.get(error.name, error.name), error.constraint, error.value) from error
         return self._drilling
 
     def _advance(self, drilling: Drilling, drilled_length: float) -> None:
@@ -249,7 +262,8 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
             raise SlaveError(f"state: must be one of this FMU, {STATE_FORMAT} {self.guid}, got {sealed[:80]!r}")
         state = json.loads(state_bytes)
         self._given = state["given"]
-        self._initialized, self._fault, self._stale = state["initialized"], state["fault"], True
+        self._initialized, self._fault = state["initialized"], state["fault"]
+        self._outputs, self._stale = self._nothing(), True
         self._time, self._anchor = state["time"], tuple(state["anchor"])
         self._drilling = None
         if state["drilling"]:
@@ -260,7 +274,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         """Do it; log why not."""
         try:
             action(*arguments)
-        except (ParameterError, TableError, SlaveError) as error:
+        except (ParameterError, SlaveError) as error:
             self._log_error(str(error))
             return False
         except Exception as error:  # nobody foresaw it, so nobody knows what has moved
