@@ -8,6 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from boreprop.case import Case, load_case
+from boreprop_fmu.build import build_fmu
+
 EXAMPLES = Path(__file__).parents[1] / "examples"
 
 Command = Callable[..., subprocess.CompletedProcess[str]]
@@ -24,6 +27,18 @@ def paper_text(paper_case: Path) -> str:
     """What is in it, without the comments (so that a text replaced is a value replaced)."""
     lines = paper_case.read_text(encoding="utf-8").splitlines()
     return "\n".join(line.partition("#")[0].rstrip() for line in lines)
+
+
+@pytest.fixture(scope="session")
+def case(paper_case: Path) -> Case:
+    """The paper's case, from its file."""
+    return load_case(paper_case)
+
+
+@pytest.fixture(scope="session")
+def fmu(case: Case, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Its FMU."""
+    return build_fmu(case, tmp_path_factory.mktemp("fmu") / "Borehole.fmu")
 
 
 @pytest.fixture

@@ -3,7 +3,6 @@
 import json
 import subprocess
 import sys
-import zipfile
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import product
@@ -14,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from boreprop.case import Case, Schedule, load_case
+from boreprop.case import Case, Schedule
 from boreprop.core.assembly import BottomHoleAssembly
 from boreprop.core.variables import BY_NAME, OUTPUTS, scalar_names
 from boreprop.results import Trajectory, read_trajectory
@@ -44,19 +43,9 @@ def assert_agrees(rows: list[dict[str, float]], expected: Trajectory, tolerance:
 
 
 @pytest.fixture(scope="module")
-def case(paper_case: Path) -> Case:
-    return load_case(paper_case)
-
-
-@pytest.fixture(scope="module")
 def three(case: Case) -> Case:
     """A case with three stabilizers."""
     return replace(case, bha=BottomHoleAssembly((3.0, 6.5, 11.0), (2e-3, 4e-3), 0.5, 1100.0, 8e6))
-
-
-@pytest.fixture(scope="module")
-def fmu(case: Case, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return build_fmu(case, tmp_path_factory.mktemp("fmu") / "two.fmu")
 
 
 @pytest.fixture(scope="module")
@@ -184,16 +173,6 @@ def test_fmus_with_different_code_and_numbers_of_stabilizers_share_a_process(
     together = host("side_by_side", *fmus)
     assert together == [host("side_by_side", path)[0] for path in fmus]
     assert together[0] != together[1]
-
-
-def test_it_needs_the_standard_library_only(fmu: Path, tmp_path: Path) -> None:
-    with zipfile.ZipFile(fmu) as archive:
-        archive.extractall(tmp_path)
-    command = [sys.executable, "-I", "-S", str(HERE / "fmu_bare_host.py"), str(tmp_path)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
-    assert done.returncode == 0, done.stderr
-    report = json.loads(done.stdout)
-    assert report == {"statuses": [0] * 40, "drilled": 20.0, "foreign": [], "log": []}
 
 
 Command = Callable[..., subprocess.CompletedProcess[str]]

@@ -11,22 +11,12 @@ from xml.etree.ElementTree import Element, fromstring
 import pytest
 from fmpy.validation import validate_fmu
 
-from boreprop.case import Case, InputError, load_case
+from boreprop.case import Case, InputError
 from boreprop.core.assembly import BottomHoleAssembly
 from boreprop.core.variables import BY_NAME, VARIABLES, scalar_names
 from boreprop_fmu import build
 from boreprop_fmu.build import build_fmu
 from boreprop_fmu.drive import Run, read_packed_case
-
-
-@pytest.fixture(scope="module")
-def case(paper_case: Path) -> Case:
-    return load_case(paper_case)
-
-
-@pytest.fixture(scope="module")
-def fmu(case: Case, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return build_fmu(case, tmp_path_factory.mktemp("fmu") / "Borehole.fmu")
 
 
 @pytest.fixture(scope="module")

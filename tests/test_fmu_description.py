@@ -16,22 +16,12 @@ import fmpy
 import pytest
 from lxml import etree
 
-from boreprop.case import Case, load_case
+from boreprop.case import Case
 from boreprop.core.assembly import BottomHoleAssembly
 from boreprop.core.variables import VARIABLES, scalar_names
 from boreprop_fmu.build import build_fmu
 
 SCHEMA = Path(fmpy.__file__).parent / "schema" / "fmi2" / "fmi2ModelDescription.xsd"
-
-
-@pytest.fixture(scope="module")
-def case(paper_case: Path) -> Case:
-    return load_case(paper_case)
-
-
-@pytest.fixture(scope="module")
-def fmu(case: Case, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return build_fmu(case, tmp_path_factory.mktemp("fmu") / "Borehole.fmu")
 
 
 @pytest.fixture(scope="module")

@@ -60,16 +60,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def case(paper_case: Path) -> Case:
-    return load_case(paper_case)
-
-
-@pytest.fixture(scope="module")
-def fmu(case: Case, folder: Path) -> Path:
-    return build_fmu(case, folder / "two.fmu")
-
-
-@pytest.fixture(scope="module")
 def fmu_3(case: Case, folder: Path) -> Path:
     """With three stabilizers."""
     bha = BottomHoleAssembly((3.0, 6.5, 11.0), (2e-3, 4e-3), 0.5, 1100.0, 8e6)
