@@ -1,15 +1,22 @@
 """What several test files need."""
 
+import os
 import shutil
 import subprocess
 import sysconfig
 from collections.abc import Callable
 from pathlib import Path
 
+import hypothesis
 import pytest
 
 from boreprop.case import Case, load_case
 from boreprop_fmu.build import build_fmu
+
+# a landing tries the same examples as the last one, a developer's run new ones
+hypothesis.settings.register_profile("ci", derandomize=True)
+if os.environ.get("CI"):
+    hypothesis.settings.load_profile("ci")
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 

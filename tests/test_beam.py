@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from boreprop.core.assembly import Scaled
@@ -69,7 +69,7 @@ def loaded_beams(draw: st.DrawFn) -> tuple[Scaled, Loads, list[float], float]:
 
 def well_spaced(scaled: Scaled, extra: float) -> bool:
     nodes = sorted({0.0, extra, scaled.Delta, *scaled.s})
-    return min(b - a for a, b in pairwise(nodes)) > 1e-3
+    return min(b - a for a, b in pairwise(nodes)) > 0.02  # else the elements' own stiffness is ill-conditioned
 
 
 @settings(max_examples=200, deadline=None)
@@ -78,8 +78,7 @@ def test_deflection_moment_and_force_are_those_of_a_finite_element_beam(
     beam: tuple[Scaled, Loads, list[float], float],
 ) -> None:
     scaled, at, contact, extra = beam
-    if not well_spaced(scaled, extra):
-        return
+    assume(well_spaced(scaled, extra))
     model, elements = Beam(scaled), ElementBeam(scaled, at, contact, extra)
     tolerance = 1e-9
     shape = model.shape(extra, at.e[-1], contact, at.F_rss, at.sin_Theta_1)
