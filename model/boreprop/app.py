@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import Annotated, NoReturn
 
 from . import console
+from .case import SAMPLE_INTERVAL
 from .console import typer
 
-SAMPLE_INTERVAL = 0.1  # m; some 50 rows per wave of a rippling hole
 MAX_ROWS = 10_000_000
 
 app = console.new_app("Borehole propagation of a directional drilling system.")

@@ -15,6 +15,8 @@ from .core.assembly import BitRock, BottomHoleAssembly, ParameterError, check_in
 from .core.hole import Survey
 from .core.tables import TableError, read_columns
 
+SAMPLE_INTERVAL = 0.1  # m between the rows of a run, unless told otherwise: some 50 for each wave of a rippling hole
+
 
 class InputError(ValueError):
     """What a user gave cannot be used. The message is one line: file, key, constraint, value."""

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .case import Case
+from .case import SAMPLE_INTERVAL, Case
 from .core.assembly import check_number
 from .core.drilling import Drilling
 from .core.propagation import RELATIVE_TOLERANCE
@@ -21,7 +21,7 @@ class SimulationError(RuntimeError):
 def simulate(
     case: Case,
     *,
-    sample_interval: float | None = None,
+    sample_interval: float = SAMPLE_INTERVAL,
     length: float | None = None,
     relative_tolerance: float = RELATIVE_TOLERANCE,
     progress: Callable[[float], None] | None = None,
@@ -33,8 +33,8 @@ def simulate(
     case
         What is drilled.
     sample_interval
-        Drilled length between rows, m; without it, a thousandth of the length to drill. Rows are at k times the
-        interval, k = 0, 1, …; where the force changes on a row, the row holds the values after the change.
+        Drilled length between rows, m. Rows are at k times the interval, k = 0, 1, …; where the force changes on a
+        row, the row holds the values after the change.
     length
         Length to drill, m; without it, the case's.
     relative_tolerance
@@ -56,8 +56,7 @@ def simulate(
     """
     length = case.length if length is None else length
     check_number("length", length, above=0.0)
-    interval = length / 1000 if sample_interval is None else sample_interval
-    check_number("sample_interval", interval, above=0.0)
+    check_number("sample_interval", sample_interval, above=0.0)
     changes = list(zip(case.schedule.drilled_length, case.schedule.rss_force, strict=True))
     _, force = changes.pop(0)
     weight = case.active_weight_on_bit
@@ -75,12 +74,12 @@ def simulate(
         if failure:
             raise SimulationError(f"after {drilling.drilled_length:g} m of {length:g} m: {failure}")
 
-    rows = int(length / interval + ROUNDING) + 1
+    rows = int(length / sample_interval + ROUNDING) + 1
     names = ["rss_force", *scalar_names(OUTPUTS, len(case.bha.stabilizer_positions))]
     table = np.empty((rows, len(names)))
     for k in range(rows):
-        at = k * interval
-        while changes and changes[0][0] <= at + ROUNDING * interval:
+        at = k * sample_interval
+        while changes and changes[0][0] <= at + ROUNDING * sample_interval:
             change, next_force = changes.pop(0)
             drill(change)
             force = next_force

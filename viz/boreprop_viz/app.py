@@ -13,7 +13,6 @@ from boreprop.case import InputError, load_case
 from boreprop.console import typer
 from boreprop.results import SUFFIXES, Trajectory, read_trajectory
 
-SAMPLE_INTERVAL = 0.1  # m, of a case that is run to be shown
 STARTS_WITHIN = 30.0  # s, a viewer
 LOOPBACK = "127.0.0.1"  # Rerun's own default is every network that the machine is in
 
@@ -75,7 +74,7 @@ def load_run(source: Path, case: Path | None, fmu: Path | None) -> Trajectory:
 
         to_run = load_case(source)
         with console.progress("drilling", to_run.length) as drilled:
-            return simulate(to_run, sample_interval=SAMPLE_INTERVAL, progress=drilled)
+            return simulate(to_run, progress=drilled)
     if source.suffix not in SUFFIXES:
         raise InputError(f"{source}: must end in {', '.join(SUFFIXES)} or .toml, got {source.suffix!r}")
     if fmu is not None:

@@ -437,8 +437,8 @@ def extremes(points: list[tuple[float, float]]) -> list[float]:
     """Where a smooth function through points (x, y), in order of x, has extremes: a parabola through each three."""
     found = []
     for (x0, y0), (x1, y1), (x2, y2) in zip(points, points[1:], points[2:]):
-        if (y1 - y0) * (y2 - y1) < 0:
-            slope, later = (y1 - y0) / (x1 - x0), (y2 - y1) / (x2 - x1)
+        slope, later = (y1 - y0) / (x1 - x0), (y2 - y1) / (x2 - x1)
+        if slope * later <= 0 and slope != later:
             found.append((x0 + x1) / 2 - slope * (x2 - x0) / 2 / (later - slope))
     return found
 

@@ -71,7 +71,6 @@ VARIABLES: tuple[Variable, ...] = (
 BY_NAME = {variable.name: variable for variable in VARIABLES}
 INPUTS = tuple(variable for variable in VARIABLES if variable.role == "input")
 OUTPUTS = tuple(variable for variable in VARIABLES if variable.role == "output")
-PARAMETERS = tuple(variable for variable in VARIABLES if variable.role == "parameter")
 
 
 def scalar_names(variables: tuple[Variable, ...], n: int) -> list[str]:
