@@ -8,7 +8,7 @@ demo: .venv/all.installed  # the main job: case file, FMU, run, viewer recording
 	mkdir -p out
 	$(BIN)/boreprop-fmu build examples/build_section.toml --output out/Borehole.fmu
 	$(BIN)/boreprop-fmu run out/Borehole.fmu --schedule examples/build_section_rss.csv --output out/run.csv
-	$(BIN)/boreprop-view out/run.csv --save out/run.rrd
+	$(BIN)/boreprop-view out/run.csv --plan examples/build_section_plan.csv --save out/run.rrd
 	$(BIN)/boreprop figures out
 	$(BIN)/boreprop summary out/run.csv
 	@printf '\nResults are in %s/out:\n' "$$PWD"
@@ -27,10 +27,11 @@ lint: .venv/dev.installed  # style, types and the import contract
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-bench: .venv/dev.installed  # speed, side by side with a fixed-step Runge–Kutta method
+bench: .venv/dev.installed  # speed, side by side with something else
 	$(BIN)/python benchmarks/integrator.py
 	$(BIN)/python benchmarks/whole_process.py
 	$(BIN)/python benchmarks/fmu_cost.py
+	$(BIN)/python benchmarks/viewer_cost.py
 
 clean:
 	rm -rf .venv out dist build .*_cache .hypothesis

@@ -10,7 +10,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 MACHINE = re.compile(
-    rb"(?<![\w.])/(?:home|media|mnt|opt|root|tmp|Users|work)/|[A-Z]:\\|\.\./shared|(?:index|registry)[-_]url|find[-_]links"
+    rb"(?<![\w.])/(?:home|media|mnt|opt|root|tmp|Users|work)/|\b[A-Z]:\\\w{2}|\.\./shared|(?:index|registry)[-_]url|find[-_]links"
 )
 
 

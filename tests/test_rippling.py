@@ -5,7 +5,7 @@ from math import radians
 import numpy as np
 import pytest
 
-from boreprop.analysis.rippling import find_rippling
+from boreprop.analysis.rippling import AXIS_REACH, axis_ripple, find_rippling
 from reference_cases import reference
 
 XI = np.linspace(0.0, 60.0, 3001)
@@ -76,3 +76,34 @@ def test_what_is_no_lasting_wave_is_not_rippling(signal: np.ndarray) -> None:
 
 def test_a_run_too_short_to_tell_does_not_ripple() -> None:
     assert not find_rippling(XI[:100], wave(1.4, 1.0)[:100], 1.0).ripples
+
+
+def arc(length: np.ndarray, curvature: float) -> tuple[np.ndarray, np.ndarray]:
+    """Positions on an arc that starts downwards, and the directions to its high side."""
+    angle = curvature * length
+    position = np.column_stack((1 - np.cos(angle), np.sin(angle))) / curvature
+    return position, np.column_stack((np.cos(angle), -np.sin(angle)))
+
+
+def test_an_evenly_curved_axis_has_no_ripple() -> None:
+    length = np.arange(0.0, 200.0, 0.1)
+    _, ripple = axis_ripple(length, arc(length, radians(2.0) / 30)[0], 3.66)
+    assert np.abs(ripple).max() < 1e-5
+
+
+@pytest.mark.parametrize("wavelength", [1.2, 1.4, 2.0])
+def test_the_ripple_of_a_wavy_arc_is_its_wave(wavelength: float) -> None:
+    length, scale = np.arange(0.0, 200.0, 0.02), 3.66
+    position, high_side = arc(length, radians(2.0) / 30)
+    number = 2 * np.pi / (wavelength * scale)
+    at, ripple = axis_ripple(length, position + 0.03 * np.sin(number * length)[:, None] * high_side, scale)
+    np.testing.assert_allclose(ripple, 0.03 * np.sin(number * at), atol=0.03 * 0.05)
+
+
+def test_a_ripple_is_known_as_far_as_its_trend_is() -> None:
+    length = np.arange(0.0, 20.0, 0.1)
+    straight = np.column_stack((np.zeros_like(length), length))
+    at, _ = axis_ripple(length, straight, 1.0)
+    assert at[0] == pytest.approx(AXIS_REACH)
+    assert at[-1] == pytest.approx(length[-1] - AXIS_REACH, abs=1 / 40)
+    assert axis_ripple(length[:70], straight[:70], 1.0)[0].size == 0

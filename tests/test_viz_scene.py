@@ -13,7 +13,18 @@ from boreprop.core.assembly import BitRock, BottomHoleAssembly
 from boreprop.core.hole import Survey
 from boreprop.results import Trajectory
 from boreprop.simulation import simulate
-from boreprop_viz.scene import Array, BitFrame, Hole, Shapes, bit_positions, existing_hole, path
+from boreprop_viz.scene import (
+    Array,
+    BitFrame,
+    Bounds,
+    Hole,
+    Shapes,
+    bit_positions,
+    existing_hole,
+    path,
+    planned_hole,
+    turning,
+)
 
 THREE = Case(
     bha=BottomHoleAssembly((3.66, 6.954, 11.712), (3.66e-3, 7.32e-3), 0.6, 1080.0, 7.2e6),
@@ -75,6 +86,26 @@ def test_a_hole_keeps_every_position_from_the_given_length_on() -> None:
     hole = Hole(np.array([-2.0, -1.0, 0.0, 3.0]), np.arange(8.0).reshape(4, 2))
     lengths = np.linspace(-0.5, 3.0, 9)
     np.testing.assert_array_equal(hole.since(-0.5).at(lengths), hole.at(lengths))
+
+
+def test_an_evenly_curved_hole_turns_by_its_curvature() -> None:
+    hole = existing_hole(Survey((0.0, 100.0), (0.2, 0.5)), reach=20.0, spacing=0.1)
+    rate = turning(hole, np.array([0.0, -20.0]), over=30.0, chord=3.66)
+    np.testing.assert_allclose(rate, 3e-3, rtol=1e-6)
+
+
+def test_a_plan_passes_where_drilling_starts_and_follows_its_stations() -> None:
+    plan = planned_hole(Survey((1000.0, 1100.0, 1200.0), (0.3, 0.3, 0.7)), start=1050.0)
+    np.testing.assert_allclose(plan.at(np.array(0.0)), 0.0, atol=1e-9)
+    np.testing.assert_allclose(plan.at(np.array(50.0)), [50 * math.sin(0.3), 50 * math.cos(0.3)], atol=1e-9)
+    turn = 250.0 * np.array([math.cos(0.3) - math.cos(0.7), math.sin(0.7) - math.sin(0.3)])
+    np.testing.assert_allclose(plan.at(np.array(150.0)) - plan.at(np.array(50.0)), turn, atol=1e-9)
+
+
+def test_bounds_hold_what_lies_between_them() -> None:
+    bounds = Bounds((0.0, 1.0), (-2.0, 3.0))
+    assert bounds.hold(np.array([[0.0, -2.0], [1.0, 3.0]]))
+    assert not bounds.hold(np.array([[0.5, 0.0], [0.5, 3.1]]))
 
 
 def test_in_the_bit_frame_a_hole_of_constant_curvature_is_a_parabola() -> None:

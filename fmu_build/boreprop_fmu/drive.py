@@ -6,7 +6,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from signal import SIGINT, raise_signal, signal
 from tempfile import TemporaryDirectory
+from threading import current_thread, main_thread
 from typing import Any
 
 import fmpy
@@ -97,9 +99,11 @@ class Run:
                 slave.exitInitializationMode()
                 for k in range(len(self)):
                     point = self.start + k * self.step
-                    self._advance(slave, time, point, changes)
-                    time = point
-                    yield [time, *read()]
+                    with _uninterrupted():
+                        self._advance(slave, time, point, changes)
+                        time = point
+                        row = [time, *read()]
+                    yield row
         except FMICallException as error:
             raise InputError(f"{self.fmu}: at {time:.9g} s: {' '.join(messages) or error}") from error
 
@@ -232,6 +236,22 @@ def read_packed_case(fmu: str | Path) -> Case | None:
             return parse_case(archive.read(CASE_FILE).decode(), Path(fmu, CASE_FILE))
     except zipfile.BadZipFile as error:
         raise InputError(f"{fmu}: must be an FMU, got: {error}") from error
+
+
+@contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Let Ctrl-C wait until the end: an FMU with Python in it would take it for an error of its own."""
+    if current_thread() is not main_thread():  # which alone is interrupted
+        yield
+        return
+    pressed: list[int] = []
+    before = signal(SIGINT, lambda number, _: pressed.append(number))
+    try:
+        yield
+    finally:
+        signal(SIGINT, before)
+    if pressed:
+        raise_signal(SIGINT)
 
 
 def _check_readable(directory: str) -> None:

@@ -26,6 +26,7 @@ EXTRAS = {  # the extra that brings a package
     "fmpy": "fmu",
     "pythonfmu": "fmu",
     "rerun": "viz",
+    "rerun_notebook": "notebook",
     "libcosimpy": "dev",
 }
 COMMANDS = {"boreprop_viz": "viz", "boreprop_fmu": "fmu"}  # a command's package: its own extra, which brings [cli] too
@@ -35,6 +36,11 @@ def fail(message: str) -> NoReturn:
     """End the process with exit status 2 and `message` as one line on stderr."""
     print("error:", " ".join(message.split()), file=sys.stderr)
     sys.exit(2)
+
+
+def warn(message: str) -> None:
+    """Tell of something that is not as asked, on one line of stderr; the command goes on."""
+    print("warning:", " ".join(message.split()), file=sys.stderr)
 
 
 def fail_without(error: ModuleNotFoundError) -> NoReturn:

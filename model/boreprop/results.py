@@ -2,9 +2,13 @@
 
 A CSV file is read and written with the standard library alone; its case stands beside it (run.csv, run.case.toml).
 A Parquet file, with the extra [parquet], holds its case in its metadata.
+
+Files of other tools have our columns under longer names: with the path of the component before (OMSimulator and fmpy,
+model.root.borehole.bit_tilt) or what the variable is behind (libcosim up to 0.9, bit_tilt [6 real output]).
 """
 
 import os
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from csv import reader
@@ -84,6 +88,8 @@ def read_trajectory(path: str | Path, case: Case | None = None) -> Trajectory:
     """Read a run written by `write_trajectory` or by any FMI tool.
 
     Columns that are not in the table of variables are left out; of those that are, only drilled_length must be there.
+    In a file of a system, those of the component that has drilled_length are read. Several may have it, as an input
+    say: then the one that has every output that the others have.
 
     Parameters
     ----------
@@ -95,8 +101,8 @@ def read_trajectory(path: str | Path, case: Case | None = None) -> Trajectory:
     Raises
     ------
     InputError, TableError
-        If the file cannot be read, drilled_length is missing, a row is ragged, a value is not a finite number, or the
-        case has another number of stabilizers.
+        If the file cannot be read, drilled_length is missing or that of several components, a row is ragged, a value is
+        not a finite number, or the case has another number of stabilizers.
     """
     path = Path(path)
     read = {".csv": _read_csv, ".parquet": _read_parquet}.get(path.suffix)
@@ -131,11 +137,29 @@ def _variable(scalar_name: str) -> str:
     return scalar_name.partition("[")[0]
 
 
-KNOWN = {"time", *(variable.name for variable in INPUTS + OUTPUTS)}
+IO_NAMES = {variable.name for variable in INPUTS + OUTPUTS}
+OUTPUT_NAMES = {variable.name for variable in OUTPUTS}
+# component.name [reference type causality]
+HEADING = re.compile(r"(?:(?P<component>.+)\.)?(?P<name>[^.\s]+)(?: \[\d+ [\w ]+\])?")
 
 
-def _known(names: list[str]) -> list[str]:
-    return [name for name in names if _variable(name) in KNOWN]
+def _ours(path: Path, headings: list[str]) -> dict[str, str]:
+    """Headings in the file of the time and of one borehole's inputs and outputs, by their scalar names."""
+    components: dict[str, dict[str, str]] = {}
+    for heading in headings:
+        match = HEADING.fullmatch(heading)
+        if match and _variable(match["name"]) in IO_NAMES:
+            components.setdefault(match["component"] or "", {}).setdefault(match["name"], heading)
+    drilling = [names for names in components.values() if "drilled_length" in names]
+    if not drilling:
+        raise InputError(f"{path}: must have a column 'drilled_length', got {headings}")
+    outputs = [{name for name in names if _variable(name) in OUTPUT_NAMES} for names in drilling]
+    ours = [names for names, own in zip(drilling, outputs, strict=True) if own >= set().union(*outputs)]
+    if len(ours) != 1:
+        found = ", ".join(names["drilled_length"] for names in drilling)
+        raise InputError(f"{path}: must have drilled_length of one borehole, got {found}")
+    times = [heading for heading in headings if heading.lower() == "time"]
+    return dict(zip(("time",), times, strict=False)) | ours[0]
 
 
 def _typed(trajectory: Trajectory) -> dict[str, NDArray[Any]]:
@@ -160,10 +184,11 @@ def _write_csv(trajectory: Trajectory, path: Path) -> None:
 
 
 def _read_csv(path: Path, case: Case | None) -> Trajectory:
-    read_columns(path, ("drilled_length",))  # so the file is sound, and the next line can be short
+    read_columns(path, ())  # so the file is sound, and the next lines can be short
     with open(path, newline="", encoding="utf-8-sig") as file:
-        names = _known(next(filter(None, reader(file))))
-    columns = {name: np.array(column) for name, column in zip(names, read_columns(path, tuple(names)), strict=True)}
+        headings = [heading.strip() for heading in next(filter(None, reader(file)), [])]
+    ours = _ours(path, headings)
+    columns = {name: np.array(c) for name, c in zip(ours, read_columns(path, tuple(ours.values())), strict=True)}
     if case is None and case_path(path).exists():
         case = load_case(case_path(path))
     return Trajectory(columns, case)
@@ -180,15 +205,13 @@ def _read_parquet(path: Path, case: Case | None) -> Trajectory:
     pyarrow, parquet = _pyarrow(path)
     try:
         with parquet.ParquetFile(path) as file:
-            names = _known(file.schema_arrow.names)
-            table, metadata = file.read(columns=names), file.schema_arrow.metadata or {}
+            ours = _ours(path, file.schema_arrow.names)
+            table, metadata = file.read(columns=list(ours.values())), file.schema_arrow.metadata or {}
     except (OSError, pyarrow.ArrowException) as error:
         raise InputError(f"{path}: must be a readable Parquet file, got: {error}") from error
-    if "drilled_length" not in names:
-        raise InputError(f"{path}: must have a column 'drilled_length', got {names}")
     if case is None and CASE_KEY in metadata:
         case = parse_case(metadata[CASE_KEY].decode(), path)
-    return Trajectory({name: _numbers(path, name, table.column(name)) for name in names}, case)
+    return Trajectory({name: _numbers(path, name, table.column(heading)) for name, heading in ours.items()}, case)
 
 
 def _numbers(path: Path, name: str, column: Any) -> NDArray[np.float64]:

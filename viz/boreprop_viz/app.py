@@ -1,22 +1,15 @@
-"""The command `boreprop-view`: draws a run with Rerun."""
+"""The command `boreprop-view`: draws runs with Rerun."""
 
-import shutil
-import socket
-import subprocess
-from importlib.resources import files
+from collections import Counter
 from pathlib import Path
-from time import monotonic, sleep
 from typing import Annotated, NoReturn
 
 from boreprop import console
-from boreprop.case import InputError, load_case
-from boreprop.console import typer
+from boreprop.case import InputError, load_case, read_schedule, read_survey
+from boreprop.console import positive, typer
 from boreprop.results import SUFFIXES, Trajectory, read_trajectory
 
-STARTS_WITHIN = 30.0  # s, a viewer
-LOOPBACK = "127.0.0.1"  # Rerun's own default is every network that the machine is in
-
-app = console.new_app("A run to look at in Rerun: vertical section, bit frame, plots over the drilled length.")
+app = console.new_app("Runs to look at in Rerun: vertical section, bit frame, ripple, plots over the drilled length.")
 
 
 def main() -> NoReturn:
@@ -26,13 +19,29 @@ def main() -> NoReturn:
 
 @app.command()
 def view(
-    source: Annotated[Path, typer.Argument(metavar="RUN.csv|RUN.parquet|CASE.toml", help="A run, or a case to run.")],
+    sources: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="RUN.csv|RUN.parquet|CASE.toml|Borehole.fmu…",
+            help="Runs of any FMI tool, cases to run, FMUs to run and show while they run; several as overlays.",
+        ),
+    ],
     case: Annotated[
-        Path | None, typer.Option(metavar="CASE.toml", help="The run's case, if not the one that it comes with.")
+        Path | None, typer.Option(metavar="CASE.toml", help="The runs' case, if not the one that they come with.")
     ] = None,
     fmu: Annotated[
-        Path | None, typer.Option(metavar="Borehole.fmu", help="The FMU that made the run, with its case.")
+        Path | None, typer.Option(metavar="Borehole.fmu", help="The FMU that made the runs, with its case.")
     ] = None,
+    plan: Annotated[
+        Path | None, typer.Option(metavar="PLAN.csv", help="The planned hole: measured_depth, inclination_deg.")
+    ] = None,
+    schedule: Annotated[
+        Path | None, typer.Option(metavar="S.csv", help="RSS force over drilled length, for an FMU.")
+    ] = None,
+    step: Annotated[
+        float | None, typer.Option(parser=positive, metavar="S", help="Communication step, s, for an FMU.")
+    ] = None,
+    stop: Annotated[float | None, typer.Option(parser=positive, metavar="T", help="End, s, for an FMU.")] = None,
     save: Annotated[Path | None, typer.Option(metavar="X.rrd", help="The recording to write.")] = None,
     spawn: Annotated[bool, typer.Option("--spawn", help="Show it in a new viewer; what happens by default.")] = False,
     serve: Annotated[bool, typer.Option("--serve", help="Show it in the browser, until Ctrl-C.")] = False,
@@ -41,30 +50,54 @@ def view(
     ] = None,
     _version: console.Version = False,
 ) -> None:
-    """Draw a run; a case is run first."""
-    from .record import record
+    """Draw runs; a case is run first, an FMU while it is drawn."""
+    from .record import draw
+    from .sinks import open_recording
+    from .source import Source, live, stored
 
     if save is not None:
         console.check_output(save, (".rrd",))
     if case is not None and fmu is not None:
         raise InputError("--case and --fmu: must be at most one, got both")
-    if source.suffix == ".toml" and (case or fmu):
-        raise InputError(f"{source}: must be a run to be given a case, got a case file")
     if (viewers := spawn + serve + (connect is not None)) > 1:
         raise InputError(f"--spawn, --serve and --connect: must be at most one, got {viewers}")
-    run = load_run(source, case, fmu)
-    viewer = None
-    if serve or spawn or (save is None and connect is None):
-        viewer, connect = start_viewer(in_browser=serve)
-    with console.progress("drawing", len(run)) as done:
+    for option, value in (("--schedule", schedule), ("--step", step), ("--stop", stop)):
+        if value is not None and not any(source.suffix == ".fmu" for source in sources):
+            raise InputError(f"{option}: must come with an FMU to run, got {', '.join(map(str, sources))}")
+    forces = None if schedule is None else read_schedule(schedule)
+    planned = None if plan is None else read_survey(plan)
+
+    def open_source(name: str, path: Path) -> Source:
+        if path.suffix == ".fmu":
+            from boreprop_fmu.drive import Run
+
+            return live(name, Run(path, forces, step=step, stop=stop), planned)
+        run = load_run(path, case, fmu)
         try:
-            record(run, save=save, connect=connect, progress=done)
+            return stored(name, run, planned)
         except InputError as error:
-            raise InputError(f"{source}: {error}") from error
+            raise InputError(f"{path}: {error}") from error
+
+    opened = [open_source(name, path) for name, path in zip(names(sources), sources, strict=True)]
+    rows = sum(source.rows for source in opened)
+    spawn = spawn or (save is None and not serve and connect is None)
+    with (
+        open_recording(save=save, spawn=spawn, serve=serve, connect=connect) as rec,
+        console.progress("drawing", rows) as done,
+    ):
+        draw(rec, opened, planned, done)
     if save is not None:
-        print(f"{save}: {len(run)} rows, {save.stat().st_size / 1e6:.1f} MB")
-    if serve and viewer is not None:
-        viewer.wait()
+        print(f"{save}: {rows} rows, {save.stat().st_size / 1e6:.1f} MB")
+
+
+def names(sources: list[Path]) -> list[str]:
+    """What the runs are called: as their files, without what is not needed to tell them apart."""
+    for short in (lambda path: path.stem, lambda path: path.name, str):
+        found = [short(source) for source in sources]
+        if len(set(found)) == len(found):
+            return found
+    [(twice, _)] = Counter(sources).most_common(1)
+    raise InputError(f"{twice}: must be given once, got it again")
 
 
 def load_run(source: Path, case: Path | None, fmu: Path | None) -> Trajectory:
@@ -72,11 +105,13 @@ def load_run(source: Path, case: Path | None, fmu: Path | None) -> Trajectory:
     if source.suffix == ".toml":
         from boreprop.simulation import simulate
 
+        if case or fmu:
+            raise InputError(f"{source}: must be a run to be given a case, got a case file")
         to_run = load_case(source)
         with console.progress("drilling", to_run.length) as drilled:
             return simulate(to_run, progress=drilled)
     if source.suffix not in SUFFIXES:
-        raise InputError(f"{source}: must end in {', '.join(SUFFIXES)} or .toml, got {source.suffix!r}")
+        raise InputError(f"{source}: must end in {', '.join(SUFFIXES)}, .fmu or .toml, got {source.suffix!r}")
     if fmu is not None:
         from boreprop_fmu.drive import read_packed_case
 
@@ -85,27 +120,6 @@ def load_run(source: Path, case: Path | None, fmu: Path | None) -> Trajectory:
             raise InputError(f"{fmu}: must hold its case, as ours do, got an FMU without")
         return read_trajectory(source, packed)
     return read_trajectory(source, None if case is None else load_case(case))
-
-
-def start_viewer(in_browser: bool) -> tuple[subprocess.Popen[bytes], str]:
-    """Start a Rerun viewer on this machine; returns its process and its address, once it listens."""
-    with socket.socket() as probe:
-        probe.bind((LOOPBACK, 0))
-        port = probe.getsockname()[1]
-    options = ["--web-viewer", "--web-viewer-port", "0"] if in_browser else ["--hide-welcome-screen"]
-    # the binary itself: the command is a wrapper whose child outlives it
-    program = shutil.which("rerun", path=str(files("rerun_cli"))) or "rerun"
-    viewer = subprocess.Popen([program, "--bind", LOOPBACK, "--port", str(port), *options])
-    deadline = monotonic() + STARTS_WITHIN
-    while viewer.poll() is None and monotonic() < deadline:
-        try:
-            socket.create_connection((LOOPBACK, port), timeout=1.0).close()
-        except OSError:
-            sleep(0.1)
-        else:
-            return viewer, f"rerun+http://{LOOPBACK}:{port}/proxy"
-    viewer.kill()
-    raise InputError("the Rerun viewer must start, for which it needs a screen: use --save, --serve or --connect")
 
 
 if __name__ == "__main__":

@@ -1,99 +1,104 @@
-"""A whole run into a recording: to a file, to a viewer, or both."""
+"""Runs into a recording: to a file, to a viewer, or both."""
 
-import socket
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from urllib.parse import urlsplit
 
 import numpy as np
 import rerun as rr
 
-from boreprop.case import Case, InputError
-from boreprop.results import Trajectory, replacing
+from boreprop.core.hole import Survey
+from boreprop.results import Trajectory
+from boreprop_fmu.drive import Run
 
+from .card import log_card
 from .layout import blueprint
-from .stream import RunStream
-from .style import scales
+from .scene import bit_positions, planned_hole
+from .sinks import open_recording
+from .source import Source, live, stored
+from .stream import RunStream, log_furniture, log_grid, log_names, log_plan, make_tracks
+from .style import look
 
-APPLICATION = "boreprop"
-BATCH = 1000  # rows
+Runs = Trajectory | Mapping[str, Trajectory | Run]
 
 
 def record(
-    run: Trajectory,
+    runs: Runs,
     *,
+    plan: Survey | None = None,
     save: str | Path | None = None,
+    spawn: bool = False,
+    serve: bool = False,
     connect: str | None = None,
     progress: Callable[[float], None] = lambda _: None,
 ) -> None:
-    """Draw a run into a file, a viewer, or both.
+    """Draw runs into a file, a viewer, or both.
 
     Parameters
     ----------
-    run
-        The run, with its case.
+    runs
+        A run with its case, or several by name. A `Run` of an FMU is drilled while it is drawn.
+    plan
+        The planned hole, its measured depth counted as the survey's.
     save
-        The .rrd file to write. Nothing of that name changes before everything is written.
-    connect
-        Address of a Rerun viewer, rerun+http://…/proxy.
+        The .rrd file to write. Nothing of that name changes before everything is written, or stopped by Ctrl-C.
+    spawn, serve, connect
+        Show it in a new viewer, in the browser, or in the viewer at an address rerun+http://HOST:PORT/proxy.
     progress
         Called with the number of rows done.
 
     Raises
     ------
     InputError
-        If the run lacks its case or a column, or its drilled length decreases.
+        If a run lacks its case or a column, its drilled length decreases, its FMU fails, or the plan ends above it.
     ConnectionError
-        If there is no viewer at `connect`.
+        If there is no viewer at `connect`, and nothing to save.
     OSError
         If the file cannot be written.
     """
-    case = check(run)
-    look = scales(run, case)
-    with ExitStack() as stack:
-        sinks: list[rr.FileSink | rr.GrpcSink] = []
-        if connect is not None:
-            sinks.append(viewer_sink(connect))
-        if save is not None:
-            sinks.append(rr.FileSink(stack.enter_context(replacing(Path(save)))))
-        rec = rr.RecordingStream(APPLICATION)
-        rec.set_log_time_enabled(False)
-        rec.set_sinks(*sinks, default_blueprint=blueprint(look))
-        stack.callback(rec.disconnect)  # this writes the file's end, before it takes its name
-        stream = RunStream(rec, case, look)
-        for done, rows in batches(run):
-            stream.send(rows)
+    sources = list(find_sources(runs, plan))
+    with open_recording(save=save, spawn=spawn, serve=serve, connect=connect) as rec:
+        draw(rec, sources, plan, progress)
+
+
+def find_sources(runs: Runs, plan: Survey | None = None) -> Iterator[Source]:
+    """What there is to draw of `runs`."""
+    for name, run in {"run": runs}.items() if isinstance(runs, Trajectory) else runs.items():
+        yield live(name, run, plan) if isinstance(run, Run) else stored(name, run, plan)
+
+
+def draw(
+    rec: rr.RecordingStream,
+    sources: Sequence[Source],
+    plan: Survey | None = None,
+    progress: Callable[[float], None] = lambda _: None,
+) -> None:
+    """Log everything there is of some runs, and the blueprint, into an open recording."""
+    planned = None if plan is None else planned_hole(plan, sources[0].case.survey.measured_depth[-1])
+    ahead = [source.likely_positions() for source in sources] + ([] if planned is None else [planned.position])
+    seen = look(
+        [source.beginning for source in sources],
+        whole=not any(source.live for source in sources),
+        section=np.concatenate(ahead),
+    )
+    log_furniture(rec, seen, [source.case for source in sources])
+    if planned is not None:
+        log_plan(rec, planned)
+    tracks = make_tracks(rec, seen, sources)
+    if len(tracks) > 1:
+        log_names(rec, seen, tracks)
+    rec.send_blueprint(blueprint(seen, tracks))
+    verdicts = ["drilling" if source.live else "" for source in sources]
+    log_card(rec, sources, verdicts)
+    done = 0
+    for i, (source, track) in enumerate(zip(sources, tracks, strict=True)):
+        stream = RunStream(track)
+        for stretch in source.stretches:
+            if not seen.section.hold(bit_positions(stretch.rows)):
+                seen = seen.around(bit_positions(stretch.rows))
+                log_grid(rec, seen)
+                rec.send_blueprint(blueprint(seen, tracks))
+            stream.send(stretch)
+            done += len(stretch.rows)
             progress(done)
-        rec.flush()
-
-
-def viewer_sink(address: str) -> rr.GrpcSink:
-    """The way to the viewer at `address`; `ConnectionError` if there is none, for which Rerun would wait for ever."""
-    try:
-        sink = rr.GrpcSink(address)
-        place = urlsplit(address)
-        socket.create_connection((place.hostname, place.port or 9876), timeout=5.0).close()
-    except (RuntimeError, OSError, ValueError) as error:
-        message = f"the viewer must listen at rerun+http://HOST:PORT/proxy, got {address!r}: {error}"
-        raise ConnectionError(message) from error
-    return sink
-
-
-def check(run: Trajectory) -> Case:
-    """The case of a run that can be drawn; `InputError` if it cannot."""
-    if run.case is None:
-        raise InputError("the run must have its case, got none: give it with --case or --fmu")
-    length = run["drilled_length"]
-    back = np.flatnonzero(np.diff(length) < 0.0)
-    if back.size:
-        raise InputError(f"drilled_length: row {back[0] + 2}: must not decrease, got {length[back[0] + 1]:g}")
-    return run.case
-
-
-def batches(run: Trajectory) -> Iterator[tuple[int, Trajectory]]:
-    """Consecutive rows of a run, and how many there have been with them."""
-    for first in range(0, len(run), BATCH):
-        columns = {name: column[first : first + BATCH] for name, column in run.columns.items()}
-        rows = Trajectory(columns, run.case)
-        yield first + len(rows), rows
+        verdicts[i] = stream.verdict()
+        log_card(rec, sources, verdicts)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from boreprop.case import Case
+from boreprop.case import Case, InputError
 from boreprop.core.assembly import scale
 from boreprop.core.beam import Beam
 from boreprop.core.hole import Survey
@@ -22,7 +22,9 @@ from boreprop.results import Trajectory
 Array = NDArray[np.float64]
 
 POINTS_ALONG_BHA = 48
+POINTS_OF_PLAN = 1000
 REACH_ABOVE_BHA = 1.15  # how far up the hole is drawn in the bit frame, over the length of the BHA
+AHEAD = 0.2  # how far ahead of the bit the directions of bit and hole are drawn, over the length of the BHA
 
 
 def path(length: Array, inclination: Array) -> Array:
@@ -52,6 +54,12 @@ class Hole:
         ahead = length > self.length[-1]
         return Hole(np.append(self.length, length[ahead]), np.concatenate((self.position, position[ahead])))
 
+    def chord_inclination(self, length: Array, chord: float) -> Array:
+        """Inclination of the chord from `chord` metres before to the given lengths, (m,)."""
+        x, z = (self.at(length) - self.at(length - chord)).T
+        inclination: Array = np.arctan2(x, z)
+        return inclination
+
     def since(self, length: float) -> "Hole":
         """The end of this hole from the last point at or before `length` on."""
         first = max(int(np.searchsorted(self.length, length, side="right")) - 1, 0)
@@ -65,6 +73,31 @@ def existing_hole(survey: Survey, reach: float, spacing: float) -> Hole:
     length = np.union1d(station, np.linspace(top, 0.0, int(np.ceil(-top / spacing)) + 1))
     position = path(length, np.interp(length, station, np.asarray(survey.inclination)))
     return Hole(length, position - position[-1])
+
+
+def planned_hole(plan: Survey, start: float) -> Hole:
+    """The hole that a plan asks for from its first station on, placed where it should be when drilling starts.
+
+    Raises
+    ------
+    InputError
+        If the plan does not reach the measured depth `start`, m, at which it does.
+    """
+    depth = np.asarray(plan.measured_depth)
+    if not depth[0] <= start <= depth[-1]:
+        raise InputError(
+            f"measured_depth: must enclose {start:g} m, where drilling starts, got {depth[0]:g} to {depth[-1]:g}"
+        )
+    length = np.union1d(depth - start, np.linspace(depth[0] - start, depth[-1] - start, POINTS_OF_PLAN))
+    length = np.union1d(length, 0.0)
+    hole = Hole(length, path(length, np.interp(length, depth - start, np.asarray(plan.inclination))))
+    return Hole(length, hole.position - hole.at(np.array(0.0)))
+
+
+def turning(hole: Hole, length: Array, over: float, chord: float) -> Array:
+    """Change of inclination per length over the last `over` metres, (m,), rad/m; inclinations are those of chords."""
+    change = hole.chord_inclination(length, chord) - hole.chord_inclination(length - over, chord)
+    return change / over
 
 
 def bit_positions(rows: Trajectory) -> Array:
@@ -172,6 +205,11 @@ class Shapes:
         return self.rows["bit_inclination"] - self.mean_inclination
 
     @property
+    def hole_turn(self) -> Array:
+        """Angle from the frame's axis to the direction in which the hole goes on, (m,)."""
+        return self.rows["borehole_inclination"] - self.mean_inclination
+
+    @property
     def bha_in_section(self) -> Array:
         """Bit and stabilizers, in the middle of the BHA, in the vertical plane, (m, n+1, 2)."""
         at = np.append(0, self.frame.at_stabilizer)
@@ -188,6 +226,11 @@ class Bounds:
     x: tuple[float, float]
     y: tuple[float, float]
 
+    def hold(self, position: Array) -> bool:
+        """Whether all positions (N, 2) are shown."""
+        low, high = np.transpose((self.x, self.y))
+        return bool(np.all((position >= low) & (position <= high)))
+
 
 def section_bounds(position: Array, around: float) -> Bounds:
     """The vertical section around positions (N, 2), with `around` metres to spare, or a tenth."""
@@ -199,4 +242,4 @@ def section_bounds(position: Array, around: float) -> Bounds:
 
 def frame_bounds(reach: float) -> Bounds:
     """The bit frame of a BHA that is `reach` metres long."""
-    return Bounds((-0.45 * reach, 0.45 * reach), (-1.05 * REACH_ABOVE_BHA * reach, 0.14 * reach))
+    return Bounds((-0.45 * reach, 0.45 * reach), (-1.05 * REACH_ABOVE_BHA * reach, (AHEAD + 0.06) * reach))

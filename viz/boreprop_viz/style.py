@@ -1,15 +1,17 @@
-"""How a recording looks: colours and plots, and the scales and ranges that suit a run."""
+"""How a recording looks: colours, strokes, plots and lanes, and the scales and ranges that suit its runs."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import chain
 from math import degrees, floor, log10, pi
 
 import numpy as np
 
-from boreprop.case import Case
+from boreprop.case import Case, InputError
 from boreprop.core.variables import BY_NAME
 from boreprop.results import Trajectory
 
-from .scene import Array, Bounds, bit_positions, frame_bounds, section_bounds
+from .scene import Array, Bounds, frame_bounds, section_bounds
 
 Colour = tuple[int, int, int]
 # Okabe and Ito's colours: told apart with any colour vision
@@ -17,104 +19,212 @@ ORANGE, SKY_BLUE, GREEN, YELLOW = (230, 159, 0), (86, 180, 233), (0, 158, 115), 
 VERMILION, PURPLE = (213, 94, 0), (204, 121, 167)
 WHITE, GREY, FAINT, GROUND = (240, 240, 240), (150, 155, 160), (52, 58, 66), (20, 23, 28)
 BY_STABILIZER = (VERMILION, PURPLE, YELLOW, SKY_BLUE, ORANGE)
+BY_RUN = (ORANGE, SKY_BLUE, GREEN, PURPLE, YELLOW, VERMILION)
 
-STRIPS: dict[str, tuple[Colour, float, float]] = {  # colour, width in points of the screen, layer
-    "vertical_section/grid": (FAINT, 1.0, 0.0),
-    "vertical_section/existing_hole": (GREY, 3.0, 1.0),
-    "vertical_section/drilled_hole": (ORANGE, 3.0, 2.0),
-    "vertical_section/bha": (SKY_BLUE, 4.0, 3.0),
-    "bit_frame/places": (FAINT, 1.0, 0.0),
-    "bit_frame/scale": (GREY, 2.0, 0.0),
-    "bit_frame/hole_axis": (GREY, 1.0, 1.0),
-    "bit_frame/walls": (ORANGE, 3.0, 2.0),
-    "bit_frame/bha": (SKY_BLUE, 4.0, 3.0),
-    "bit_frame/stabilizers": (SKY_BLUE, 6.0, 4.0),
-    "bit_frame/bit": (WHITE, 3.0, 5.0),
+
+def shade(colour: Colour, lightness: float) -> Colour:
+    """`colour` on its way to white, which it is at a lightness of 1."""
+    red, green, blue = (round(c + lightness * (w - c)) for c, w in zip(colour, WHITE, strict=True))
+    return red, green, blue
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """How lines are drawn: by what they show when one run is shown, by the run's own colour when there are several."""
+
+    colour: Colour
+    width: float  # points of the screen
+    layer: float
+    lightness: float = 0.0  # of the run's own colour
+
+    def of(self, run: Colour) -> "Stroke":
+        """The stroke for one of several runs."""
+        return replace(self, colour=shade(run, self.lightness))
+
+
+FURNITURE = {  # what belongs to no run
+    "vertical_section/grid": Stroke(FAINT, 1.0, 0.0),
+    "vertical_section/plan": Stroke(WHITE, 1.5, 1.5),
+    "bit_frame/places": Stroke(FAINT, 1.0, 0.0),
+    "bit_frame/scale": Stroke(GREY, 2.0, 0.0),
+}
+STROKES = {
+    "vertical_section/existing_hole": Stroke(GREY, 3.0, 1.0, lightness=0.6),
+    "vertical_section/drilled_hole": Stroke(ORANGE, 3.0, 2.0),
+    "vertical_section/bha": Stroke(SKY_BLUE, 4.0, 3.0, lightness=0.4),
+    "bit_frame/walls": Stroke(ORANGE, 3.0, 2.0),
+    "bit_frame/bha": Stroke(SKY_BLUE, 4.0, 3.0, lightness=0.4),
+    "bit_frame/stabilizers": Stroke(SKY_BLUE, 6.0, 4.0, lightness=0.4),
+    "bit_frame/bit": Stroke(WHITE, 3.0, 5.0, lightness=0.7),
+    "bit_frame/tilt/limits": Stroke(GREY, 1.0, 1.0),
+    "bit_frame/tilt/hole_axis": Stroke(ORANGE, 2.0, 2.0),
+    "bit_frame/tilt/bit_axis": Stroke(WHITE, 3.0, 3.0, lightness=0.7),
 }
 
-UNITS = {"rad": ("°", 180 / pi), "N": ("kN", 1e-3)}
+
+@dataclass(frozen=True)
+class Unit:
+    """The unit in which a quantity is shown, and the value in it over the SI value."""
+
+    name: str
+    factor: float
+
+
+DEGREES, KILONEWTON = Unit("°", 180 / pi), Unit("kN", 1e-3)
+DEGREES_PER_30_M = Unit("°/30 m", 30 * 180 / pi)
+METRES_PER_HOUR = Unit("m/h", 3600.0)
 
 
 @dataclass(frozen=True)
 class Plot:
-    """One plot over the drilled length: variables of one unit, and the colours of their curves in turn."""
+    """One plot over the drilled length: columns of one unit, and the colours of their curves in turn."""
 
     title: str
-    variables: tuple[str, ...]
+    unit: Unit
+    columns: tuple[str, ...]
     colours: tuple[Colour, ...]
 
-    @property
-    def unit(self) -> str:
-        """The unit shown."""
-        return UNITS[BY_NAME[self.variables[0]].unit][0]
-
-    @property
-    def factor(self) -> float:
-        """The value shown over the SI value."""
-        return UNITS[BY_NAME[self.variables[0]].unit][1]
-
-    @property
-    def legend(self) -> bool:
-        """Whether the title does not say it all."""
-        return len(self.colours) > 1
-
     def names(self, n: int) -> list[str]:
-        """Scalars shown for `n` stabilizers."""
-        return [name for variable in self.variables for name in BY_NAME[variable].names(n)]
+        """Scalars shown for `n` stabilizers; a column that is in no table is one of its own."""
+        scalars = [BY_NAME[column].names(n) if column in BY_NAME else [column] for column in self.columns]
+        return list(chain.from_iterable(scalars))
+
+    def curves(self, runs: Sequence[Trajectory]) -> list[Array]:
+        """What there is to show of some runs, in SI units."""
+        return [run.columns[name] for run in runs for name in self.names(run.n) if name in run.columns]
 
 
+BUILD_LENGTH = 30.0  # m: build rates are told over this length, and per it
 PLOTS = {
-    "inclination": Plot("Inclination", ("borehole_inclination", "bit_inclination"), (ORANGE, SKY_BLUE)),
-    "bit_tilt": Plot("Bit tilt ψ, limits ±{tilt_limit:.3g}", ("bit_tilt",), (SKY_BLUE,)),
-    "stabilizer_force": Plot("Contact forces, + from the low side", ("stabilizer_force",), BY_STABILIZER),
-    "rss_force": Plot("RSS force, + builds", ("rss_force",), (GREEN,)),
+    "inclination": Plot(
+        "Inclination",
+        DEGREES,
+        ("borehole_inclination", "bit_inclination", "planned_inclination"),
+        (ORANGE, SKY_BLUE, WHITE),
+    ),
+    "build_rate": Plot(
+        "Build rate over 30 m, dogleg severity over ℓ₁",
+        DEGREES_PER_30_M,
+        ("dogleg_severity", "build_rate"),
+        (GREY, GREEN),
+    ),
+    "bit_tilt": Plot("Bit tilt and its limits", DEGREES, ("bit_tilt",), (SKY_BLUE,)),
+    "stabilizer_force": Plot("Contact forces, + from the low side", KILONEWTON, ("stabilizer_force",), BY_STABILIZER),
+    "bit_lateral_force": Plot("Bit side force", KILONEWTON, ("bit_lateral_force",), (SKY_BLUE,)),
+    "rss_force": Plot("RSS force, + builds", KILONEWTON, ("rss_force",), (GREEN,)),
+    "active_weight_on_bit": Plot("Active weight on bit", KILONEWTON, ("active_weight_on_bit",), (YELLOW,)),
+    "rate_of_penetration": Plot("Rate of penetration", METRES_PER_HOUR, ("rate_of_penetration",), (PURPLE,)),
+}
+TABS = {
+    "Hole": ("inclination", "build_rate", "bit_tilt"),
+    "Forces": ("stabilizer_force", "bit_lateral_force", "rss_force"),
+    "Drilling": ("active_weight_on_bit", "rate_of_penetration"),
+}
+
+Lane = dict[int, tuple[str, Colour]]  # what a whole number of the table means, and its colour
+LANES: dict[str, Lane] = {
+    "stabilizer_contact": {1: ("low", ORANGE), -1: ("high", SKY_BLUE), 0: ("free", FAINT)},
+    "bit_tilt_saturation": {1: ("+ψ*", VERMILION), -1: ("−ψ*", PURPLE), 0: ("free", FAINT)},
 }
 
 
 def curve_label(name: str) -> str:
-    """Symbol, with its index, and name in words of a scalar of the table."""
-    variable, _, index = name.rstrip("]").partition("[")
-    symbol = BY_NAME[variable].symbol
-    return f"{symbol.replace('i', index) if index else symbol}  {variable.replace('_', ' ')}"
+    """Symbol, with its index, and name in words of a scalar of the table; of any other column its name in words."""
+    column, _, index = name.rstrip("]").partition("[")
+    words = column.replace("_", " ")
+    if column not in BY_NAME:
+        return words
+    symbol = BY_NAME[column].symbol
+    return f"{symbol.replace('i', index) if index else symbol}  {words}"
 
 
 @dataclass(frozen=True)
-class Scales:
-    """What is fixed for a recording."""
+class Look:
+    """What is fixed for a recording before its rows are drawn."""
 
     section: Bounds  # of the vertical section
     frame: Bounds  # of the bit frame
     lateral: float  # what the bit frame's lateral axis is multiplied by
     newtons_per_metre: float  # of an arrow
-    ranges: dict[str, tuple[float, float]]  # of the plots that there are, in the unit shown
-    tilt_limit: float  # ψ*, degrees
+    window: float  # m of hole up to the cursor that ripple and lanes show
+    ripple: float  # mm, the largest that its plot shows
+    start: float | None  # m, the measured depth where drilling starts, if it is the same for all
+    ranges: dict[str, tuple[float, float] | None]  # of the plots that there are, in their unit; None: as the rows come
+
+    def around(self, position: Array) -> "Look":
+        """The look with a vertical section twice as wide or more, that shows positions (N, 2) too."""
+        shown = np.concatenate((np.transpose((self.section.x, self.section.y)), position))
+        return replace(self, section=section_bounds(shown, around=float(np.ptp(shown, axis=0).max()) / 2))
 
 
-def scales(run: Trajectory, case: Case) -> Scales:
-    """Scales for a run.
+WAVES_LENGTH = 16.0  # ℓ₁ of hole in view at once: some eleven waves
+FULL_RIPPLE = 0.35  # ψ* ℓ₁, a little more than a hole has that ripples from limit to limit
+
+
+def look(runs: Sequence[Trajectory], *, whole: bool, section: Array) -> Look:
+    """The look that suits runs of known case.
 
     In the bit frame the walls are about half as far apart as the BHA is long, and the largest arrow is a seventh of it.
+
+    Parameters
+    ----------
+    runs
+        The runs, or their beginnings, with all columns that are shown.
+    whole
+        Whether they are whole. If not, the cases say how long arrows are, and the plots have no ranges yet.
+    section
+        Positions that the vertical section should show, (N, 2).
     """
-    reach = case.bha.stabilizer_positions[-1]
-    forces = np.column_stack((run.stack("stabilizer_force"), run["rss_force"]))
-    curves = {entity: np.array([run[name] for name in plot.names(run.n)]) for entity, plot in PLOTS.items()}
-    ranges = {entity: plot_range(plot, curves[entity]) for entity, plot in PLOTS.items() if curves[entity].size}
-    limit = degrees(case.bit.tilt_limit)
-    return Scales(
-        section=section_bounds(bit_positions(run), around=2 * reach),
+    cases = [case_of(run) for run in runs]
+    reach = max(case.bha.stabilizer_positions[-1] for case in cases)
+    largest = max(largest_force(run) for run in runs) if whole else max(likely_force(case) for case in cases)
+    curves = {name: plot.curves(runs) for name, plot in PLOTS.items()}
+    room = ROOM_FOR_LEGEND if len(runs) == 1 else 0.0
+    ranges = {name: plot_range(PLOTS[name], found, room) if whole else None for name, found in curves.items() if found}
+    starts = {case.survey.measured_depth[-1] for case in cases}
+    limit = 1.15 * degrees(max(case.bit.tilt_limit for case in cases))
+    return Look(
+        section=section_bounds(section, around=2 * reach),
         frame=frame_bounds(reach),
-        lateral=max(1.0, round_down(0.6 * reach / case.bit_diameter)),
-        newtons_per_metre=max(float(np.abs(forces).max()), 1.0) / (reach / 7),
-        ranges=ranges | {"bit_tilt": (-1.15 * limit, 1.15 * limit)},
-        tilt_limit=limit,
+        lateral=max(1.0, round_down(0.6 * reach / max(case.bit_diameter for case in cases))),
+        newtons_per_metre=max(largest, 1.0) / (reach / 7),
+        window=WAVES_LENGTH * max(case.bha.length_scale for case in cases),
+        ripple=1000 * FULL_RIPPLE * max(case.bit.tilt_limit * case.bha.length_scale for case in cases),
+        start=starts.pop() if len(starts) == 1 else None,
+        ranges=ranges | {"bit_tilt": (-limit, limit)},
     )
 
 
-def plot_range(plot: Plot, curves: Array) -> tuple[float, float]:
-    """Axis of a plot of `curves`, (curves, rows), with room above for the legend."""
-    low, high = plot.factor * float(curves.min()), plot.factor * float(curves.max())
+def case_of(run: Trajectory) -> Case:
+    """The case of a run; `InputError` if it has none."""
+    if run.case is None:
+        raise InputError("the run must have its case, got none: give it with --case or --fmu")
+    return run.case
+
+
+ARROWS = ("stabilizer_force", "bit_lateral_force", "rss_force")
+
+
+def largest_force(run: Trajectory) -> float:
+    """The largest force of a run that is drawn, N."""
+    columns = [run.columns[name] for arrow in ARROWS for name in BY_NAME[arrow].names(run.n) if name in run.columns]
+    return max(float(np.abs(column).max()) for column in columns)
+
+
+def likely_force(case: Case) -> float:
+    """A force of the size that comes up in a case, N: half of F* ψ*, or the largest of the pads if that is more."""
+    return max(case.bha.force_scale * case.bit.tilt_limit / 2, *map(abs, case.schedule.rss_force))
+
+
+ROOM_FOR_LEGEND = 0.35  # for each curve, over the span of them all
+
+
+def plot_range(plot: Plot, curves: Sequence[Array], room: float) -> tuple[float, float]:
+    """Axis of a plot of some curves, with room above for each in the legend."""
+    low = plot.unit.factor * min(float(np.nanmin(curve)) for curve in curves)
+    high = plot.unit.factor * max(float(np.nanmax(curve)) for curve in curves)
     span = (high - low) or 1.0
-    return low - 0.1 * span, high + (0.1 + 0.25 * plot.legend * len(curves)) * span
+    return low - 0.1 * span, high + (0.1 + room * len(curves)) * span
 
 
 def round_down(value: float) -> float:

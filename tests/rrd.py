@@ -1,0 +1,34 @@
+"""What a recording holds."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from rerun.chunk import RrdReader
+
+
+def read(path: Path, entity: str, component: str) -> dict[int, list[Any]]:
+    """What an entity's component holds at each tick of the timeline."""
+    chunks = (
+        RrdReader(path).stream().filter(content=f"/{entity}", components=component, has_timeline="drilled_length_mm")
+    )
+    batches = [chunk.to_record_batch() for chunk in chunks]
+    return {
+        tick: value
+        for batch in batches
+        for tick, value in zip(
+            batch.column("drilled_length_mm").to_pylist(), batch.column(component).to_pylist(), strict=True
+        )
+    }
+
+
+def static(path: Path, entity: str, component: str) -> list[Any]:
+    """What an entity's component was for all time, one after the other."""
+    chunks = RrdReader(path).stream().filter(content=f"/{entity}", components=component, is_static=True)
+    return [value for chunk in chunks for value in chunk.to_record_batch().column(component).to_pylist()]
+
+
+def stacked(path: Path, entity: str, component: str) -> NDArray[np.float64]:
+    """What an entity's component holds at all ticks, one after the other."""
+    return np.array(list(read(path, entity, component).values()), dtype=float)

@@ -1,0 +1,50 @@
+"""The text beside the pictures: what is drilled with what, and what came of it."""
+
+from collections.abc import Sequence
+from math import degrees
+
+import rerun as rr
+
+from boreprop.analysis.rippling import Rippling
+from boreprop.case import Case
+from boreprop.core.assembly import eta_pi
+
+from .source import Source
+
+CARD = "case"
+
+
+def log_card(rec: rr.RecordingStream, sources: Sequence[Source], verdicts: Sequence[str]) -> None:
+    """The verdict on each run, and the cases side by side."""
+    names = [source.name for source in sources]
+    facts = [case_facts(source.case) for source in sources]
+    lines = [f"- **{name}** {verdict}" for name, verdict in zip(names, verdicts, strict=True)]
+    lines += ["", f"| | {' | '.join(names)} |", "|---" * (len(names) + 1) + "|"]
+    lines += [f"| {what} | {' | '.join(fact[what] for fact in facts)} |" for what in facts[0]]
+    rec.log(CARD, rr.TextDocument("\n".join(lines), media_type=rr.MediaType.MARKDOWN), static=True)
+
+
+def case_facts(case: Case) -> dict[str, str]:
+    """What there is to know of a case, in the units people use."""
+    bha, bit = case.bha, case.bit
+    clearances = [f"{1000 * clearance:.3g}" for clearance in bha.stabilizer_clearances]
+    return {
+        "stabilizers": f"{', '.join(f'{s:.4g}' for s in bha.stabilizer_positions)} m",
+        "clearances": f"{', '.join(clearances) or '–'} mm",
+        "steering pads": f"{bha.rss_position:.3g} m",
+        "weight": f"{bha.distributed_weight / 1000:.3g} kN/m",
+        "stiffness EI": f"{bha.flexural_stiffness / 1e6:.3g} MN m²",
+        "η, χ": f"{bit.lateral_steering_resistance:g}, {bit.angular_steering_resistance:g}",
+        "tilt limit ψ*": f"{degrees(bit.tilt_limit):.3g}°",
+        "hole": f"{1000 * case.bit_diameter:.4g} mm",
+        "weight on bit": f"{case.active_weight_on_bit / 1000:.3g} kN",
+        "**ηΠ**": f"**{eta_pi(bha, bit, case.active_weight_on_bit):.4g}**",
+    }
+
+
+def verdict(rippling: Rippling, case: Case) -> str:
+    """Whether a run ripples, in a line."""
+    if not rippling.ripples:
+        return "does not ripple"
+    waves = rippling.wavelength / case.bha.length_scale
+    return f"ripples: waves of {rippling.wavelength:.2f} m ({waves:.2f} ℓ₁), ±{degrees(rippling.amplitude):.2g}°"
