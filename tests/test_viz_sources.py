@@ -133,6 +133,16 @@ def test_a_result_file_with_outputs_alone_is_drawn_with_the_pads_force(
         np.testing.assert_allclose(theirs, ours, atol=1e-5)
 
 
+def test_what_fmpy_wrote_is_drawn_with_the_case_in_the_fmu(command: Command, fmu: Path, tmp_path: Path) -> None:
+    written = command(
+        "fmpy", "simulate", fmu, "--stop-time", "20", "--output-interval", "0.5", "--output-file", "fmpy.csv"
+    )
+    assert written.returncode == 0, written.stderr
+    done = command("boreprop-view", "fmpy.csv", "--fmu", fmu, "--save", "fmpy.rrd")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert list(read(tmp_path / "fmpy.rrd", "bit_frame/bha", "LineStrips2D:strips")) == list(range(0, 20001, 500))
+
+
 @pytest.mark.parametrize("missing", ["bit_inclination", "average_inclination[2]"])
 def test_a_run_without_what_a_picture_needs_is_refused(
     case: Case, command: Command, tmp_path: Path, missing: str
