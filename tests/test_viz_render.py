@@ -16,8 +16,9 @@ from rerun.experimental import View
 from boreprop.case import Case
 from boreprop.simulation import simulate
 from boreprop_viz import picture
-from boreprop_viz.picture import PROGRAM, SOFTWARE_DRIVERS, Viewer, viewer
+from boreprop_viz.picture import SOFTWARE_DRIVERS, Viewer, viewer
 from boreprop_viz.record import record
+from boreprop_viz.sinks import PROGRAM
 from boreprop_viz.stream import TIMELINE
 from boreprop_viz.style import ORANGE
 

@@ -56,7 +56,7 @@ def read(path: Path) -> list[float]:
         warnings.filterwarnings("ignore", message="RRD file has no footer")
         try:
             stream = RrdReader(path).stream()
-        except ValueError:  # no recording yet
+        except (ValueError, RuntimeError):  # no recording yet, half a chunk
             return []
     chunks = stream.filter(content="/row", components="Scalars:scalars", has_timeline="row")
     batches = [chunk.to_record_batch() for chunk in chunks]
@@ -286,6 +286,21 @@ def test_control_c_leaves_a_whole_file(tmp_path: Path, viewed: bool) -> None:
     assert list(tmp_path.iterdir()) == [saved]
 
 
+@signals
+def test_control_c_while_a_viewer_starts_leaves_no_viewer(
+    monkeypatch: pytest.MonkeyPatch, stand_in: Callable[[str], None]
+) -> None:
+    def interrupt(seconds: float) -> None:
+        assert children()
+        raise KeyboardInterrupt
+
+    stand_in("exec sleep 60")
+    monkeypatch.setattr(sinks, "sleep", interrupt)
+    with pytest.raises(KeyboardInterrupt), open_recording(spawn=True):
+        pass
+    assert not children()
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="no such limit")
 def test_a_full_disk_is_an_error_and_leaves_the_old_file(tmp_path: Path) -> None:
     saved = tmp_path / "saved.rrd"
@@ -366,7 +381,7 @@ def test_a_new_viewer_listens_on_this_machine_alone(
 
     with suppress(KeyboardInterrupt), open_recording(save=tmp_path / "saved.rrd", spawn=spawn, serve=not spawn) as rec:
         send(rec, range(1))
-        assert until(listening) == {LOOPBACK}
+        assert until(listening) == {"127.0.0.1"}
         raise KeyboardInterrupt
 
 
@@ -383,7 +398,9 @@ def test_memory_is_bounded_and_the_run_goes_on_when_the_viewer_hangs(tmp_path: P
                     send(rec, range(1))
                     print("ready", flush=True)
                     sys.stdin.readline()
-                    send(rec, range(1, {batches}))
+                    for batch in range(1, {batches}):
+                        send(rec, range(batch, batch + 1))
+                        rec.flush()  # Rerun queues some 100 MB for the disk
                 print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3)
             """)
             assert run.stdout
@@ -395,7 +412,7 @@ def test_memory_is_bounded_and_the_run_goes_on_when_the_viewer_hangs(tmp_path: P
 
     few, many = peak(50), peak(400)
     assert (tmp_path / "saved.rrd").stat().st_size > 450e6
-    assert many < few + 50.0  # MB
+    assert many < few + 20.0  # MB
 
 
 def end(client: ViewerClient) -> int | None:

@@ -6,12 +6,10 @@ libvulkan1), so that no graphics card is needed and the pictures are the same on
 
 import io
 import os
-import socket
 import subprocess
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TypeVar
@@ -19,10 +17,11 @@ from typing import TypeVar
 from PIL import Image
 from rerun.experimental import View, ViewerClient, ViewReport
 
+from .sinks import LOOPBACK, PROGRAM, free_port
+
 T = TypeVar("T")
 
 SOFTWARE_DRIVERS = sorted(Path("/usr/share/vulkan/icd.d").glob("lvp_icd*.json"))
-PROGRAM = str(files("rerun_cli") / "rerun")  # the command `rerun` is a wrapper, whose child outlives it
 LOG = "warn,re_renderer=error,egui_wgpu=error"  # that the driver is slow is no news
 GREETING = 30  # frames; the viewer's note of where it listens covers the first 16
 PATIENCE = 60.0  # s
@@ -84,10 +83,8 @@ def viewer(recording: Path, width: int = 1600, height: int = 1000) -> Iterator[V
     FileNotFoundError
         If there is no such recording.
     """
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    arguments = f"--headless --hide-welcome-screen --bind 127.0.0.1 --port {port} --window-size {width}x{height}"
+    port = free_port()
+    arguments = f"--headless --hide-welcome-screen --bind {LOOPBACK} --port {port} --window-size {width}x{height}"
     with TemporaryDirectory() as folder:
         process = subprocess.Popen(
             [PROGRAM, *arguments.split()],
@@ -123,7 +120,7 @@ def connected(process: subprocess.Popen[bytes], port: int) -> ViewerClient | Non
             f"got exit status {process.returncode}"
         )
     try:
-        client = ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
+        client = ViewerClient.connect(f"rerun+http://{LOOPBACK}:{port}/proxy")
         client.take_screenshot()
     except ConnectionError:
         return None

@@ -98,6 +98,7 @@ def draw(
                 log_grid(rec, seen)
                 rec.send_blueprint(blueprint(seen, tracks))
             stream.send(stretch)
+            rec.flush()  # or what the disk is too slow for would pile up in memory
             done += len(stretch.rows)
             progress(done)
         verdicts[i] = stream.verdict()

@@ -162,7 +162,6 @@ class Viewer:
                 return
             sleep(TICK)
         if self.process.poll() is not None:
-            self.stop()
             message = "the Rerun viewer must start, for which it needs a screen: use --save, --serve or --connect"
             raise InputError(f"{message}, got exit status {self.process.returncode}")
 
@@ -216,7 +215,11 @@ def open_viewer(path: Path, spawn: bool, serve: bool, connect: str | None, requi
         return Viewer(path, *where, "--web-viewer", "--web-viewer-port", str(web_port), stays=True)
     viewer = Viewer(path, *where, "--hide-welcome-screen", stays=True)
     if required:
-        viewer.await_start(address)
+        try:
+            viewer.await_start(address)
+        except BaseException:
+            viewer.stop()
+            raise
     return viewer
 
 
