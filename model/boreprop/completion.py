@@ -45,9 +45,7 @@ def complete(run: Trajectory) -> Trajectory:
     InputError
         If the run lacks its case, drilled_length, or one of the `INDISPENSABLE` that nothing determines.
     """
-    if run.case is None:
-        raise InputError("the run must have its case, got none: give it with --case or --fmu")
-    known = Known(run, run.case)
+    known = Known(run, case_of(run))
     while known.add(ROW_BY_ROW):
         pass
     known.add(ALONG_THE_HOLE)
@@ -55,6 +53,13 @@ def complete(run: Trajectory) -> Trajectory:
     for name in INDISPENSABLE:
         completed.stack(name)  # raises if it is not there
     return completed
+
+
+def case_of(run: Trajectory) -> Case:
+    """The case of a run; `InputError` if it has none."""
+    if run.case is None:
+        raise InputError("the run must have its case, got none: give it with --case or --fmu")
+    return run.case
 
 
 class Known:

@@ -7,7 +7,8 @@ from math import degrees, floor, log10, pi
 
 import numpy as np
 
-from boreprop.case import Case, InputError
+from boreprop.case import Case
+from boreprop.completion import case_of
 from boreprop.core.variables import BY_NAME
 from boreprop.results import Trajectory
 
@@ -193,13 +194,6 @@ def look(runs: Sequence[Trajectory], *, whole: bool, section: Array) -> Look:
         start=starts.pop() if len(starts) == 1 else None,
         ranges=ranges | {"bit_tilt": (-limit, limit)},
     )
-
-
-def case_of(run: Trajectory) -> Case:
-    """The case of a run; `InputError` if it has none."""
-    if run.case is None:
-        raise InputError("the run must have its case, got none: give it with --case or --fmu")
-    return run.case
 
 
 ARROWS = ("stabilizer_force", "bit_lateral_force", "rss_force")
