@@ -13,7 +13,7 @@ from boreprop.core.hole import Survey
 from boreprop.core.variables import INPUTS, OUTPUTS, scalar_names
 from boreprop.paper import LENGTH_SCALE, paper_case
 from boreprop.simulation import SimulationError, simulate
-from boreprop.summary import summarize
+from boreprop.summary import rows, summarize
 from reference_cases import reference
 
 F_STAR = 3 * 7.2e6 / LENGTH_SCALE**2
@@ -163,6 +163,9 @@ def test_summary_of_a_rippling_run() -> None:
     assert summary.contact_share[0] == pytest.approx(np.mean(run["stabilizer_contact[1]"] != 0), abs=1e-3)
     assert summary.largest_contact_force[0] == pytest.approx(np.abs(run["stabilizer_force[1]"][late]).max(), rel=0.01)
     assert 0.7 < summary.saturation_share < 0.9
+    told = dict(rows(summary, LENGTH_SCALE))
+    assert told["ripple of the hole axis"] == f"±{1e3 * summary.rippling.axis_amplitude:.1f} mm"
+    assert told["modes of a wave"].startswith("1 lower −ψ* 45%\n")
 
 
 def test_summary_of_a_steered_run() -> None:
@@ -176,3 +179,11 @@ def test_summary_of_a_steered_run() -> None:
     assert summary.drilled_length == pytest.approx(60.0)
     turns = run["average_inclination[1]"][300:] - run["average_inclination[1]"][:-300]  # over 30 m each
     assert summary.largest_build_rate == pytest.approx(turns[np.argmax(np.abs(turns))] / 30.0)
+
+
+def test_a_case_of_numpy_numbers_runs_like_one_of_floats(case: Case) -> None:
+    survey = replace(case.survey, inclination=tuple(np.array(case.survey.inclination)))
+    bha = replace(case.bha, flexural_stiffness=np.float64(case.bha.flexural_stiffness))
+    run, same = (simulate(c, length=10.0) for c in (case, replace(case, survey=survey, bha=bha)))
+    for name, column in run.columns.items():
+        np.testing.assert_array_equal(same[name], column)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .analysis.rippling import Rippling, find_rippling
+from .analysis.rippling import Rippling, Stretch, examine_rippling
 from .results import Trajectory
 
 BUILD_LENGTH = 30.0  # m: build rates are told in degrees per 30 m
@@ -62,24 +62,19 @@ def summarize(trajectory: Trajectory, length_scale: float) -> Summary:
         largest_contact_force=np.abs(trajectory.stack("stabilizer_force")).max(axis=0),
         contact_share=np.average(trajectory.stack("stabilizer_contact") != 0, axis=0, weights=weights),
         saturation_share=float(np.average(trajectory["bit_tilt_saturation"] != 0, weights=weights)),
-        rippling=find_rippling(length, trajectory["borehole_inclination"], length_scale),
+        rippling=examine_rippling(trajectory, length_scale),
     )
 
 
 def rows(summary: Summary, length_scale: float) -> list[tuple[str, str]]:
     """The lines of a table: what, and how much in the units people use."""
-
-    def rate(value: float) -> str:
-        return f"{np.degrees(value) * BUILD_LENGTH:+.2f} °/{BUILD_LENGTH:g} m"
-
-    wave = summary.rippling
     stabilizers = enumerate(zip(summary.largest_contact_force, summary.contact_share, strict=True), 1)
     return [
         ("drilled length", f"{summary.drilled_length:.1f} m"),
         ("inclination at the start", f"{np.degrees(summary.start_inclination):.2f} °"),
         ("inclination at the end", f"{np.degrees(summary.end_inclination):.2f} °"),
-        ("build rate, mean", rate(summary.build_rate)),
-        (f"build rate, largest over {BUILD_LENGTH:g} m", rate(summary.largest_build_rate)),
+        ("build rate, mean", _rate(summary.build_rate)),
+        (f"build rate, largest over {BUILD_LENGTH:g} m", _rate(summary.largest_build_rate)),
         *(
             line
             for i, (force, share) in stabilizers
@@ -89,11 +84,27 @@ def rows(summary: Summary, length_scale: float) -> list[tuple[str, str]]:
             )
         ),
         ("bit tilt saturated", f"{summary.saturation_share:.0%} of the length"),
-        (
-            "rippling",
-            f"yes: {wave.wavelength:.2f} m long ({wave.wavelength / length_scale:.2f} ℓ₁), "
-            f"±{np.degrees(wave.amplitude):.2f} °"
-            if wave.ripples
-            else "no",
-        ),
+        *_wave_rows(summary.rippling, length_scale),
     ]
+
+
+def _rate(change: float) -> str:
+    return f"{np.degrees(change) * BUILD_LENGTH:+.2f} °/{BUILD_LENGTH:g} m"
+
+
+def _wave_rows(wave: Rippling, length_scale: float) -> list[tuple[str, str]]:
+    if not wave.ripples:
+        return [("rippling", "no")]
+    return [
+        ("rippling", f"yes: {wave.wavelength:.2f} m long ({wave.wavelength / length_scale:.2f} ℓ₁)"),
+        ("ripple of the inclination", f"±{np.degrees(wave.amplitude):.2f} °"),
+        ("ripple of the hole axis", f"±{1e3 * wave.axis_amplitude:.1f} mm"),
+        ("ripple, from wave to wave", f"length ±{wave.spread:.2f} m, amplitude {_rate(wave.amplitude_drift)}"),
+        ("modes of a wave", "\n".join(map(_words, wave.modes))),
+    ]
+
+
+def _words(stretch: Stretch) -> str:
+    touching = [f"{i} {'lower' if wall > 0 else 'upper'}" for i, wall in enumerate(stretch.contact, 1) if wall]
+    limit = [f"{'+' if stretch.tilt > 0 else '−'}ψ*"] if stretch.tilt else []
+    return f"{' '.join(touching + limit) or 'free'} {stretch.share:.0%}"
