@@ -16,10 +16,10 @@ demo: .venv/all.installed  # the main job: case file, FMU, run, viewer recording
 		Borehole.fmu    'the FMU, for any FMI 2.0 co-simulation tool' \
 		run.csv         'the run, and its case in run.case.toml' \
 		run.rrd         'the recording: $(BIN)/rerun out/run.rrd' \
-		'figure_*.png'  'figures 7 and 8 of the paper'
+		'figure_*.png'  'figures 6 to 8 of the paper'
 
 test: .venv/dev.installed  # the whole suite
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto
 
 lint: .venv/dev.installed  # style, types and the import contract
 	$(BIN)/ruff check .
@@ -32,6 +32,8 @@ bench: .venv/dev.installed  # speed, side by side with something else
 	$(BIN)/python benchmarks/whole_process.py
 	$(BIN)/python benchmarks/fmu_cost.py
 	$(BIN)/python benchmarks/viewer_cost.py
+	$(BIN)/python benchmarks/stability_chart.py
+	$(BIN)/python benchmarks/study.py
 
 clean:
 	rm -rf .venv out dist build .*_cache .hypothesis

@@ -186,4 +186,4 @@ def test_a_case_of_numpy_numbers_runs_like_one_of_floats(case: Case) -> None:
     bha = replace(case.bha, flexural_stiffness=np.float64(case.bha.flexural_stiffness))
     run, same = (simulate(c, length=10.0) for c in (case, replace(case, survey=survey, bha=bha)))
     for name, column in run.columns.items():
-        np.testing.assert_array_equal(same[name], column)
+        np.testing.assert_allclose(same[name], column, rtol=1e-9, atol=1e-9)

@@ -242,6 +242,7 @@ def test_the_card_names_the_case_and_the_verdict(tmp_path: Path, paper_case: Pat
     record({"a": simulate(ripples), "b": simulate(more)}, save=tmp_path / "two.rrd")
     [[text]] = static(tmp_path / "two.rrd", "case", "TextDocument:text")[-1:]
     assert "| **ηΠ** | **0.01** | **0.16** |" in text
+    assert "| critical ηΠ | 0.1468 | 0.1468 |" in text
     assert re.search(r"- \*\*a\*\* ripples: waves of 5\.0\d m", text)
     assert "- **b** does not ripple" in text
 

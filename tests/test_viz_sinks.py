@@ -114,8 +114,19 @@ def stand_in(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[str],
     return replace
 
 
+@pytest.fixture(autouse=True)
+def others() -> Iterator[None]:
+    """Processes that earlier tests have left to help multiprocessing are none of what is tested here."""
+    OTHERS[:] = psutil.Process().children(recursive=True)
+    yield
+    OTHERS.clear()
+
+
+OTHERS: list[psutil.Process] = []
+
+
 def children() -> list[psutil.Process]:
-    return psutil.Process().children(recursive=True)
+    return [process for process in psutil.Process().children(recursive=True) if process not in OTHERS]
 
 
 def test_a_file_and_a_running_viewer_get_everything(tmp_path: Path) -> None:

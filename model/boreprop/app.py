@@ -82,14 +82,293 @@ def summary(
 
 
 @app.command()
+def steering(
+    case_file: Annotated[Path, typer.Argument(metavar="CASE.toml", help="The case file.")],
+    output: Annotated[
+        Path | None, typer.Option(metavar="STEERING.png", help="Draw build rate against force into this file.")
+    ] = None,
+    inclination_deg: Annotated[
+        float | None, typer.Option(metavar="A", help="Inclination, degrees, if not that of the end of the case's hole.")
+    ] = None,
+    force_limit: Annotated[
+        float | None,
+        typer.Option(
+            parser=console.positive, metavar="N", help="Largest force, N, if not 1 % of 3EI/ℓ₁² or the case's."
+        ),
+    ] = None,
+) -> None:
+    """Print how fast a steady steering force turns the hole, and draw it."""
+    from math import radians
+
+    from rich.console import Console
+    from rich.table import Table
+
+    from .case import load_case
+    from .core.assembly import check_number
+    from .steering_summary import HEADINGS, piece_rows, rows, summarize
+
+    if output is not None:
+        console.check_output(output, (".png",))
+    if inclination_deg is not None:
+        check_number("--inclination-deg", inclination_deg)
+    case = load_case(case_file)
+    summary = summarize(case, None if inclination_deg is None else radians(inclination_deg), force_limit)
+    table, pieces = Table(str(case_file), ""), Table(*HEADINGS)
+    for row in rows(summary):
+        table.add_row(*row)
+    for cells in piece_rows(summary.curve):
+        pieces.add_row(*cells)
+    Console().print(table, pieces)
+    if output is not None:
+        from .steering_figure import draw, save
+
+        save(draw(summary), output)
+        print(f"{output}: build rate and bit tilt over the steering force")
+
+
+@app.command()
+def study(
+    case_file: Annotated[Path, typer.Argument(metavar="CASE.toml", help="The case file: what the cases share.")],
+    output: Annotated[
+        Path, typer.Option(metavar="STUDY.parquet", help="The file of results. If it is there, the study goes on.")
+    ],
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME=START:STOP:COUNT", help="An axis of a grid, or NAME=VALUE,VALUE,…; may come again."),
+    ] = None,
+    uncertain: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=normal(MEAN,DEVIATION)",
+            help="What a parameter is drawn from, also lognormal(MEDIAN,DEVIATION OF THE LOG), uniform(LOW,HIGH) or "
+            "triangular(LOW,MODE,HIGH); may come again.",
+        ),
+    ] = None,
+    draws: Annotated[int, typer.Option("--sample", metavar="N", help="Number of draws.")] = 200,
+    seed: Annotated[int, typer.Option(metavar="S", help="Seed of the draws.")] = 1,
+    workers: Annotated[
+        int | None, typer.Option(metavar="K", help="Number of processes, if not one for each core.")
+    ] = None,
+) -> None:
+    """Simulate many cases on all cores: over a grid, or of uncertain parameters.
+
+    NAME is an input or parameter of the case in SI units (stabilizer_clearance[1]), eta_pi or bit_tilt_limit_deg.
+    """
+    from rich.console import Console
+    from rich.table import Table
+
+    from .analysis.design import grid, parse_axis, parse_distribution, parse_each, sample
+    from .case import InputError, load_case
+    from .core.assembly import check_number
+
+    console.check_output(output, (".parquet",))
+    check_number("--sample", draws, at_least=1)
+    check_number("--seed", seed, at_least=0)
+    if workers is not None:
+        check_number("--workers", workers, at_least=1)
+    if bool(vary) == bool(uncertain):
+        raise InputError(f"must be given either --vary or --uncertain, got {'both' if vary else 'neither'}")
+    case = load_case(case_file)
+    if vary:
+        cases, quantiles = grid(case, parse_each(parse_axis, vary)), {"least": 0.0, "median": 0.5, "largest": 1.0}
+    else:
+        cases = sample(case, parse_each(parse_distribution, uncertain or []), draws, seed)
+        quantiles = {"10 %": 0.1, "50 %": 0.5, "90 %": 0.9}
+    from .analysis.study import run
+    from .study_table import lines, verdict
+
+    try:
+        with console.progress("cases", len(cases)) as done:
+            results = run(cases, output=output, workers=workers, progress=done)
+    except KeyboardInterrupt:
+        if output.exists():
+            console.warn(f"{output}: keeps the cases that are done; the same command goes on from there")
+        raise
+    table = Table(str(output), *quantiles)
+    for line in lines(results, quantiles.values()):
+        table.add_row(*line)
+    Console().print(table)
+    print(f"{output}: {verdict(results)}")
+
+
+@app.command()
+def dogleg(
+    case_file: Annotated[Path, typer.Argument(metavar="CASE.toml", help="The case file.")],
+    output: Annotated[Path | None, typer.Option(metavar="MAP.png", help="Draw a map into this file.")] = None,
+    eta_pi: Annotated[str, typer.Option(metavar="A:B:N", help="The map's ηΠ: from, to, how many.")] = "0.01:0.16:16",
+    clearance_mm: Annotated[
+        str, typer.Option(metavar="A:B:N", help="Its clearances of the first stabilizer, mm.")
+    ] = "0.5:8:8",
+    limit_deg: Annotated[
+        float, typer.Option(parser=console.positive, metavar="A", help="Largest turn that is tried, degrees.")
+    ] = 10.0,
+) -> None:
+    """Print the smallest dogleg in the existing hole from which a case ripples; map it over weight and clearance.
+
+    The hole is straight and turns over the last ℓ₁, the distance from the bit to the first stabilizer.
+    """
+    from math import radians
+
+    from rich.console import Console
+    from rich.table import Table
+
+    from .analysis.chart import parse_range
+    from .analysis.tipping import critical_dogleg, dogleg_map
+    from .case import load_case
+    from .tipping_summary import rows
+
+    if output is not None:
+        console.check_output(output, (".png",))
+    across, up = parse_range("--eta-pi", eta_pi), parse_range("--clearance-mm", clearance_mm) / 1e3
+    case, limit = load_case(case_file), radians(limit_deg)
+    table = Table(str(case_file), "")
+    for row in rows(case, {side: critical_dogleg(case, side=side, limit=limit) for side in (1, -1)}, limit):
+        table.add_row(*row)
+    Console().print(table)
+    if output is not None:
+        from .tipping_figure import draw_map, save
+
+        with console.progress("doglegs", len(across) * len(up)) as done:
+            found = dogleg_map(case, across, up, limit=limit, progress=done)
+        save(draw_map(case, found, limit), output)
+        print(f"{output}: the smallest dogleg that tips it over, by weight and clearance")
+
+
+@app.command()
+def hysteresis(
+    case_file: Annotated[Path, typer.Argument(metavar="CASE.toml", help="The case file.")],
+    output: Annotated[Path, typer.Option(metavar="LOOP.png", help="The picture.")],
+    eta_pi: Annotated[
+        str | None, typer.Option(metavar="A:B:N", help="Change the weight: ηΠ from, to, how many.")
+    ] = None,
+    clearance_mm: Annotated[
+        str | None, typer.Option(metavar="A:B:N", help="Change the clearance of the first stabilizer instead, mm.")
+    ] = None,
+    dogleg_deg: Annotated[
+        float,
+        typer.Option(parser=console.positive, metavar="A", help="Turn over ℓ₁ that straight holes have, degrees."),
+    ] = 0.5,
+) -> None:
+    """Draw where an ongoing ripple dies out as weight or clearance goes up, and where it comes back on the way down."""
+    from math import radians
+
+    from .analysis import tipping
+    from .analysis.chart import parse_range
+    from .analysis.design import vary
+    from .case import InputError, load_case
+    from .tipping_figure import draw_loop, save
+    from .tipping_summary import loop
+
+    console.check_output(output, (".png",))
+    if (eta_pi is None) == (clearance_mm is None):
+        raise InputError(f"must be given one of --eta-pi and --clearance-mm, got {'both' if eta_pi else 'neither'}")
+    case = load_case(case_file)
+    if eta_pi is not None:
+        x, label = parse_range("--eta-pi", eta_pi).tolist(), "ηΠ"
+        cases = [vary(case, {"eta_pi": value}) for value in x]
+    else:
+        x, label = parse_range("--clearance-mm", clearance_mm or "").tolist(), "clearance of the first stabilizer (mm)"
+        cases = [vary(case, {"stabilizer_clearance[1]": value / 1e3}) for value in x]
+    with console.progress("runs", 2 * len(cases)) as done:
+        up, down = tipping.hysteresis(cases, radians(dogleg_deg), done)
+    save(draw_loop(x, label, up, down, radians(dogleg_deg)), output)
+    print(f"{output}: {loop(x, label, up, down)}")
+
+
+@app.command()
+def roots(
+    case_file: Annotated[Path, typer.Argument(metavar="CASE.toml", help="The case file.")],
+    eta_pi: Annotated[
+        float | None, typer.Option(parser=console.positive, metavar="X", help="ηΠ, if not the case's.")
+    ] = None,
+    contact: Annotated[
+        str, typer.Option(metavar="1,2", help="The stabilizers that touch; none if not given, but for clearance 0.")
+    ] = "",
+    saturated: Annotated[bool, typer.Option("--saturated", help="The bit tilt is at its limit.")] = False,
+    inclination_deg: Annotated[
+        float | None, typer.Option(metavar="A", help="Inclination of the straight hole, if not that at the end.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
+) -> None:
+    """Print the rightmost roots of a mode, and whether it is stable, drifts or oscillates."""
+    import json
+    from math import radians
+
+    from rich.console import Console
+    from rich.table import Table
+
+    from .analysis.stability import find_roots, parse_contact
+    from .case import load_case
+    from .core import assembly
+    from .core.assembly import check_number
+    from .stability_table import HEADINGS, caption, rows, title
+
+    touching = parse_contact(contact)
+    if inclination_deg is not None:
+        check_number("--inclination-deg", inclination_deg)
+    case = load_case(case_file)
+    bha, bit = case.bha, case.bit
+    found = find_roots(
+        bha,
+        bit,
+        assembly.eta_pi(bha, bit, case.active_weight_on_bit) if eta_pi is None else eta_pi,
+        contact=touching,
+        saturated=saturated,
+        inclination=case.survey.inclination[-1] if inclination_deg is None else radians(inclination_deg),
+    )
+    if as_json:
+        mode = {"contact": found.contact, "saturated": found.saturated}
+        numbers = [[root.real, root.imag] for root in found.roots]
+        print(json.dumps({"eta_pi": found.eta_pi, "mode": mode, "roots": numbers, "verdict": found.verdict}))
+        return
+    table = Table(*HEADINGS, title=title(found), caption=caption(found))
+    for row in rows(found, bha.length_scale):
+        table.add_row(*row)
+    Console().print(table)
+
+
+@app.command()
+def stability(
+    case_file: Annotated[Path, typer.Argument(metavar="CASE.toml", help="The case file.")],
+    output: Annotated[Path, typer.Option(metavar="CHART.png", help="The picture.")],
+    eta_pi: Annotated[str | None, typer.Option(metavar="A:B:N", help="N values of ηΠ from A to B.")] = None,
+    lambda2: Annotated[
+        str | None, typer.Option(metavar="A:B:N", help="N values of λ₂, stabilizer 1 to 2 over bit to 1, from A to B.")
+    ] = None,
+) -> None:
+    """Draw the stability chart of a case: four modes over ηΠ and λ₂, for the inclination at its end."""
+    from .analysis.chart import parse_range, stability_chart, usual_grid
+    from .analysis.stability import critical_eta_pi
+    from .case import load_case
+    from .core import assembly
+
+    console.check_output(output, (".png",))
+    across = parse_range("--eta-pi", eta_pi) if eta_pi else None
+    up = parse_range("--lambda2", lambda2) if lambda2 else None
+    case = load_case(case_file)
+    bha, bit, inclination = case.bha, case.bit, case.survey.inclination[-1]
+    own = assembly.eta_pi(bha, bit, case.active_weight_on_bit)
+    usual_across, usual_up = usual_grid(bha, own)
+    across, up = usual_across if across is None else across, usual_up if up is None else up
+    from .stability_figure import draw, save
+    from .stability_table import stability_limit
+
+    with console.progress("chart", 1.0) as done:
+        chart = stability_chart(bha, bit, across, up, inclination, done)
+    save(draw(chart, case), output)
+    critical = critical_eta_pi(bha, bit, inclination=inclination)
+    print(f"{output}: {len(across)} × {len(up)} points; {stability_limit(critical)}; the case: ηΠ = {own:.4g}")
+
+
+@app.command()
 def figures(output: Annotated[Path, typer.Argument(metavar="OUT/", help="The directory to put them in.")]) -> None:
-    """Draw the paper's figures 7 and 8 (PNG)."""
+    """Draw the paper's figures 6, 7 and 8 (PNG)."""
     from .figures import make_figures
 
     output.mkdir(parents=True, exist_ok=True)
     with console.progress("figures", 1.0) as done:
         make_figures(output, done)
-    print(f"{output}: figures 7 and 8")
+    print(f"{output}: figures 6, 7 and 8")
 
 
 if __name__ == "__main__":

@@ -23,6 +23,7 @@ EXTRAS = {  # the extra that brings a package
     "tomli_w": "cli",
     "matplotlib": "plot",
     "pyarrow": "parquet",
+    "xarray": "study",
     "fmpy": "fmu",
     "pythonfmu": "fmu",
     "rerun": "viz",

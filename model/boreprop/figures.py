@@ -8,7 +8,10 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
+from . import stability_figure
+from .analysis.chart import stability_chart, usual_grid
 from .case import Case
+from .core.assembly import eta_pi
 from .paper import LENGTH_SCALE, paper_case
 from .results import Trajectory, replacing
 from .simulation import simulate
@@ -53,8 +56,16 @@ def draw(runs: dict[str, Trajectory], title: str) -> Figure:
     return figure
 
 
+def make_figure_6(output: Path) -> None:
+    """Draw the stability chart of a vertical hole."""
+    case = paper_case()
+    bha, bit = case.bha, case.bit
+    grid = usual_grid(bha, eta_pi(bha, bit, case.active_weight_on_bit))
+    stability_figure.save(stability_figure.draw(stability_chart(bha, bit, *grid), case), output)
+
+
 def make_figures(output: Path, progress: Callable[[float], None] = lambda _: None) -> None:
-    """Simulate and draw the paper's figures 7 and 8 as ``figure_7.png`` and ``figure_8.png`` in `output`.
+    """Draw the paper's figures 6, 7 and 8 as ``figure_6.png`` … in `output`, the last two from simulations.
 
     `progress` is called with the fraction done.
     """
@@ -64,8 +75,10 @@ def make_figures(output: Path, progress: Callable[[float], None] = lambda _: Non
         "figure_7": (figure_7_cases(), f"Bit tilt limit: {setting}, y* = 10⁻³"),
         "figure_8": (figure_8_cases(), f"Stabilizer clearance: {setting}, ψ* = 2°"),
     }
-    total = sum(len(cases) for cases, _ in wanted.values())
+    total = 1 + sum(len(cases) for cases, _ in wanted.values())
     done = count(1)
+    make_figure_6(output / "figure_6.png")
+    progress(next(done) / total)
     for name, (cases, title) in wanted.items():
         runs = {}
         for label, case in cases.items():

@@ -1,0 +1,357 @@
+"""Steering: how fast a steady force of the pads turns the hole, at which bit tilt, with which stabilizers touching.
+
+In a hole of constant curvature, Θ(ξ−s) = Θ − κ s, the offsets of the beam are e_i = −s_i ψ − s_i² κ/2, and θ' = κ.
+In a mode of contact and tilt (14) and (17) are then two linear equations for κ and ψ,
+
+    (εηΠ + M₂) κ +      M₁ ψ = M_rss F_RSS + M_g sin⟨Θ⟩_1 + M_one ,         M₁ = Σ M_i s_i ,  M₂ = Σ M_i s_i²/2
+            F₂ κ + (ηΠ + F₁) ψ = F0_rss F_RSS + F0_g sin⟨Θ⟩_1 + F0_one ,    F₁ = Σ F0_i s_i , F₂ = Σ F0_i s_i²/2
+
+with the second one replaced by ψ = ±ψ* where the tilt saturates.
+
+One response to each force. The determinant is positive in every mode at every ηΠ > 0. The beam is a cubic spline,
+clamped at the bit and hinged at the last support, and its moments at the supports follow the spline's tridiagonal
+equations: so M₁, M₂ and F₁ are positive, and between the bit and the first support the moment of a tilt passes zero
+while that of a curvature does not, so M₂ F₁ − M₁ F₂ >= 0. Determinants of one sign in all modes make κ and ψ the
+solution of a linear complementarity problem with a P-matrix: it exists, it is unique, and least-index pivoting finds
+it. So the build rate is a continuous, piecewise linear function of the force. Whether a hole settles on its response is
+a matter of stability.
+
+The sign of the response. Without saturation dκ/dF_RSS has the numerator M_rss (ηΠ + F₁) − M₁ F0_rss: it passes zero,
+not infinity, at ηΠ = M₁ F0_rss/M_rss − F₁ > 0, without contact 2/(Δ(2λ − Δ)). Above it a push to the high side drops
+the hole: the bit hardly moves sideways and turns as the clamped end of the pushed beam. At its limit the tilt does not
+answer either, so there the sign is that of M_rss <= 0 at any ηΠ.
+
+Gravity. It acts through sin⟨Θ⟩_1 alone, which changes along the arc. The response here is quasi-steady: it takes
+sin⟨Θ⟩_1 as it is. That is exact without weight and where κ = 0; else `build_rate_error` is the leading term of what it
+leaves out.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import cos, inf, sin
+
+from ..core.assembly import BitRock, BottomHoleAssembly, Scaled, check_number, eta_pi, scale
+from ..core.beam import Beam
+from ..core.contact import ROUNDING, Loads, Mode, Modes, Row, change, left
+from ..core.drilling import check_inputs
+from ..core.linear import dot
+
+
+@dataclass(frozen=True)
+class SteadyResponse:
+    """A hole of constant curvature and what drills it.
+
+    Parameters
+    ----------
+    rss_force
+        N, positive to the high side.
+    build_rate
+        Change of inclination per length, rad/m.
+    build_rate_error
+        Leading term of what the build rate at the bit has beyond `build_rate`, since gravity changes along the arc,
+        rad/m.
+    bit_tilt
+        ψ, rad.
+    bit_tilt_saturation
+        1 at +ψ*, −1 at −ψ*, 0 between.
+    stabilizer_contact
+        For each non-ideal stabilizer 1 on the lower wall, −1 on the upper wall, 0 free. One without clearance is on the
+        wall that bears it.
+    stabilizer_force
+        Force of the wall on each non-ideal stabilizer, N.
+    stabilizer_deflection
+        Offset of each from the hole axis, m.
+    """
+
+    rss_force: float
+    build_rate: float
+    build_rate_error: float
+    bit_tilt: float
+    bit_tilt_saturation: int
+    stabilizer_contact: tuple[int, ...]
+    stabilizer_force: tuple[float, ...]
+    stabilizer_deflection: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A stretch of the curve of build rate over force on which contact and saturation do not change: straight.
+
+    Parameters
+    ----------
+    start, end
+        The responses at its ends, by increasing force.
+    gain
+        Change of the build rate per force, rad/m per N.
+    reversal_eta_pi
+        The ηΠ above which the gain is negative: inf if there is none, 0 where the tilt saturates.
+    """
+
+    start: SteadyResponse
+    end: SteadyResponse
+    gain: float
+    reversal_eta_pi: float
+
+
+def steady_response(
+    bha: BottomHoleAssembly,
+    bit: BitRock,
+    active_weight_on_bit: float,
+    rss_force: float,
+    inclination: float,
+    gravity: bool = True,
+) -> SteadyResponse:
+    """The hole that a constant force drills at a given inclination.
+
+    Parameters
+    ----------
+    bha, bit
+        The drilling system.
+    active_weight_on_bit, rss_force
+        N.
+    inclination
+        ⟨Θ⟩_1: of the hole, averaged over the ℓ₁ behind the bit, rad.
+    gravity
+        False: leave the weight of the BHA out.
+
+    Raises
+    ------
+    ParameterError
+        If a value is not finite or the weight on bit is not positive.
+    """
+    check_number("rss_force", rss_force)
+    steady = _steady(bha, bit, active_weight_on_bit, inclination, gravity)
+    return _in_si(bha, steady.settle(rss_force / bha.force_scale), rss_force)
+
+
+def build_rate_curve(
+    bha: BottomHoleAssembly,
+    bit: BitRock,
+    active_weight_on_bit: float,
+    inclination: float,
+    force_limit: float,
+    gravity: bool = True,
+) -> tuple[Piece, ...]:
+    """The response to every force from −`force_limit` to `force_limit` (N): its straight pieces, by increasing force.
+
+    The other parameters and errors are those of `steady_response`; the limit must be positive.
+    """
+    check_number("force_limit", force_limit, above=0.0)
+    steady = _steady(bha, bit, active_weight_on_bit, inclination, gravity)
+    limit = force_limit / bha.force_scale
+    return tuple(
+        Piece(
+            _in_si(bha, line, start * bha.force_scale),
+            _in_si(bha, line, end * bha.force_scale),
+            line.rate[0] / (bha.length_scale * bha.force_scale),
+            0.0 if line.tilt else reversal(steady.scaled, line.mode),
+        )
+        for line, start, end in steady.walk(-limit, limit)
+    )
+
+
+def largest_build_rate(
+    bha: BottomHoleAssembly,
+    bit: BitRock,
+    active_weight_on_bit: float,
+    inclination: float,
+    force_limit: float,
+    gravity: bool = True,
+) -> tuple[SteadyResponse, SteadyResponse]:
+    """The fastest build and the fastest drop under forces up to `force_limit` (N) to either side.
+
+    They need not be at the limit: where the tilt saturates, or above the ηΠ of `reversal_eta_pi`, a larger push builds
+    less. Parameters and errors are those of `build_rate_curve`.
+    """
+    curve = build_rate_curve(bha, bit, active_weight_on_bit, inclination, force_limit, gravity)
+    kinks = [curve[0].start, *(piece.end for piece in curve)]
+    return max(kinks, key=_build_rate), min(kinks, key=_build_rate)
+
+
+def holding_forces(
+    bha: BottomHoleAssembly,
+    bit: BitRock,
+    active_weight_on_bit: float,
+    inclination: float,
+    force_limit: float,
+    gravity: bool = True,
+) -> tuple[SteadyResponse, ...]:
+    """The responses without curvature: the forces that hold an inclination, the smallest first.
+
+    None if no force up to the limit does. Usually one; more where the build rate falls again with the force.
+    Parameters and errors are those of `build_rate_curve`.
+    """
+    curve = build_rate_curve(bha, bit, active_weight_on_bit, inclination, force_limit, gravity)
+    builds = [curve[0].start.build_rate > 0, *(piece.end.build_rate > 0 for piece in curve)]
+    forces = [
+        piece.end.rss_force - piece.end.build_rate / piece.gain
+        for piece, before, after in zip(curve, builds, builds[1:], strict=False)
+        if before != after
+    ]
+    found = [steady_response(bha, bit, active_weight_on_bit, force, inclination, gravity) for force in forces]
+    return tuple(sorted(found, key=lambda response: abs(response.rss_force)))
+
+
+def reversal_eta_pi(bha: BottomHoleAssembly, bit: BitRock, contact: tuple[int, ...]) -> float:
+    """The ηΠ above which, the tilt not saturated, a push to the high side drops the hole; inf if there is none.
+
+    Parameters
+    ----------
+    bha, bit
+        The drilling system; the law of the bit makes no difference.
+    contact
+        For each non-ideal stabilizer, 0 if it is free. One without clearance always touches.
+    """
+    steady = Steady(scale(bha, bit), 1.0, 0.0)
+    return reversal(steady.scaled, steady.modes[steady.held(contact)])
+
+
+def _build_rate(response: SteadyResponse) -> float:
+    return response.build_rate
+
+
+def _steady(
+    bha: BottomHoleAssembly, bit: BitRock, active_weight_on_bit: float, inclination: float, gravity: bool
+) -> "Steady":
+    check_inputs(0.0, active_weight_on_bit)
+    check_number("inclination", inclination)
+    scaled = scale(bha, bit)
+    if not gravity:
+        scaled = replace(scaled, w=0.0)
+    return Steady(scaled, eta_pi(bha, bit, active_weight_on_bit), inclination)
+
+
+def _in_si(bha: BottomHoleAssembly, line: "Line", rss_force: float) -> SteadyResponse:
+    l1, F_star = bha.length_scale, bha.force_scale
+    kappa, psi = line.at(rss_force / F_star)
+    loads = line.loads(rss_force / F_star)
+    F = [row(loads) for row in line.mode.F]
+    contacts = zip(line.mode.contact, F, bha.stabilizer_clearances, strict=True)
+    return SteadyResponse(
+        rss_force=rss_force,
+        build_rate=kappa / l1,
+        build_rate_error=line.error_rate * kappa / l1,
+        bit_tilt=psi,
+        bit_tilt_saturation=line.tilt,
+        stabilizer_contact=tuple(contact if clearance else (f > 0) - (f < 0) for contact, f, clearance in contacts),
+        stabilizer_force=tuple(f * F_star for f in F),
+        stabilizer_deflection=tuple(row(loads) * l1 for row in line.mode.delta),
+    )
+
+
+# dimensionless
+
+
+def moment(row: Row, s: tuple[float, ...], power: int) -> float:
+    """Σ row_i s_i^power: how a row answers to offsets that grow so."""
+    return dot(row.e, [s_i**power for s_i in s])
+
+
+def reversal(scaled: Scaled, mode: Mode) -> float:
+    """Zero of dκ/dF_RSS over ηΠ, the tilt not saturated."""
+    M, F_0 = mode.M, mode.F_0
+    if M.rss > -ROUNDING:  # the pads at the bit, or at a stabilizer that does not move (nothing turns then)
+        return inf
+    return moment(M, scaled.s, 1) * F_0.rss / M.rss - moment(F_0, scaled.s, 1)
+
+
+class Line:
+    """κ and ψ as linear functions of F_RSS in one mode of contact and tilt (1, −1: saturated)."""
+
+    def __init__(self, steady: "Steady", mode: Mode, tilt: int) -> None:
+        scaled, eta_pi, sine = steady.scaled, steady.eta_pi, steady.sine
+        s, M, F_0 = scaled.s, mode.M, mode.F_0
+        self.s, self.sine, self.mode, self.tilt = s, sine, mode, tilt
+        a, b = scaled.epsilon * eta_pi + moment(M, s, 2) / 2, moment(M, s, 1)
+        c, d = (0.0, 1.0) if tilt else (moment(F_0, s, 2) / 2, eta_pi + moment(F_0, s, 1))
+
+        def solve(of_M: float, of_F_0: float, limit: float = 0.0) -> tuple[float, float]:
+            second = limit if tilt else of_F_0
+            return (d * of_M - b * second) / (a * d - b * c), (a * second - c * of_M) / (a * d - b * c)
+
+        self.rest = solve(M.g * sine + M.one, F_0.g * sine + F_0.one, tilt * scaled.psi_star)
+        self.rate = solve(M.rss, F_0.rss)
+        # κ and ψ change along the arc at κ₁ and ψ₁, per κ, which adds κ₁ s_i³/6 to e_i and ψ₁ to θ'
+        kappa_1, psi_1 = (steady.cosine * x for x in solve(M.g, F_0.g))
+        self.error_rate, _ = solve(
+            moment(M, s, 3) / 6 * kappa_1 - scaled.epsilon * eta_pi * psi_1, moment(F_0, s, 3) / 6 * kappa_1
+        )
+
+    def at(self, F_rss: float) -> tuple[float, float]:
+        """(κ, ψ) under a force."""
+        return self.rest[0] + self.rate[0] * F_rss, self.rest[1] + self.rate[1] * F_rss
+
+    def loads(self, F_rss: float) -> Loads:
+        """What bends the beam under a force."""
+        return Loads(offsets(self.s, *self.at(F_rss)), F_rss, self.sine)
+
+    def slope(self, row: Row) -> float:
+        """Change of a row's value per force."""
+        return dot(row.e, offsets(self.s, *self.rate)) + row.rss
+
+
+def offsets(s: tuple[float, ...], kappa: float, psi: float) -> list[float]:
+    """e_1 … e_n in a hole of curvature κ at bit tilt ψ."""
+    return [-s_i * psi - s_i**2 * kappa / 2 for s_i in s]
+
+
+class Steady:
+    """The constant-curvature responses of a system at one ηΠ and inclination ⟨Θ⟩_1."""
+
+    def __init__(self, scaled: Scaled, eta_pi: float, inclination: float) -> None:
+        self.scaled, self.eta_pi = scaled, eta_pi
+        self.sine, self.cosine = sin(inclination), cos(inclination)
+        self.modes = Modes(Beam(scaled), scaled.y_star)
+
+    def held(self, contact: tuple[int, ...]) -> tuple[int, ...]:
+        """`contact`, with the stabilizers that have no clearance in contact."""
+        return tuple(c if y else 1 for c, y in zip(contact, self.scaled.y_star, strict=True))
+
+    def bounds(self, line: Line) -> list[tuple[Row, float, float]]:
+        """Rows that must lie between two bounds for each stabilizer, and at last for the tilt, to stay as they are."""
+        limit = self.eta_pi * self.scaled.psi_star
+        tilt_bounds = {0: (-limit, limit), 1: (limit, inf), -1: (-inf, -limit)}[line.tilt]
+        contacts = range(len(self.scaled.y_star))
+        return [*(self.modes.bounds(line.mode, i) for i in contacts), (line.mode.F_0, *tilt_bounds)]
+
+    def switch(self, line: Line, part: int, side: int) -> Line:
+        """The line in the mode on the other side of a bound."""
+        contact = line.mode.contact
+        if part == len(contact):
+            return Line(self, line.mode, 0 if line.tilt else side)
+        changed = (*contact[:part], change(contact[part], side), *contact[part + 1 :])
+        return Line(self, self.modes[changed], line.tilt)
+
+    def settle(self, F_rss: float) -> Line:
+        """The line that holds under a force, by least-index pivoting from no contact and no saturation."""
+        line = Line(self, self.modes[self.held((0,) * len(self.scaled.y_star))], 0)
+        while True:
+            loads = line.loads(F_rss)
+            for part, (row, lower, upper) in enumerate(self.bounds(line)):
+                side = left(row(loads), lower, upper)
+                if side:
+                    line = self.switch(line, part, side)
+                    break
+            else:
+                return line
+
+    def walk(self, start: float, stop: float) -> Iterator[tuple[Line, float, float]]:
+        """The lines that hold from one force to a larger one, each with the forces between which it does."""
+        line, at = self.settle(start), start
+        while at < stop:
+            end, part, side = self._first_met(line, at)
+            if min(end, stop) - at > ROUNDING:
+                yield line, at, min(end, stop)
+            line, at = self.switch(line, part, side), end
+
+    def _first_met(self, line: Line, at: float) -> tuple[float, int, int]:
+        """The force, from `at` on, at which a line first meets a bound, which part's, and on which side."""
+        loads = line.loads(at)
+        met = (inf, 0, 0)
+        for part, (row, lower, upper) in enumerate(self.bounds(line)):
+            slope, value = line.slope(row), row(loads)
+            side = 1 if slope > 0 else -1
+            bound = upper if slope > 0 else lower
+            if slope and abs(bound) < inf:
+                met = min(met, (at + max((bound - value) / slope, 0.0), part, side))
+        return met
