@@ -31,7 +31,7 @@ def test_the_rippling_reference_runs_ripple_with_their_wave(name: str, wavelengt
     found = find_rippling(rows["xi"], rows["Theta"], 1.0)
     assert found.ripples
     assert found.wavelength == pytest.approx(wavelength, abs=0.002)
-    assert np.degrees(found.amplitude) == pytest.approx(amplitude_deg, rel=0.05)
+    assert np.degrees(found.amplitude) == pytest.approx(amplitude_deg, rel=0.02)
 
 
 @pytest.mark.parametrize(
@@ -150,7 +150,7 @@ def test_a_wave_that_dies_out_is_not_rippling(signal: Wavy, rate: float) -> None
 
 def test_the_drift_of_the_amplitude_is_told() -> None:
     found = find_rippling(3.66 * XI, wave(1.4, 1.0) * (1 + 0.01 * (XI - 51.0)), 3.66)
-    assert degrees(found.amplitude) == pytest.approx(1.0, rel=0.02)
+    assert degrees(found.amplitude) == pytest.approx(1.0, rel=0.08)
     assert degrees(found.amplitude_drift) == pytest.approx(0.01 / 3.66, rel=0.05)
 
 

@@ -47,13 +47,13 @@ class Rippling:
     wavelength
         Mean of the last waves, m.
     amplitude
-        Half the difference between highest and lowest inclination, their trend removed, mean of the last waves, rad.
+        Half the difference between highest and lowest inclination of the last waves, their trend removed, rad.
     spread
         Standard deviation of the last wavelengths, m.
     amplitude_drift, inclination_drift
         Change of the amplitude and of the trend of the inclination along the last waves, rad/m.
     axis_amplitude
-        Half the width of the wave of the hole axis, m.
+        Half the width of the wave of the hole axis, its trend removed, m.
     modes
         The modes of one wave in turn, from where the inclination rises through its trend: which stabilizer touches
         which wall (1 lower, −1 upper, 0 free), and at which limit the tilt is. What most of the last waves agree on.
@@ -150,7 +150,7 @@ def _find(
         wavelength=float(np.mean(lengths)) * length_scale,
         amplitude=float(amplitude),
         spread=float(np.std(lengths)) * length_scale,
-        amplitude_drift=_slope(middles, amplitude * sizes) / length_scale,
+        amplitude_drift=_slope(middles, np.ptp(mean) / 2 * sizes) / length_scale,
         inclination_drift=_slope(grid, trend) / length_scale,
     )
     return found, starts * length_scale
@@ -172,12 +172,12 @@ def _cut(at: NDArray[np.float64], values: NDArray[np.float64], starts: NDArray[n
 
 
 def _height(at: NDArray[np.float64], values: NDArray[np.float64], starts: NDArray[np.float64]) -> float:
-    """Between the highest and the lowest of the rows of a wave, mean of the waves; nan without any.
+    """Between the highest and the lowest of the rows of the waves; nan without any.
 
     Rows as they are: a wave may have steps, whose edges resampling would round.
     """
-    waves = np.split(values, np.searchsorted(at, starts))[1:-1]
-    return float(np.mean([np.ptp(wave) for wave in waves])) if waves else nan
+    within = values[(at >= starts[0]) & (at <= starts[-1])] if len(starts) else starts
+    return float(np.ptp(within)) if len(within) else nan
 
 
 def _slope(x: NDArray[np.float64], y: NDArray[np.float64]) -> float:
