@@ -97,8 +97,8 @@ def draw(
                 seen = seen.around(bit_positions(stretch.rows))
                 log_grid(rec, seen)
                 rec.send_blueprint(blueprint(seen, tracks))
+            rec.flush()  # what came before: it would pile up in memory if the disk is slow
             stream.send(stretch)
-            rec.flush()  # or what the disk is too slow for would pile up in memory
             done += len(stretch.rows)
             progress(done)
         verdicts[i] = stream.verdict()
