@@ -13,7 +13,7 @@ from boreprop_fmu.drive import Run
 from .card import log_card
 from .layout import blueprint
 from .scene import bit_positions, planned_hole
-from .sinks import open_recording
+from .sinks import flush, open_recording
 from .source import Source, live, stored
 from .stream import RunStream, log_furniture, log_grid, log_names, log_plan, make_tracks
 from .style import look
@@ -97,7 +97,7 @@ def draw(
                 seen = seen.around(bit_positions(stretch.rows))
                 log_grid(rec, seen)
                 rec.send_blueprint(blueprint(seen, tracks))
-            rec.flush()  # what came before: it would pile up in memory if the disk is slow
+            flush(rec)  # what came before: it would pile up in memory if the disk is slow
             stream.send(stretch)
             done += len(stretch.rows)
             progress(done)

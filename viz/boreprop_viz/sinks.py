@@ -36,7 +36,7 @@ THREADS = max(2, (os.cpu_count() or 2) - 2)
 BLOCK = 1 << 16  # bytes, read and fed at once
 TICK = 0.05  # s, between two looks at the file
 STARTS_WITHIN = 30.0  # s, a viewer
-PATIENCE = 20.0  # s, with a viewer that takes nothing
+PATIENCE = 20.0  # s, with a viewer or a disk that takes nothing
 
 
 @contextmanager
@@ -99,22 +99,27 @@ def recording_to(path: Path) -> Iterator[rr.RecordingStream]:
     rec = rr.RecordingStream(APPLICATION)
     rec.set_log_time_enabled(False)
     try:
-        with write_errors(path):
+        try:
             rec.set_sinks(rr.FileSink(path))
+        except RuntimeError as error:
+            raise OSError(f"{path}: must be a file that can be written, got: {error}") from error
         yield rec
-        with write_errors(path):
-            rec.flush()
+        flush(rec)
     finally:
-        rec.disconnect()  # this writes the file's end
+        end = Thread(target=rec.disconnect, daemon=True)  # this writes the file's end
+        end.start()
+        end.join(PATIENCE)  # as `flush`
 
 
-@contextmanager
-def write_errors(path: Path) -> Iterator[None]:
-    """Make what Rerun raises for a file that it cannot write an `OSError`."""
+def flush(rec: rr.RecordingStream) -> None:
+    """Wait until what has been sent is in its file; `OSError` if it cannot be written.
+
+    Rerun may wait for ever where a disk has filled up, so there is an end to it.
+    """
     try:
-        yield
-    except RuntimeError as error:
-        raise OSError(f"{path}: must be a file that can be written, got: {error}") from error
+        rec.flush(timeout_sec=PATIENCE)
+    except (RuntimeError, TimeoutError) as error:
+        raise OSError(f"the recording must be written within {PATIENCE:g} s, got: {error}") from error
 
 
 class Viewer:

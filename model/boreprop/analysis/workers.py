@@ -1,6 +1,7 @@
 """One function on many items, on all cores or on a cluster, though workers may die."""
 
 import os
+import pickle
 import signal
 from collections import deque
 from collections.abc import Callable, Generator, Mapping
@@ -62,6 +63,7 @@ def work(
     BrokenExecutor
         If workers die and there has not been one result, or if the given executor is broken.
     """
+    pickle.dumps(function)  # what cannot travel is an error here; in a pool it may be one that is waited for for ever
     workers = _cores() if workers is None else workers
     slots = SUBMITTED if executor else AHEAD * workers
     pool = executor or _processes(workers)
