@@ -63,7 +63,8 @@ def work(
     BrokenExecutor
         If workers die and there has not been one result, or if the given executor is broken.
     """
-    pickle.dumps(function)  # what cannot travel is an error here; in a pool it may be one that is waited for for ever
+    if executor is None:
+        pickle.dumps(function)  # what cannot travel is an error here; our pool might wait for it for ever
     workers = _cores() if workers is None else workers
     slots = SUBMITTED if executor else AHEAD * workers
     pool = executor or _processes(workers)
