@@ -30,7 +30,7 @@ from boreprop.core.hole import Survey
 from boreprop.core.propagation import Propagation
 from boreprop.simulation import simulate
 from boreprop.steering_figure import draw
-from boreprop.steering_summary import piece_rows, rows, summarize, warnings
+from boreprop.steering_table import piece_rows, rows, summarize, warnings
 from conftest import EXAMPLES, Command
 from reference_cases import CASES, look, reference, start
 from systems import scaled_systems
@@ -479,3 +479,10 @@ def test_the_command_refuses_a_wrong_argument(
     for name in named:
         assert name in result.stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_a_case_of_numpy_numbers_steers_like_one_of_floats(case: Case) -> None:
+    numbers = replace(case.bha, flexural_stiffness=np.float64(case.bha.flexural_stiffness))
+    own, same = (steady_response(bha, case.bit, case.active_weight_on_bit, 2e4, 0.5) for bha in (case.bha, numbers))
+    assert same.stabilizer_contact == own.stabilizer_contact != (0,)
+    assert same.build_rate == pytest.approx(own.build_rate, rel=1e-12)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from boreprop.case import Case, Schedule, load_case
+from boreprop.completion import path
 from boreprop.core.assembly import BitRock, BottomHoleAssembly
 from boreprop.core.hole import Survey
 from boreprop.results import Trajectory
@@ -21,7 +22,6 @@ from boreprop_viz.scene import (
     Shapes,
     bit_positions,
     existing_hole,
-    path,
     planned_hole,
     turning,
 )

@@ -105,7 +105,7 @@ def steering(
 
     from .case import load_case
     from .core.assembly import check_number
-    from .steering_summary import HEADINGS, piece_rows, rows, summarize
+    from .steering_table import HEADINGS, piece_rows, rows, summarize
 
     if output is not None:
         console.check_output(output, (".png",))
@@ -120,7 +120,8 @@ def steering(
         pieces.add_row(*cells)
     Console().print(table, pieces)
     if output is not None:
-        from .steering_figure import draw, save
+        from .drawing import save
+        from .steering_figure import draw
 
         save(draw(summary), output)
         print(f"{output}: build rate and bit tilt over the steering force")
@@ -212,10 +213,10 @@ def dogleg(
     from rich.console import Console
     from rich.table import Table
 
-    from .analysis.chart import parse_range
+    from .analysis.design import parse_range
     from .analysis.tipping import critical_dogleg, dogleg_map
     from .case import load_case
-    from .tipping_summary import rows
+    from .tipping_table import rows
 
     if output is not None:
         console.check_output(output, (".png",))
@@ -226,7 +227,8 @@ def dogleg(
         table.add_row(*row)
     Console().print(table)
     if output is not None:
-        from .tipping_figure import draw_map, save
+        from .drawing import save
+        from .tipping_figure import draw_map
 
         with console.progress("doglegs", len(across) * len(up)) as done:
             found = dogleg_map(case, across, up, limit=limit, progress=done)
@@ -253,11 +255,11 @@ def hysteresis(
     from math import radians
 
     from .analysis import tipping
-    from .analysis.chart import parse_range
-    from .analysis.design import vary
+    from .analysis.design import parse_range, vary
     from .case import InputError, load_case
-    from .tipping_figure import draw_loop, save
-    from .tipping_summary import loop
+    from .drawing import save
+    from .tipping_figure import draw_loop
+    from .tipping_table import loop
 
     console.check_output(output, (".png",))
     if (eta_pi is None) == (clearance_mm is None):
@@ -337,7 +339,8 @@ def stability(
     ] = None,
 ) -> None:
     """Draw the stability chart of a case: four modes over ηΠ and λ₂, for the inclination at its end."""
-    from .analysis.chart import parse_range, stability_chart, usual_grid
+    from .analysis.chart import stability_chart, usual_grid
+    from .analysis.design import parse_range
     from .analysis.stability import critical_eta_pi
     from .case import load_case
     from .core import assembly
@@ -350,7 +353,8 @@ def stability(
     own = assembly.eta_pi(bha, bit, case.active_weight_on_bit)
     usual_across, usual_up = usual_grid(bha, own)
     across, up = usual_across if across is None else across, usual_up if up is None else up
-    from .stability_figure import draw, save
+    from .drawing import save
+    from .stability_figure import draw
     from .stability_table import stability_limit
 
     with console.progress("chart", 1.0) as done:

@@ -242,11 +242,22 @@ class Hole:
         mean = (self.inclination[station] + self.inclination_at(length)) / 2
         return np.append(0.0, np.cumsum(pieces))[station] + (length - self.length[station]) * mean
 
-    def path(self, component: Callable[[Array], Array]) -> Array:
-        """∫ sin Θ ds or ∫ cos Θ ds from the start of the run to each row; a piece is an arc of a circle."""
-        mean, turn = (self.inclination[1:] + self.inclination[:-1]) / 2, np.diff(self.inclination)
-        pieces = np.diff(self.length) * np.sinc(turn / (2 * np.pi)) * component(mean)
-        return np.cumsum(pieces[self.start :])
+
+def path(length: Array, inclination: Array) -> Array:
+    """Positions (x, z) of the stations of a hole, (N, 2), the first one at the origin.
+
+    The inclination (N,) is linear in length (N,) in between, so each piece is an arc of a circle: exact.
+    """
+    mean = (inclination[1:] + inclination[:-1]) / 2
+    chord = np.diff(length) * np.sinc(np.diff(inclination) / (2 * np.pi))
+    pieces = chord[:, None] * np.column_stack((np.sin(mean), np.cos(mean)))
+    return np.concatenate((np.zeros((1, 2)), np.cumsum(pieces, axis=0)))
+
+
+def drilled(known: Known) -> Array:
+    """Positions (x, z) of the bit, (rows, 2), from where the run starts."""
+    hole = Hole(known)
+    return path(hole.length[hole.start :], hole.inclination[hole.start :])[1:]
 
 
 def average_inclination(known: Known) -> Array:
@@ -299,7 +310,7 @@ ROW_BY_ROW = (
 ALONG_THE_HOLE = (
     Formula("average_inclination", ("borehole_inclination",), average_inclination),
     Formula("borehole_curvature", ("borehole_inclination",), borehole_curvature),
-    Formula("displacement", ("borehole_inclination",), lambda k: Hole(k).path(np.sin)),
-    Formula("true_vertical_depth", ("borehole_inclination",), lambda k: Hole(k).path(np.cos)),
+    Formula("displacement", ("borehole_inclination",), lambda k: drilled(k)[:, 0]),
+    Formula("true_vertical_depth", ("borehole_inclination",), lambda k: drilled(k)[:, 1]),
     Formula("rate_of_penetration", ("time",), rate_of_penetration),
 )

@@ -12,11 +12,11 @@ from . import stability_figure
 from .analysis.chart import stability_chart, usual_grid
 from .case import Case
 from .core.assembly import eta_pi
+from .drawing import COLOURS, save
 from .paper import LENGTH_SCALE, paper_case
-from .results import Trajectory, replacing
+from .results import Trajectory
 from .simulation import simulate
 
-COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7")  # Okabe and Ito: told apart by the colour-blind
 ROWS_PER_LENGTH_SCALE = 50
 
 
@@ -61,7 +61,7 @@ def make_figure_6(output: Path) -> None:
     case = paper_case()
     bha, bit = case.bha, case.bit
     grid = usual_grid(bha, eta_pi(bha, bit, case.active_weight_on_bit))
-    stability_figure.save(stability_figure.draw(stability_chart(bha, bit, *grid), case), output)
+    save(stability_figure.draw(stability_chart(bha, bit, *grid), case), output)
 
 
 def make_figures(output: Path, progress: Callable[[float], None] = lambda _: None) -> None:
@@ -84,5 +84,4 @@ def make_figures(output: Path, progress: Callable[[float], None] = lambda _: Non
         for label, case in cases.items():
             runs[label] = simulate(case, sample_interval=LENGTH_SCALE / ROWS_PER_LENGTH_SCALE)
             progress(next(done) / total)
-        with replacing(output / f"{name}.png") as draft:
-            draw(runs, title).savefig(draft, dpi=150, format="png")
+        save(draw(runs, title), output / f"{name}.png")

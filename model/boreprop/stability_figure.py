@@ -1,7 +1,6 @@
 """The stability chart as a picture, figure 6."""
 
 from math import degrees
-from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
@@ -17,7 +16,6 @@ from .analysis.characteristic import Floats
 from .analysis.chart import VERDICTS, Chart, Panel, lambda_2
 from .case import Case
 from .core.assembly import eta_pi
-from .results import replacing
 from .stability_table import contact_text
 
 SHADES = dict(zip(VERDICTS, ("#A9DBC8", "#8C8C8C", "#D55E00"), strict=True))
@@ -122,9 +120,3 @@ def cell(grid: Floats, at: Floats, aside: float) -> NDArray[np.int64]:
     """Index of the interval of `grid` in which a position lies, moved aside by a part of an interval."""
     position: Floats = np.interp(at, grid, np.arange(len(grid))) + aside
     return np.clip(position, 0, len(grid) - 2).astype(int)
-
-
-def save(figure: Figure, path: Path) -> None:
-    """Write a picture (PNG); nothing of that name changes before everything is written."""
-    with replacing(path) as draft:
-        figure.savefig(draft, dpi=150, format="png")

@@ -1,13 +1,11 @@
 """The steering response as a picture: build rate and bit tilt over the steering force."""
 
 from math import degrees
-from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from .figures import COLOURS
-from .results import replacing
-from .steering_summary import SteeringSummary, at_force, kilonewtons, per_build_length, touching
+from .drawing import COLOURS
+from .steering_table import SteeringSummary, at_force, kilonewtons, per_build_length, touching
 from .summary import BUILD_LENGTH
 
 MORE_COLOURS = (*COLOURS, "#56B4E9", "#D55E00", "#000000")  # Okabe and Ito, but for the yellow
@@ -49,9 +47,3 @@ def draw(summary: SteeringSummary) -> Figure:
         rates.plot(*point, marker, color="black", zorder=3, label=f"{what} build rate: {at_force(response)}")
     figure.legend(loc="outside lower center", ncols=2)
     return figure
-
-
-def save(figure: Figure, path: Path) -> None:
-    """Write a picture (PNG); nothing of that name changes before everything is written."""
-    with replacing(path) as draft:
-        figure.savefig(draft, dpi=150, format="png")

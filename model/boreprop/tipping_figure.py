@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from math import degrees
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,8 +17,7 @@ from .analysis.rippling import Rippling
 from .analysis.tipping import DoglegMap
 from .case import Case
 from .core.assembly import eta_pi
-from .figures import COLOURS
-from .results import replacing
+from .drawing import COLOURS
 from .summary import BUILD_LENGTH
 
 LEVELS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)  # degrees, and degrees per 30 m
@@ -102,9 +100,3 @@ def draw_loop(
         panel.set_ylim(bottom=0.0)
     axis.legend()
     return figure
-
-
-def save(figure: Figure, path: Path) -> None:
-    """Write a picture (PNG)."""
-    with replacing(path) as draft:
-        figure.savefig(draft, dpi=120, format="png")

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from boreprop.case import Case, InputError
+from boreprop.completion import path
 from boreprop.core.assembly import scale
 from boreprop.core.beam import Beam
 from boreprop.core.hole import Survey
@@ -25,17 +26,6 @@ POINTS_ALONG_BHA = 48
 POINTS_OF_PLAN = 1000
 REACH_ABOVE_BHA = 1.15  # how far up the hole is drawn in the bit frame, over the length of the BHA
 AHEAD = 0.2  # how far ahead of the bit the directions of bit and hole are drawn, over the length of the BHA
-
-
-def path(length: Array, inclination: Array) -> Array:
-    """Positions (x, z) of the stations of a hole, (N, 2), the first one at the origin.
-
-    The inclination (N,) is linear in length (N,) in between, so each piece is an arc of a circle: exact.
-    """
-    mean = (inclination[1:] + inclination[:-1]) / 2
-    chord = np.diff(length) * np.sinc(np.diff(inclination) / (2 * np.pi))
-    pieces = chord[:, None] * np.column_stack((np.sin(mean), np.cos(mean)))
-    return np.concatenate((np.zeros((1, 2)), np.cumsum(pieces, axis=0)))
 
 
 @dataclass(frozen=True)

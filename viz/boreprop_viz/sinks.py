@@ -109,6 +109,8 @@ def recording_to(path: Path) -> Iterator[rr.RecordingStream]:
         end = Thread(target=rec.disconnect, daemon=True)  # this writes the file's end
         end.start()
         end.join(PATIENCE)  # as `flush`
+        if end.is_alive():
+            raise OSError(f"{path}: must be written within {PATIENCE:g} s, got a file without its end")
 
 
 def flush(rec: rr.RecordingStream) -> None:

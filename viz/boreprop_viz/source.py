@@ -12,10 +12,10 @@ from boreprop.case import Case, InputError
 from boreprop.completion import case_of, complete
 from boreprop.core.hole import Survey
 from boreprop.results import Trajectory
+from boreprop.summary import BUILD_LENGTH
 from boreprop_fmu.drive import Run
 
 from .scene import REACH_ABOVE_BHA, Array, Hole, bit_positions, existing_hole, turning
-from .style import BUILD_LENGTH
 
 BATCH = 1000  # rows drawn at once
 PATIENCE = 0.1  # s until rows that have come are drawn

@@ -11,6 +11,7 @@ from boreprop.case import Case
 from boreprop.completion import case_of
 from boreprop.core.variables import BY_NAME
 from boreprop.results import Trajectory
+from boreprop.summary import BUILD_LENGTH
 
 from .scene import Array, Bounds, frame_bounds, section_bounds
 
@@ -72,7 +73,7 @@ class Unit:
 
 
 DEGREES, KILONEWTON = Unit("°", 180 / pi), Unit("kN", 1e-3)
-DEGREES_PER_30_M = Unit("°/30 m", 30 * 180 / pi)
+DEGREES_PER_BUILD_LENGTH = Unit(f"°/{BUILD_LENGTH:g} m", BUILD_LENGTH * 180 / pi)
 METRES_PER_HOUR = Unit("m/h", 3600.0)
 
 
@@ -95,7 +96,6 @@ class Plot:
         return [run.columns[name] for run in runs for name in self.names(run.n) if name in run.columns]
 
 
-BUILD_LENGTH = 30.0  # m: build rates are told over this length, and per it
 PLOTS = {
     "inclination": Plot(
         "Inclination",
@@ -104,8 +104,8 @@ PLOTS = {
         (ORANGE, SKY_BLUE, WHITE),
     ),
     "build_rate": Plot(
-        "Build rate over 30 m, dogleg severity over ℓ₁",
-        DEGREES_PER_30_M,
+        f"Build rate over {BUILD_LENGTH:g} m, dogleg severity over ℓ₁",
+        DEGREES_PER_BUILD_LENGTH,
         ("dogleg_severity", "build_rate"),
         (GREY, GREEN),
     ),

@@ -6,12 +6,10 @@ cross the imaginary axis. Those ηΠ have a closed form, so no root is ever look
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import inf, nan
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..case import InputError
 from ..core.assembly import BitRock, BottomHoleAssembly, ParameterError, Scaled, check_increasing, check_number, scale
 from .characteristic import Characteristic, Floats
 from .stability import SMALLEST_ETA_PI, Verdict, stabilizer_numbers, touching_stabilizers
@@ -20,7 +18,6 @@ VERDICTS = tuple(Verdict)  # by their codes in a chart
 STABLE, DRIFT, OSCILLATORY = range(3)
 REAL_AXIS = np.concatenate([np.logspace(-7.0, -2.0, 16), np.arange(0.02, 3.0, 0.03), np.logspace(0.5, 4.0, 60)])
 SMALLEST_LAMBDA2 = 0.05
-MOST_VALUES = 5000  # on an axis
 
 Integers = NDArray[np.int64]
 
@@ -79,19 +76,6 @@ def lambda_2(bha: BottomHoleAssembly) -> float:
     if not others:
         raise ParameterError("stabilizer_positions", "must hold at least 2 for a chart over λ₂", (first,))
     return (others[0] - first) / first
-
-
-def parse_range(option: str, text: str) -> Floats:
-    """The values that START:STOP:COUNT stands for; `InputError` names the `option`."""
-    try:
-        start, stop, count = text.split(":")
-        low, high, number = float(start), float(stop), int(count)
-    except ValueError:
-        low, high, number = nan, nan, 0
-    if not (0 < low < high < inf and 2 <= number <= MOST_VALUES):
-        constraint = f"START:STOP:COUNT with 0 < START < STOP and COUNT from 2 to {MOST_VALUES}"
-        raise InputError(f"{option}: must be {constraint}, got {text!r}")
-    return np.linspace(low, high, number)
 
 
 def stability_chart(

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
-from math import radians
+from math import inf, nan, radians
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
@@ -13,6 +13,8 @@ from ..core.assembly import BitRock, BottomHoleAssembly
 from ..core.variables import BY_NAME
 
 T = TypeVar("T")
+
+MOST_VALUES = 5000  # on an axis of a picture
 
 CONVENIENT = {"eta_pi": "active_weight_on_bit", "bit_tilt_limit_deg": "bit_tilt_limit"}
 """Names that a study knows besides those of the table of variables → what they stand for."""
@@ -198,6 +200,19 @@ def parse_each(parse: Callable[[str], tuple[str, T]], texts: Iterable[str]) -> d
             raise InputError(f"{name}: must be varied once, got {text!r} besides")
         found[name] = value
     return found
+
+
+def parse_range(option: str, text: str) -> NDArray[np.float64]:
+    """The values that START:STOP:COUNT stands for; `InputError` names the `option`."""
+    try:
+        start, stop, count = text.split(":")
+        low, high, number = float(start), float(stop), int(count)
+    except ValueError:
+        low, high, number = nan, nan, 0
+    if not (0 < low < high < inf and 2 <= number <= MOST_VALUES):
+        constraint = f"START:STOP:COUNT with 0 < START < STOP and COUNT from 2 to {MOST_VALUES}"
+        raise InputError(f"{option}: must be {constraint}, got {text!r}")
+    return np.linspace(low, high, number)
 
 
 def parse_axis(text: str) -> tuple[str, NDArray[np.float64]]:

@@ -32,7 +32,7 @@ from math import cos, inf, sin
 
 from ..core.assembly import BitRock, BottomHoleAssembly, Scaled, check_number, eta_pi, scale
 from ..core.beam import Beam
-from ..core.contact import ROUNDING, Loads, Mode, Modes, Row, change, left
+from ..core.contact import ROUNDING, Loads, Mode, Modes, Row, change, left, wall
 from ..core.drilling import check_inputs
 from ..core.linear import dot
 
@@ -233,7 +233,7 @@ def _in_si(bha: BottomHoleAssembly, line: "Line", rss_force: float) -> SteadyRes
         build_rate_error=line.error_rate * kappa / l1,
         bit_tilt=psi,
         bit_tilt_saturation=line.tilt,
-        stabilizer_contact=tuple(contact if clearance else (f > 0) - (f < 0) for contact, f, clearance in contacts),
+        stabilizer_contact=tuple(contact if clearance else wall(f) for contact, f, clearance in contacts),
         stabilizer_force=tuple(f * F_star for f in F),
         stabilizer_deflection=tuple(row(loads) * l1 for row in line.mode.delta),
     )

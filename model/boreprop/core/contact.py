@@ -127,6 +127,11 @@ def change(contact: int, side: int) -> int:
     return 0 if contact else -side
 
 
+def wall(F: float) -> int:
+    """The wall that bears a stabilizer with the force F: 1 the lower, −1 the upper, 0 none."""
+    return 1 if F > 0 else -1 if F < 0 else 0
+
+
 def bit_tilt(F_0: float, eta_pi: float, psi_star: float) -> float:
     """ψ = clip(F_0/(ηΠ), −ψ*, ψ*), eqs. (10) and (11)."""
     return min(max(F_0 / eta_pi, -psi_star), psi_star)

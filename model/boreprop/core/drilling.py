@@ -3,7 +3,7 @@
 from typing import Any
 
 from .assembly import BitRock, BottomHoleAssembly, check_number, eta_pi, scale
-from .contact import bit_tilt, left
+from .contact import bit_tilt, left, wall
 from .hole import Survey
 from .propagation import MERGE, RELATIVE_TOLERANCE, Propagation
 from .variables import BY_NAME
@@ -111,7 +111,7 @@ class Drilling:
         values |= {f"average_inclination[{i}]": average for i, average in enumerate(averages, 1)}
         values |= {f"stabilizer_deflection[{i}]": d * l1 for i, d in enumerate(delta, 1)}
         values |= {f"stabilizer_force[{i}]": f * F_star for i, f in enumerate(F, 1)}
-        values |= {f"stabilizer_contact[{i}]": int(f > 0) - int(f < 0) for i, f in enumerate(F, 1)}
+        values |= {f"stabilizer_contact[{i}]": wall(f) for i, f in enumerate(F, 1)}
         return values | {
             "bit_tilt_saturation": left(F_0 / p.eta_pi, -psi_star, psi_star),
             "bit_lateral_force": F_0 * F_star,
