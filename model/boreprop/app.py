@@ -33,6 +33,9 @@ def simulate(
     length: Annotated[
         float | None, typer.Option(parser=console.positive, metavar="M", help="Length to drill, m, if not the case's.")
     ] = None,
+    engine: Annotated[
+        str, typer.Option(metavar="python|native", help="The model in Python, or the same as compiled code: faster.")
+    ] = "python",
 ) -> None:
     """Simulate a case; rows at k times the sample interval, k = 0, 1, …"""
     from .case import InputError, load_case
@@ -49,7 +52,7 @@ def simulate(
     from .simulation import simulate
 
     with console.progress("drilling", case.length) as drilled:
-        trajectory = simulate(case, sample_interval=sample_interval, progress=drilled)
+        trajectory = simulate(case, sample_interval=sample_interval, progress=drilled, engine=engine)
     write_trajectory(trajectory, output)
     print(f"{output}: {len(trajectory)} rows over {case.length:g} m")
 

@@ -108,9 +108,11 @@ def run(app: typer.Typer) -> NoReturn:
     except (KeyboardInterrupt, typer.Abort):
         sys.exit(130)
     except RuntimeError as error:
-        from .simulation import SimulationError  # not before: it brings numpy
+        from .kernel.binding import KernelError  # not before: these bring numpy
+        from .kernel.compiler import CompilerError
+        from .simulation import SimulationError
 
-        if not isinstance(error, SimulationError):
+        if not isinstance(error, (SimulationError, KernelError, CompilerError)):
             raise
         fail(str(error))
 

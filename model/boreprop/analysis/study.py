@@ -37,7 +37,7 @@ from numpy.typing import NDArray
 from ..case import Case, InputError, dump_case, shown
 from ..core.variables import BY_NAME
 from ..results import CASE_KEY, replacing
-from ..simulation import simulate
+from ..simulation import best_engine, simulate
 from ..summary import summarize
 from .design import CONVENIENT as CONVENIENT
 from .design import Study as Study
@@ -58,7 +58,7 @@ WRITING = 0.02  # share of the time that goes into writing the file
 
 def key_figures(case: Case) -> dict[str, float]:
     """A simulation in a dozen numbers, SI units: the `boreprop.summary.Summary` of a run, one name for each number."""
-    summary = summarize(simulate(case), case.bha.length_scale)
+    summary = summarize(simulate(case, engine=best_engine()), case.bha.length_scale)
     wave = summary.rippling
     stabilizers = list(enumerate(zip(summary.largest_contact_force, summary.contact_share, strict=True), 1))
     return {

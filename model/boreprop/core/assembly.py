@@ -97,7 +97,7 @@ class BottomHoleAssembly:
     @property
     def force_scale(self) -> float:
         """F* = 3EI/ℓ₁², N."""
-        return 3.0 * self.flexural_stiffness / self.length_scale**2
+        return 3.0 * self.flexural_stiffness / (self.length_scale * self.length_scale)
 
 
 @dataclass(frozen=True)

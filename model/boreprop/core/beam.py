@@ -15,27 +15,27 @@ def flexibility(s: float, p: float, lambda_: float) -> float:
     """Deflection at `s` under a unit force at `p`, eq. (20); symmetric in s and p."""
     if s < p:
         s, p = p, s
-    return p**2 / (4 * lambda_**3) * (2 * lambda_**3 * (3 * s - p) + (p - 3 * lambda_) * s**2 * (3 * lambda_ - s))
+    return p * p / (4 * lambda_**3) * (2 * lambda_**3 * (3 * s - p) + (p - 3 * lambda_) * s * s * (3 * lambda_ - s))
 
 
 def end_offset_deflection(s: float, lambda_: float) -> float:
     """Deflection at `s` under a unit offset e_n of the last stabilizer: ζ_k(s)/λ_k of eq. (21)."""
-    return s**2 * (s - 3 * lambda_) / (2 * lambda_**3)
+    return s * s * (s - 3 * lambda_) / (2 * lambda_**3)
 
 
 def weight_deflection(s: float, w: float, lambda_: float) -> float:
     """Deflection at `s` under the weight, per sin⟨Θ⟩_1: ζ_{n+2}(s) of eq. (21)."""
-    return w / 16 * s**2 * (2 * s - 3 * lambda_) * (lambda_ - s)
+    return w / 16 * s * s * (2 * s - 3 * lambda_) * (lambda_ - s)
 
 
 def force_moment(p: float, lambda_: float) -> float:
     """Moment M at the bit under a unit force at `p`: (23b) and (23c) times εηΠ."""
-    return p * (p - lambda_) * (2 * lambda_ - p) / (2 * lambda_**2)
+    return p * (p - lambda_) * (2 * lambda_ - p) / (2 * lambda_ * lambda_)
 
 
 def force_reaction(p: float, lambda_: float) -> float:
     """Lateral force F_0 at the bit under a unit force at `p`: (24b) and (24c)."""
-    return -(2 * lambda_**3 - 3 * lambda_ * p**2 + p**3) / (2 * lambda_**3)
+    return -(2 * lambda_**3 - 3 * lambda_ * p * p + p**3) / (2 * lambda_**3)
 
 
 class Beam:
@@ -58,10 +58,10 @@ class Beam:
         self.delta_e = [end_offset_deflection(s_i, lambda_) for s_i in s]
         self.delta_rss = [flexibility(s_i, Delta, lambda_) for s_i in s]
         self.delta_g = [weight_deflection(s_i, w, lambda_) for s_i in s]
-        self.M_e = 1 / lambda_**2
+        self.M_e = 1 / (lambda_ * lambda_)
         self.M_F = [force_moment(s_i, lambda_) for s_i in s]
         self.M_rss = force_moment(Delta, lambda_)
-        self.M_g = w * lambda_**2 / 8
+        self.M_g = w * lambda_ * lambda_ / 8
         self.F0_e = 1 / lambda_**3
         self.F0_F = [force_reaction(s_i, lambda_) for s_i in s]
         self.F0_rss = force_reaction(Delta, lambda_)

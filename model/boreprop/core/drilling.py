@@ -15,6 +15,12 @@ def check_inputs(rss_force: float, active_weight_on_bit: float) -> None:
     check_number("active_weight_on_bit", active_weight_on_bit, above=0.0)
 
 
+def check_tolerance(relative_tolerance: float) -> None:
+    """Raise `ParameterError` unless the tolerance is in the range of the table of variables."""
+    allowed = BY_NAME["relative_tolerance"]
+    check_number("relative_tolerance", relative_tolerance, at_least=allowed.min, at_most=allowed.max)
+
+
 class Drilling:
     """A borehole as it is drilled, from the end of the survey on.
 
@@ -46,8 +52,7 @@ class Drilling:
         relative_tolerance: float = RELATIVE_TOLERANCE,
     ) -> None:
         check_inputs(rss_force, active_weight_on_bit)
-        allowed = BY_NAME["relative_tolerance"]
-        check_number("relative_tolerance", relative_tolerance, at_least=allowed.min, at_most=allowed.max)
+        check_tolerance(relative_tolerance)
         self._bha, self._bit = bha, bit
         self._length, self._force = bha.length_scale, bha.force_scale
         self.drilled_length = 0.0

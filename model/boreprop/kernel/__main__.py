@@ -1,0 +1,12 @@
+"""Compile the kernel for this machine, where the binding finds it: ``python -m boreprop.kernel``."""
+
+import sys
+
+from .compiler import CompilerError, build_library
+
+if __name__ == "__main__":
+    try:
+        print(build_library())
+    except (CompilerError, OSError) as error:
+        print("error:", error, file=sys.stderr)
+        sys.exit(2)

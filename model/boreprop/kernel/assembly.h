@@ -1,0 +1,152 @@
+/* The drilling system in SI units, and the paper's dimensionless numbers made from it. */
+#ifndef BOREPROP_ASSEMBLY_H
+#define BOREPROP_ASSEMBLY_H
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_STABILIZERS = 6, MESSAGE = 512 };
+
+/* FAILED: `why` says in one line what is wrong. FULL: the memory is. Nothing has moved after either. */
+typedef enum { DONE, FAILED, FULL } Status;
+
+typedef long long Count; /* of stations, and of pieces of hole: 32 bits are not enough for a long life */
+
+/* The parameters of the table of variables, in SI units. */
+typedef struct {
+    int n; /* stabilizers */
+    double stabilizer_position[MAX_STABILIZERS], stabilizer_clearance[MAX_STABILIZERS - 1];
+    double rss_position, distributed_weight, flexural_stiffness;
+    double lateral_steering_resistance, angular_steering_resistance, bit_tilt_limit;
+    double relative_tolerance;
+} System;
+
+/* The drilling system in the paper's numbers: lengths over ℓ₁, forces over F*, moments over F*ℓ₁. */
+typedef struct {
+    int n;
+    double s[MAX_STABILIZERS];          /* s_1 … s_n, distance of the stabilizers from the bit; s_1 = 1 */
+    double y_star[MAX_STABILIZERS - 1]; /* y*_1 … y*_{n−1} */
+    double Delta;                       /* distance of the RSS from the bit */
+    double w;                           /* w̃ = w ℓ₁ / F* */
+    double epsilon;                     /* ε = χ/η */
+    double psi_star;                    /* ψ*, rad */
+} Scaled;
+
+static inline double larger(double a, double b) { return b > a ? b : a; }
+static inline double smaller(double a, double b) { return b < a ? b : a; }
+
+/* The number with so many digits, with a decimal point in every locale. */
+static inline const char *decimal(double value, int digits, char text[32]) {
+    char *end = text;
+    snprintf(text, 32, "%.*g", digits, value);
+    if (!isfinite(value)) return strcpy(text, isnan(value) ? "nan" : value > 0 ? "inf" : "-inf");
+    for (const char *from = text; *from; from++)
+        if (strchr("0123456789+-e", *from)) *end++ = *from;
+        else if (end == text || end[-1] != '.') *end++ = '.';
+    *end = '\0';
+    return text;
+}
+
+/* A short decimal that reads back as the same number. */
+static inline const char *represent(double value, char text[32]) {
+    int digits = 15;
+    char local[32];
+    do snprintf(local, sizeof local, "%.*g", digits, value);
+    while (strtod(local, NULL) != value && ++digits < 17);
+    decimal(value, digits, text);
+    return isfinite(value) && !strpbrk(text, ".e") ? strcat(text, ".0") : text;
+}
+
+/* Whether the value is finite, > above, >= at_least and <= at_most; `why` says what is not. */
+static inline int check_number(
+    const char *name, double value, double above, double at_least, double at_most, char why[MESSAGE]
+) {
+    char limit[32], got[32];
+    if (isfinite(value) && value > above && value >= at_least && value <= at_most) return 1;
+    represent(value, got);
+    if (!isfinite(value)) snprintf(why, MESSAGE, "%s: must be a finite number, got %s", name, got);
+    else if (value <= above) snprintf(why, MESSAGE, "%s: must be > %s, got %s", name, decimal(above, 6, limit), got);
+    else if (value < at_least)
+        snprintf(why, MESSAGE, "%s: must be >= %s, got %s", name, decimal(at_least, 6, limit), got);
+    else snprintf(why, MESSAGE, "%s: must be <= %s, got %s", name, decimal(at_most, 6, limit), got);
+    return 0;
+}
+
+static inline int check_finite(const char *name, double value, char why[MESSAGE]) {
+    return check_number(name, value, -INFINITY, -INFINITY, INFINITY, why);
+}
+
+static inline int check_positive(const char *name, double value, char why[MESSAGE]) {
+    return check_number(name, value, 0.0, -INFINITY, INFINITY, why);
+}
+
+static inline int check_at_least(const char *name, double value, double at_least, char why[MESSAGE]) {
+    return check_number(name, value, -INFINITY, at_least, INFINITY, why);
+}
+
+/* Whether every value is finite and larger than the one before. */
+static inline int check_increasing(const char *name, Count count, const double *values, char why[MESSAGE]) {
+    char before[32], after[32];
+    for (Count i = 0; i < count; i++)
+        if (!check_finite(name, values[i], why)) return 0;
+    for (Count i = 1; i < count; i++)
+        if (values[i] <= values[i - 1]) {
+            represent(values[i - 1], before), represent(values[i], after);
+            snprintf(why, MESSAGE, "%s: must increase, got (%s, %s)", name, before, after);
+            return 0;
+        }
+    return 1;
+}
+
+static inline int check_system(const System *system, char why[MESSAGE]) {
+    const double *positions = system->stabilizer_position;
+    if (system->n < 1 || system->n > MAX_STABILIZERS) {
+        snprintf(why, MESSAGE, "stabilizer_position: must hold 1 to %d positions, got %d", MAX_STABILIZERS, system->n);
+        return 0;
+    }
+    if (!check_positive("stabilizer_position", positions[0], why)) return 0;
+    if (!check_increasing("stabilizer_position", system->n, positions, why)) return 0;
+    for (int i = 0; i < system->n - 1; i++)
+        if (!check_at_least("stabilizer_clearance", system->stabilizer_clearance[i], 0.0, why)) return 0;
+    return check_number("rss_position", system->rss_position, -INFINITY, 0.0, positions[0], why) &&
+           check_at_least("distributed_weight", system->distributed_weight, 0.0, why) &&
+           check_positive("flexural_stiffness", system->flexural_stiffness, why) &&
+           check_positive("lateral_steering_resistance", system->lateral_steering_resistance, why) &&
+           check_positive("angular_steering_resistance", system->angular_steering_resistance, why) &&
+           check_number("bit_tilt_limit", system->bit_tilt_limit, 0.0, -INFINITY, 1.5707963267948966, why) &&
+           check_number("relative_tolerance", system->relative_tolerance, -INFINITY, 1e-12, 1e-2, why);
+}
+
+/* ℓ₁, m: the distance from the bit to the first stabilizer. */
+static inline double length_scale(const System *system) { return system->stabilizer_position[0]; }
+
+/* F* = 3EI/ℓ₁², N. */
+static inline double force_scale(const System *system) {
+    return 3.0 * system->flexural_stiffness / (length_scale(system) * length_scale(system));
+}
+
+/* λ_i: distance from stabilizer i−1 (the bit) to stabilizer i, counted from 0 here. */
+static inline double lambda_(const Scaled *scaled, int i) { return scaled->s[i] - (i ? scaled->s[i - 1] : 0.0); }
+
+/* The dimensionless numbers of a drilling system, section II of the paper. */
+static inline Scaled scale(const System *system) {
+    double l1 = length_scale(system);
+    Scaled scaled = {0};
+    scaled.n = system->n;
+    for (int i = 0; i < system->n; i++) scaled.s[i] = system->stabilizer_position[i] / l1;
+    for (int i = 0; i < system->n - 1; i++) scaled.y_star[i] = system->stabilizer_clearance[i] / l1;
+    scaled.Delta = system->rss_position / l1;
+    scaled.w = system->distributed_weight * l1 / force_scale(system);
+    scaled.epsilon = system->angular_steering_resistance / system->lateral_steering_resistance;
+    scaled.psi_star = system->bit_tilt_limit;
+    return scaled;
+}
+
+/* ηΠ, the active weight on bit (N) over F*, times the lateral steering resistance. */
+static inline double eta_pi(const System *system, double active_weight_on_bit) {
+    return system->lateral_steering_resistance * active_weight_on_bit / force_scale(system);
+}
+
+#endif

@@ -1,0 +1,200 @@
+"""Compiles C to shared libraries: for this machine with its own compiler, for any platform of an FMU with ziglang.
+
+What ziglang compiles is the same byte for byte wherever, whenever and by whomever it is compiled.
+
+Needs the standard library only and imports nothing of the package: the build hook loads this file by its path.
+"""
+
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+import sysconfig
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+from importlib.util import find_spec
+from pathlib import Path
+from platform import libc_ver, machine
+from tempfile import TemporaryDirectory
+
+FOLDER = Path(__file__).resolve().parent  # of the kernel's sources
+
+# results must not depend on the processor: no fused multiply-add, no -march
+FLAGS = ("-std=c99", "-O2", "-g0", "-ffp-contract=off", "-fPIC", "-shared")
+
+# what zig may know of its surroundings: where its cache is, and what Windows needs to run anything
+ENVIRONMENT = {"HOME", "LOCALAPPDATA", "PATH", "SYSTEMROOT", "TEMP", "TMP", "TMPDIR", "USERPROFILE"}
+ENVIRONMENT |= {"XDG_CACHE_HOME", "ZIG_GLOBAL_CACHE_DIR"}
+
+
+class CompilerError(RuntimeError):
+    """Nothing was compiled. The message says on one line what is missing or wrong and what helps."""
+
+
+@dataclass(frozen=True)
+class Platform:
+    """Where a library is to run.
+
+    Parameters
+    ----------
+    system, machine
+        Its operating system and processor, as Python calls them.
+    target
+        The same, as zig calls them.
+    suffix
+        Of its shared libraries.
+    flags
+        What zig is told for it besides.
+    """
+
+    system: str
+    machine: str
+    target: str
+    suffix: str
+    flags: tuple[str, ...] = ()
+
+
+PLATFORMS = {  # under the names of FMI 2.0.4
+    "linux64": Platform("linux", "x86_64", "x86_64-linux-gnu.2.17", ".so"),
+    # not stripped it would hold when it was linked; what it exports stays
+    "win64": Platform("win32", "x86_64", "x86_64-windows-gnu", ".dll", ("-s",)),
+    "darwin64": Platform("darwin", "x86_64", "x86_64-macos.11.0", ".dylib"),
+    "aarch64-linux": Platform("linux", "aarch64", "aarch64-linux-gnu.2.17", ".so"),
+    "aarch64-darwin": Platform("darwin", "aarch64", "aarch64-macos.11.0", ".dylib"),
+}
+
+
+def host_platform() -> str | None:
+    """The name in `PLATFORMS` of what this Python runs on; None if it is none of them."""
+    if sys.maxsize < 2**32 or (sys.platform == "linux" and libc_ver()[0] != "glibc"):
+        return None
+    processor = {"amd64": "x86_64", "arm64": "aarch64"}.get(machine().lower(), machine())
+    names = [name for name, made in PLATFORMS.items() if (made.system, made.machine) == (sys.platform, processor)]
+    return names[0] if names else None
+
+
+def compile_library(
+    source: Path,
+    output: Path,
+    *,
+    include: Sequence[Path] = (),
+    defines: Mapping[str, str] = {},
+    platform: str | None = None,
+) -> Path:
+    """Compile one C file and what it includes to one shared library.
+
+    Parameters
+    ----------
+    source
+        The C file.
+    output
+        The library. It appears whole or not at all.
+    include
+        Folders with headers; that of `source` is searched in any case.
+    defines
+        Macros: name → what takes its place.
+    platform
+        A name of `PLATFORMS`: with ziglang, for machines as old as with glibc 2.17 or macOS 11. The bytes depend on
+        `source`, what it includes, `defines`, the name of `output` and the version of ziglang, on nothing else.
+        None: for this machine, with $CC, else cc, gcc or clang, else ziglang; $CFLAGS are obeyed.
+
+    Returns
+    -------
+    output
+
+    Raises
+    ------
+    CompilerError
+        If there is no compiler, it finds a mistake, or the platform is not known.
+    OSError
+        If `output` cannot be written.
+    """
+    if platform is None:
+        compiler = _own_compiler()
+        flags = _words("CFLAGS")
+        environment = dict(os.environ)
+    elif platform in PLATFORMS:
+        compiler = _zig(platform)
+        flags = list(PLATFORMS[platform].flags)
+        environment = {name: value for name, value in os.environ.items() if name.upper() in ENVIRONMENT}
+    else:
+        raise CompilerError(f"platform: must be one of {', '.join(PLATFORMS)}, got {platform!r}")
+    if not compiler:
+        what = "ziglang" if platform else "a C compiler (cc, gcc, clang or $CC) or ziglang"
+        target = platform or "this machine"
+        raise CompilerError(f"{what} must be installed to compile for {target}: pip install 'boreprop[native]'")
+
+    folders = [Path(folder).resolve() for folder in (source.parent, *include)]
+    flags += [f"-I{folder}" for folder in folders]
+    if platform is not None:
+        flags += [f"-fmacro-prefix-map={folder}{os.sep}=" for folder in folders]
+    flags += [f"-D{name}={value}" for name, value in defines.items()]
+    output = output.resolve()
+    # linkers leave more than the library, and write its name, as it is given, into it
+    with TemporaryDirectory(dir=output.parent, prefix=f".{output.name}.") as draft:
+        command = [*compiler, *FLAGS, *flags, "-o", output.name, str(source.resolve()), "-lm"]
+        run = subprocess.run(command, cwd=draft, env=environment, capture_output=True, text=True, errors="replace")
+        if run.returncode or not (Path(draft) / output.name).exists():
+            raise CompilerError(f"{source}: must compile with {Path(compiler[0]).name}, got: {_gist(run.stderr)}")
+        os.replace(Path(draft) / output.name, output)
+    return output
+
+
+def _own_compiler() -> list[str]:
+    """The command of a compiler for this machine; empty if there is none."""
+    named = _words("CC")
+    for words in [named] if named else [["cc"], ["gcc"], ["clang"]]:
+        program = shutil.which(words[0])
+        if program:
+            return [os.path.abspath(program), *words[1:]]
+    if named:
+        raise CompilerError(f"CC: must be the command of a C compiler, got {' '.join(named)!r}")
+    return _zig(host_platform())
+
+
+def _words(name: str) -> list[str]:
+    """The words of an environment variable; none if it is not set."""
+    return shlex.split(os.environ.get(name, ""), posix=os.name == "posix")
+
+
+def _zig(platform: str | None) -> list[str]:
+    """The command of zig's C compiler for a platform (None: this machine, whatever it is); empty if there is none."""
+    # pip hides the packages of an environment from what it builds there, but not where they are
+    folders = [sysconfig.get_path("purelib"), sysconfig.get_path("platlib")]
+    spec = find_spec("ziglang")
+    if spec and spec.origin:
+        folders.insert(0, str(Path(spec.origin).parents[1]))
+    for folder in folders:
+        program = Path(folder) / "ziglang" / ("zig.exe" if os.name == "nt" else "zig")
+        if program.exists():
+            return [str(program), "cc", *(("-target", PLATFORMS[platform].target) if platform else ())]
+    return []
+
+
+def _gist(messages: str) -> str:
+    """The first error among a compiler's messages, or their last line."""
+    lines = [line.strip() for line in messages.splitlines() if line.strip()] or ["no message"]
+    return next((line for line in lines if "error" in line), lines[-1])
+
+
+def library_path() -> Path:
+    """Where the kernel's library for this machine is, or would be."""
+    suffix = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
+    return FOLDER / f"boreprop_kernel{suffix}"
+
+
+def sources_digest() -> str:
+    """A digest of the kernel's sources, names and contents; the library says which it was made from."""
+    digest = sha256()
+    for path in sorted([*FOLDER.glob("*.c"), *FOLDER.glob("*.h")]):
+        text = path.read_bytes()
+        digest.update(f"{path.name} {len(text)}\n".encode() + text)
+    return digest.hexdigest()[:16]
+
+
+def build_library(output: Path | None = None) -> Path:
+    """Compile the kernel for this machine, to `library_path` if not told otherwise; errors as in `compile_library`."""
+    defines = {"BOREPROP_SOURCES_DIGEST": f'"{sources_digest()}"'}
+    return compile_library(FOLDER / "library.c", output or library_path(), defines=defines)

@@ -1,0 +1,162 @@
+/* The two nonlinearities: stabilizers that touch the wall or not, and a bit tilt that saturates.
+
+   With the contacts known (a mode), F follows from q̃ by elimination, so M, F_0, δ and F are linear functions of the
+   hole, the RSS force and the weight; which contacts hold is found by pivoting from the last mode. */
+#ifndef BOREPROP_CONTACT_H
+#define BOREPROP_CONTACT_H
+
+#include "beam.h"
+#include "linear.h"
+
+/* What bends the beam besides the contacts: offsets e_1 … e_n, F_RSS and sin⟨Θ⟩_1. */
+typedef struct {
+    double e[MAX_STABILIZERS], F_rss, sin_Theta_1;
+} Loads;
+
+/* A linear function of the loads: e · e_i + rss · F_RSS + g · sin⟨Θ⟩_1 + one. */
+typedef struct {
+    double e[MAX_STABILIZERS], rss, g, one;
+} Row;
+
+/* Value under `loads`. */
+static inline double row_value(const Row *row, const Loads *loads, int n) {
+    return dot(n, row->e, loads->e) + row->rss * loads->F_rss + row->g * loads->sin_Theta_1 + row->one;
+}
+
+/* Add a sum of factors times rows. */
+static inline Row row_plus(Row row, int count, const double *factors, const Row *rows) {
+    Row sum = {{0}, 0, 0, 0};
+    for (int k = 0; k < count; k++) {
+        for (int i = 0; i < MAX_STABILIZERS; i++) sum.e[i] += factors[k] * rows[k].e[i];
+        sum.rss += factors[k] * rows[k].rss;
+        sum.g += factors[k] * rows[k].g;
+        sum.one += factors[k] * rows[k].one;
+    }
+    for (int i = 0; i < MAX_STABILIZERS; i++) row.e[i] += sum.e[i];
+    row.rss += sum.rss, row.g += sum.g, row.one += sum.one;
+    return row;
+}
+
+/* A contact at each non-ideal stabilizer: 1 lower wall, −1 upper wall, 0 free. */
+typedef struct {
+    signed char of[MAX_STABILIZERS];
+} Contact;
+
+static inline int same_contact(Contact a, Contact b) { return !memcmp(&a, &b, sizeof a); }
+
+/* The beam with known contacts.
+
+   In contact δ_i = −contact_i y*_i, so F_C = −K_C (q̃_C + contact_C y*_C) with K_C = (K⁻¹_CC)⁻¹, and F = 0 elsewhere. */
+typedef struct {
+    Contact contact;
+    Row F[MAX_STABILIZERS], delta[MAX_STABILIZERS], M, F_0;
+} Mode;
+
+static inline Mode make_mode(const Beam *beam, const double *y_star, Contact contact) {
+    int n = beam->n, C[MAX_STABILIZERS], touching = 0;
+    double K_inv_CC[SIZE][SIZE], K_C[SIZE][SIZE];
+    Row q[MAX_STABILIZERS] = {{{0}, 0, 0, 0}}, to_wall[MAX_STABILIZERS], zero = {{0}, 0, 0, 0};
+    Mode mode = {0};
+    mode.contact = contact;
+    for (int i = 0; i < n - 1; i++) {
+        q[i].e[i] = 1.0;
+        q[i].e[n - 1] = beam->delta_e[i];
+        q[i].rss = beam->delta_rss[i], q[i].g = beam->delta_g[i];
+        if (contact.of[i]) C[touching++] = i;
+    }
+    for (int k = 0; k < touching; k++) {
+        for (int l = 0; l < touching; l++) K_inv_CC[k][l] = beam->K_inv[C[k]][C[l]];
+        to_wall[k] = q[C[k]];
+        to_wall[k].one = contact.of[C[k]] * y_star[C[k]];
+    }
+    inverse(touching, (const double(*)[SIZE])K_inv_CC, K_C);
+    for (int k = 0; k < touching; k++) {
+        for (int l = 0; l < touching; l++) K_C[k][l] = -K_C[k][l];
+        mode.F[C[k]] = row_plus(zero, touching, K_C[k], to_wall);
+    }
+    for (int i = 0; i < n - 1; i++) mode.delta[i] = row_plus(q[i], n - 1, beam->K_inv[i], mode.F);
+    mode.M.e[n - 1] = beam->M_e, mode.M.rss = beam->M_rss, mode.M.g = beam->M_g;
+    mode.M = row_plus(mode.M, n - 1, beam->M_F, mode.F);
+    mode.F_0.e[n - 1] = beam->F0_e, mode.F_0.rss = beam->F0_rss, mode.F_0.g = beam->F0_g;
+    mode.F_0 = row_plus(mode.F_0, n - 1, beam->F0_F, mode.F);
+    return mode;
+}
+
+enum { MODES = 4, MOST_PIVOTS = 1000 };
+
+/* The last few modes of one beam that were asked for. */
+typedef struct {
+    Beam beam;
+    double y_star[MAX_STABILIZERS - 1];
+    Mode made[MODES];
+    int count, next;
+} Modes;
+
+static inline const Mode *mode_of(Modes *modes, Contact contact) {
+    for (int k = 0; k < modes->count; k++)
+        if (same_contact(modes->made[k].contact, contact)) return &modes->made[k];
+    Mode *mode = &modes->made[modes->next];
+    *mode = make_mode(&modes->beam, modes->y_star, contact);
+    modes->next = (modes->next + 1) % MODES;
+    if (modes->count < MODES) modes->count++;
+    return mode;
+}
+
+#define ROUNDING 1e-13 /* how far a force or deflection of order one may lie beyond its bound by rounding alone */
+
+/* 1 if `value` is above its bounds, −1 if below, 0 between. */
+static inline int left(double value, double lower, double upper) {
+    return value > upper + ROUNDING ? 1 : value < lower - ROUNDING ? -1 : 0;
+}
+
+/* The contact after leaving the bounds on `side`: a touching stabilizer comes free, a free one touches δ = ±y*. */
+static inline signed char change(int contact, int side) { return (signed char)(contact ? 0 : -side); }
+
+/* The wall that bears a stabilizer with the force F: 1 the lower, −1 the upper, 0 none. */
+static inline int wall(double F) { return F > 0 ? 1 : F < 0 ? -1 : 0; }
+
+/* ψ = clip(F_0/(ηΠ), −ψ*, ψ*), eqs. (10) and (11). */
+static inline double bit_tilt(double F_0, double eta_pi, double psi_star) {
+    return smaller(larger(F_0 / eta_pi, -psi_star), psi_star);
+}
+
+/* What must lie between two bounds for stabilizer `i` to stay as it is in `mode`: F_i in contact, else δ_i.
+
+   Without clearance the stabilizer is held on both sides and nothing can change. */
+static inline const Row *mode_bounds(const Modes *modes, const Mode *mode, int i, double *lower, double *upper) {
+    int contact = mode->contact.of[i];
+    if (modes->y_star[i] == 0.0) {
+        *lower = -INFINITY, *upper = INFINITY;
+        return &mode->F[i];
+    }
+    if (contact) {
+        *lower = contact > 0 ? 0.0 : -INFINITY, *upper = contact > 0 ? INFINITY : 0.0;
+        return &mode->F[i];
+    }
+    *lower = -modes->y_star[i], *upper = modes->y_star[i];
+    return &mode->delta[i];
+}
+
+/* The mode that satisfies (7) under `loads`, starting the search from `contact`.
+
+   Least-index pivoting: change the first stabilizer whose condition fails, until none does. K is positive definite, so
+   no set of contacts comes back and the search ends (Murty 1974; Júdice & Pires 1992 for two walls). */
+static inline const Mode *settle(Modes *modes, const Loads *loads, Contact contact) {
+    int n = modes->beam.n;
+    const Mode *mode;
+    for (int i = 0; i < n - 1; i++)
+        if (modes->y_star[i] == 0.0) contact.of[i] = 1;
+    for (int pivots = 0;; pivots++) {
+        int i, side = 0;
+        mode = mode_of(modes, contact);
+        for (i = 0; i < n - 1 && !side; i++) {
+            double lower, upper;
+            const Row *row = mode_bounds(modes, mode, i, &lower, &upper);
+            side = left(row_value(row, loads, n), lower, upper);
+            if (side) contact.of[i] = change(contact.of[i], side);
+        }
+        if (!side || pivots == MOST_PIVOTS) return mode; /* more pivots than modes: K is singular but for rounding */
+    }
+}
+
+#endif

@@ -1,0 +1,250 @@
+/* A drilling run in SI units: the shell around the propagation. Nothing here allocates: the caller gives the memory. */
+#ifndef BOREPROP_DRILLING_H
+#define BOREPROP_DRILLING_H
+
+#include "propagation.h"
+
+enum { LEAST_CAPACITY = 1024, MOST_OUTPUTS = 4 * MAX_STABILIZERS + 8 };
+
+/* RSS force, N, and its change per metre drilled, N/m, from where the bit is on; weight on bit, N. */
+typedef struct {
+    double rss_force, rss_force_slope, active_weight_on_bit;
+} Inputs;
+
+/* A borehole as it is drilled, from the end of the survey on. */
+typedef struct {
+    System system;
+    double drilled_length; /* m */
+    Propagation propagation;
+} Drilling;
+
+static inline int check_inputs(Inputs inputs, char why[MESSAGE]) {
+    return check_finite("rss_force", inputs.rss_force, why) &&
+           check_finite("rss_force_slope", inputs.rss_force_slope, why) &&
+           check_positive("active_weight_on_bit", inputs.active_weight_on_bit, why);
+}
+
+static inline ScaledInputs scale_inputs(const System *system, Inputs inputs) {
+    double F_star = force_scale(system);
+    ScaledInputs scaled = {
+        inputs.rss_force / F_star, inputs.rss_force_slope * length_scale(system) / F_star,
+        eta_pi(system, inputs.active_weight_on_bit)
+    };
+    return scaled;
+}
+
+/* Capacity, in pieces of hole, that a run under ordinary inputs needs. */
+static inline Count drilling_capacity(const System *system, const Survey *survey) {
+    double l1 = length_scale(system), reach = system->stabilizer_position[system->n - 1] / l1;
+    Count count, first = first_station(survey, l1, reach, &count), capacity = LEAST_CAPACITY;
+    while (capacity < 4 * (count - first)) capacity *= 2;
+    return capacity;
+}
+
+/* Bytes for a capacity (a power of two). */
+static inline size_t drilling_memory(Count capacity) { return (size_t)capacity * (sizeof(Piece) + sizeof(Kink)); }
+
+static inline Hole lay_out(void *memory, Count capacity) {
+    Hole hole = {(Piece *)memory, (Kink *)(void *)((Piece *)memory + capacity), capacity};
+    return hole;
+}
+
+/* Start at the end of the survey. Everything is checked; the survey need not live on, the memory must. */
+static inline Status drilling_start(
+    Drilling *d, const System *system, const Survey *survey, Inputs inputs, void *memory, Count capacity,
+    char why[MESSAGE]
+) {
+    if (!check_survey(survey, why) || !check_system(system, why) || !check_inputs(inputs, why)) return FAILED;
+    if (capacity < drilling_capacity(system, survey)) return FULL;
+    Scaled scaled = scale(system);
+    ScaledInputs scaled_inputs = scale_inputs(system, inputs);
+    double numbers = scaled.Delta + scaled.w + scaled.epsilon + scaled.s[scaled.n - 1] + scaled_inputs.F_rss;
+    if (!isfinite(numbers) || !isfinite(1 / scaled_inputs.eta_pi) || !isfinite(1 / scaled.epsilon)) {
+        snprintf(why, MESSAGE, "parameters: must give finite numbers, got eta_pi = %g", scaled_inputs.eta_pi);
+        return FAILED;
+    }
+    d->system = *system;
+    d->drilled_length = 0.0;
+    d->propagation.hole = lay_out(memory, capacity);
+    begin(&d->propagation, &scaled, survey, length_scale(system), scaled_inputs, system->relative_tolerance);
+    return DONE;
+}
+
+/* Drill on to a length, m from the start, under inputs from here; where the bit is already, only they are taken over. */
+static inline Status drilling_advance(Drilling *d, double drilled_length, Inputs inputs, char why[MESSAGE]) {
+    if (!check_inputs(inputs, why)) return FAILED;
+    if (!check_at_least("drilled_length", drilled_length, d->drilled_length, why)) return FAILED;
+    double xi = drilled_length / length_scale(&d->system);
+    Status status = drill(&d->propagation, xi, scale_inputs(&d->system, inputs), why);
+    if (status == DONE) d->drilled_length = drilled_length;
+    return status;
+}
+
+/* Every output of the table of variables where the bit is, in its order; returns how many. */
+static inline int drilling_outputs(Drilling *d, double out[MOST_OUTPUTS]) {
+    Propagation *p = &d->propagation;
+    const State *now = &p->now;
+    int n = p->scaled.n;
+    double l1 = length_scale(&d->system), F_star = force_scale(&d->system), psi_star = p->scaled.psi_star;
+    double theta, Y, x, z, *next = out;
+    step_state(&now->step, now->xi, &theta, &Y);
+    Loads loads = present_loads(p);
+    const Mode *mode = settle(&p->modes, &loads, now->contact);
+    double F[MAX_STABILIZERS] = {0}, F_0 = row_value(&mode->F_0, &loads, n);
+    double psi = bit_tilt(F_0, now->inputs.eta_pi, psi_star), Theta = theta - psi;
+    for (int i = 0; i < n - 1; i++) F[i] = row_value(&mode->F[i], &loads, n);
+    position_at(now, now->xi, &x, &z);
+    *next++ = d->drilled_length;
+    *next++ = theta;
+    *next++ = Theta;
+    *next++ = psi;
+    for (int i = 0; i < n; i++) /* λ_i (⟨Θ⟩_i − θ) = e_i − e_{i−1} */
+        *next++ = theta + (loads.e[i] - (i ? loads.e[i - 1] : 0.0)) / lambda_(&p->scaled, i);
+    for (int i = 0; i < n - 1; i++) *next++ = row_value(&mode->delta[i], &loads, n) * l1;
+    for (int i = 0; i < n - 1; i++) *next++ = F[i] * F_star;
+    for (int i = 0; i < n - 1; i++) *next++ = wall(F[i]);
+    *next++ = left(F_0 / now->inputs.eta_pi, -psi_star, psi_star);
+    *next++ = F_0 * F_star;
+    *next++ = -row_value(&mode->M, &loads, n) * F_star * l1;
+    /* where Θ jumped: after the jump */
+    *next++ = (Theta - hole_Theta(&p->hole, now->pieces, now->xi - 1.0 + MERGE)) / l1;
+    *next++ = x * l1;
+    *next++ = z * l1;
+    *next++ = now->inputs.eta_pi;
+    return (int)(next - out);
+}
+
+/* A state as numbers, written to or read from a tape: first the whole ones, then the others of which there is a fixed
+   count, then the pieces of the hole and the kinks. */
+typedef struct {
+    double *at;
+    int reading;
+} Tape;
+
+enum { WHOLE_NUMBERS = 5 + 2 * MAX_STABILIZERS, FIXED_NUMBERS = WHOLE_NUMBERS + 28 };
+enum { NUMBERS_OF_PIECE = S + 3, NUMBERS_OF_KINK = 3 };
+
+static inline void pass(Tape *tape, int count, double *values) {
+    memcpy(tape->reading ? values : tape->at, tape->reading ? tape->at : values, (size_t)count * sizeof *values);
+    tape->at += count;
+}
+
+static inline Count pass_whole(Tape *tape, Count value) {
+    double number = (double)value;
+    pass(tape, 1, &number);
+    return (Count)number;
+}
+
+static inline void pass_state(Tape *tape, Drilling *d) {
+    Propagation *p = &d->propagation;
+    State *now = &p->now;
+    Step *step = &now->step;
+    Count first_kink = now->ahead[p->scaled.n - 1];
+    if (tape->reading) now->pieces.first = first_kink = 0;
+    now->pieces.end = now->pieces.first + pass_whole(tape, now->pieces.end - now->pieces.first);
+    now->kinks_end = first_kink + pass_whole(tape, now->kinks_end - first_kink);
+    for (int i = 0; i < MAX_STABILIZERS; i++) {
+        now->ahead[i] = first_kink + pass_whole(tape, i < p->scaled.n ? now->ahead[i] - first_kink : 0);
+        now->contact.of[i] = (signed char)pass_whole(tape, now->contact.of[i]);
+    }
+    now->tilt = (int)pass_whole(tape, now->tilt);
+    step->event = (int)pass_whole(tape, step->event);
+    step->side = (int)pass_whole(tape, step->side);
+    pass(tape, 1, &step->next_h); /* the one that may be infinite */
+    pass(tape, 1, &d->drilled_length);
+    pass(tape, 1, &now->xi);
+    pass(tape, 1, &now->inputs.F_rss);
+    pass(tape, 1, &now->inputs.F_rss_slope);
+    pass(tape, 1, &now->inputs.eta_pi);
+    pass(tape, 1, &now->inputs_xi);
+    pass(tape, 2, now->path);
+    pass(tape, 1, &now->origin);
+    pass(tape, 1, &step->xi);
+    pass(tape, 1, &step->h);
+    pass(tape, S + 1, step->theta);
+    pass(tape, S + 1, step->Y);
+    pass(tape, 1, &step->end);
+    pass(tape, 1, &now->accepted);
+    pass(tape, 1, &now->rejected);
+    pass(tape, 1, &now->events);
+    for (Count k = now->pieces.first; k < now->pieces.end; k++) {
+        Piece *at = piece(&p->hole, k);
+        pass(tape, 1, &at->start), pass(tape, 1, &at->rate), pass(tape, S + 1, at->c);
+    }
+    for (Count k = first_kink; k < now->kinks_end; k++) {
+        Kink *at = kink(&p->hole, k);
+        pass(tape, 1, &at->xi), pass(tape, 1, &at->jump), pass(tape, 1, &at->order);
+    }
+}
+
+/* How many numbers `drilling_save` writes. */
+static inline Count drilling_state_size(const Drilling *d) {
+    const State *now = &d->propagation.now;
+    return FIXED_NUMBERS + NUMBERS_OF_PIECE * (now->pieces.end - now->pieces.first) +
+           NUMBERS_OF_KINK * (now->kinks_end - now->ahead[d->propagation.scaled.n - 1]);
+}
+
+/* Write everything that evolves. */
+static inline void drilling_save(Drilling *d, double *state) {
+    Tape tape = {state, 0};
+    pass_state(&tape, d);
+}
+
+static inline int is_whole(double value, double least, double most) {
+    return value >= least && value <= most && value == floor(value);
+}
+
+/* Whether these numbers can be a state: counts that agree, flags that are some, nothing that is no number. */
+static inline int is_state(const Drilling *d, const double *state, Count count) {
+    int n = d->propagation.scaled.n;
+    if (count < FIXED_NUMBERS) return 0;
+    double pieces = state[0], kinks = state[1], most = (double)count;
+    if (!is_whole(pieces, 1, most) || !is_whole(kinks, 0, most)) return 0;
+    if (FIXED_NUMBERS + NUMBERS_OF_PIECE * pieces + NUMBERS_OF_KINK * kinks != most) return 0;
+    for (int i = 0; i < MAX_STABILIZERS; i++)
+        if (!is_whole(state[2 + 2 * i], 0, kinks) || !is_whole(state[3 + 2 * i], -1, 1)) return 0;
+    if (state[2 * n] != 0) return 0; /* the last stabilizer is the last to pass a kink */
+    if (!is_whole(state[WHOLE_NUMBERS - 3], -1, 1) || !is_whole(state[WHOLE_NUMBERS - 2], NONE, n - 1)) return 0;
+    if (!is_whole(state[WHOLE_NUMBERS - 1], -1, 1) || !(state[WHOLE_NUMBERS] > 0)) return 0;
+    for (Count k = WHOLE_NUMBERS + 1; k < count; k++)
+        if (!isfinite(state[k])) return 0;
+    for (Count k = count - 1; k >= count - NUMBERS_OF_KINK * (Count)kinks; k -= NUMBERS_OF_KINK)
+        if (!is_whole(state[k], 1, SMOOTHEST_KINK)) return 0;
+    return 1;
+}
+
+/* Capacity that a state needs. */
+static inline Count drilling_state_capacity(const double *state, Count count) {
+    Count capacity = LEAST_CAPACITY;
+    double wanted = count < FIXED_NUMBERS ? 0 : larger(state[0], state[1]);
+    while (capacity < 2 * wanted + 2 && capacity < 4 * count) capacity *= 2;
+    return capacity;
+}
+
+/* Go back to a state of a run with the same system. */
+static inline Status drilling_restore(Drilling *d, const double *state, Count count, char why[MESSAGE]) {
+    Tape tape = {(double *)state, 1};
+    if (!is_state(d, state, count)) {
+        snprintf(why, MESSAGE, "state: must be one of this system, got %lld numbers that are none", count);
+        return FAILED;
+    }
+    if (d->propagation.hole.capacity < drilling_state_capacity(state, count)) return FULL;
+    pass_state(&tape, d);
+    d->propagation.law_known = 0;
+    return DONE;
+}
+
+/* Go on in a larger memory; the old one may be freed then. */
+static inline void drilling_move(Drilling *d, void *memory, Count capacity) {
+    Propagation *p = &d->propagation;
+    State *now = &p->now;
+    Hole hole = lay_out(memory, capacity);
+    for (Count k = now->pieces.first; k < now->pieces.end; k++) *piece(&hole, k) = *piece(&p->hole, k);
+    for (Count k = now->ahead[p->scaled.n - 1]; k < now->kinks_end; k++) *kink(&hole, k) = *kink(&p->hole, k);
+    p->hole = hole;
+}
+
+/* m drilled. */
+static inline double drilling_length(const Drilling *d) { return d->drilled_length; }
+
+#endif

@@ -1,0 +1,48 @@
+/* A drilling run that owns its memory, and takes more where inputs change so often that the hole has many pieces. */
+#ifndef BOREPROP_GROWING_H
+#define BOREPROP_GROWING_H
+
+#include "drilling.h"
+
+enum { MOST_PIECES = 1 << 20 }; /* of one step of a host: some thousands of ℓ₁ */
+
+typedef struct {
+    Drilling drilling;
+    void *memory;
+} Run;
+
+/* Take memory of a capacity; what the run held stays. */
+static inline Status grow(Run *run, Count capacity, int started, char why[MESSAGE]) {
+    void *memory = capacity <= MOST_PIECES ? malloc(drilling_memory(capacity)) : NULL;
+    if (!memory) {
+        snprintf(why, MESSAGE, "step: must take at most %d steps of the integrator, got more", MOST_PIECES / 2);
+        return FAILED;
+    }
+    if (started) drilling_move(&run->drilling, memory, capacity);
+    free(run->memory);
+    run->memory = memory;
+    return DONE;
+}
+
+static inline Status run_start(Run *run, const System *system, const Survey *survey, Inputs inputs, char why[MESSAGE]) {
+    if (!check_survey(survey, why) || !check_system(system, why)) return FAILED;
+    Count capacity = drilling_capacity(system, survey);
+    if (grow(run, capacity, 0, why) != DONE) return FAILED;
+    return drilling_start(&run->drilling, system, survey, inputs, run->memory, capacity, why);
+}
+
+static inline Status run_advance(Run *run, double drilled_length, Inputs inputs, char why[MESSAGE]) {
+    Status status;
+    while ((status = drilling_advance(&run->drilling, drilled_length, inputs, why)) == FULL)
+        if (grow(run, 2 * run->drilling.propagation.hole.capacity, 1, why) != DONE) return FAILED;
+    return status;
+}
+
+static inline Status run_restore(Run *run, const double *state, Count count, char why[MESSAGE]) {
+    Status status = drilling_restore(&run->drilling, state, count, why);
+    if (status != FULL) return status;
+    if (grow(run, drilling_state_capacity(state, count), 1, why) != DONE) return FAILED;
+    return drilling_restore(&run->drilling, state, count, why);
+}
+
+#endif

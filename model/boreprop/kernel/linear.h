@@ -1,0 +1,41 @@
+/* The little linear algebra the kernel needs. */
+#ifndef BOREPROP_LINEAR_H
+#define BOREPROP_LINEAR_H
+
+#include <math.h>
+
+enum { SIZE = 6 }; /* of the largest matrix */
+
+/* Sum of the products of two lists. */
+static inline double dot(int count, const double *a, const double *b) {
+    double sum = 0.0;
+    for (int i = 0; i < count; i++) sum += a[i] * b[i];
+    return sum;
+}
+
+/* Inverse of a regular matrix by Gauss–Jordan elimination with pivoting. */
+static inline void inverse(int size, const double matrix[SIZE][SIZE], double result[SIZE][SIZE]) {
+    double rows[SIZE][2 * SIZE];
+    for (int i = 0; i < size; i++)
+        for (int j = 0; j < size; j++) rows[i][j] = matrix[i][j], rows[i][size + j] = i == j;
+    for (int column = 0; column < size; column++) {
+        int pivot = column;
+        for (int i = column + 1; i < size; i++)
+            if (fabs(rows[i][column]) > fabs(rows[pivot][column])) pivot = i;
+        double divisor = rows[pivot][column];
+        for (int j = 0; j < 2 * size; j++) {
+            double value = rows[pivot][j];
+            rows[pivot][j] = rows[column][j];
+            rows[column][j] = value / divisor;
+        }
+        for (int i = 0; i < size; i++) {
+            double factor = rows[i][column];
+            if (i == column) continue;
+            for (int j = 0; j < 2 * size; j++) rows[i][j] -= factor * rows[column][j];
+        }
+    }
+    for (int i = 0; i < size; i++)
+        for (int j = 0; j < size; j++) result[i][j] = rows[i][size + j];
+}
+
+#endif
