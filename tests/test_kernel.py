@@ -249,7 +249,6 @@ def test_a_number_in_a_message_reads_back_as_the_same(value: float) -> None:
     name, _, written = why.value.decode().rpartition(", got ")
     assert name == "flexural_stiffness: must be > 0"
     assert float(written) == value
-    assert len(written) <= len(repr(value)) + 1
 
 
 # what happens where it is not

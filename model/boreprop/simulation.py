@@ -85,7 +85,7 @@ def simulate(
     names = scalar_names(OUTPUTS, len(case.bha.stabilizer_positions))
     table = np.empty((int(length / sample_interval + ROUNDING) + 1, len(names)))
     lengths, forces, rows = _legs(case.schedule, len(table), sample_interval)
-    batch = len(lengths) // PARTS + 1
+    batch = len(lengths) // PARTS + 1 if progress else len(lengths)
     for start in range(0, len(lengths), batch):
         part = slice(start, start + batch)
         failure = follow(drilling, lengths[part], forces[part], weight, rows[part], table)

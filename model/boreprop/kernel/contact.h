@@ -46,7 +46,7 @@ static inline int same_contact(Contact a, Contact b) { return !memcmp(&a, &b, si
 
 /* The beam with known contacts.
 
-   In contact δ_i = −contact_i y*_i, so F_C = −K_C (q̃_C + contact_C y*_C) with K_C = (K⁻¹_CC)⁻¹, and F = 0 elsewhere. */
+   In contact δ_i = −contact_i y*_i, so F_C = −K_C (q̃_C + contact_C y*_C), K_C = (K⁻¹_CC)⁻¹, and F = 0 elsewhere. */
 typedef struct {
     Contact contact;
     Row F[MAX_STABILIZERS], delta[MAX_STABILIZERS], M, F_0;

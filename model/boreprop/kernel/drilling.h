@@ -70,7 +70,7 @@ static inline Status drilling_start(
     return DONE;
 }
 
-/* Drill on to a length, m from the start, under inputs from here; where the bit is already, only they are taken over. */
+/* Drill on to a length, m from the start, under inputs from here; where the bit is, only they are taken over. */
 static inline Status drilling_advance(Drilling *d, double drilled_length, Inputs inputs, char why[MESSAGE]) {
     if (!check_inputs(inputs, why)) return FAILED;
     if (!check_at_least("drilled_length", drilled_length, d->drilled_length, why)) return FAILED;

@@ -93,7 +93,8 @@ static inline double take_survey(
     *kinks = 0;
     for (Count k = 0; k < pieces->end; k++) {
         double from, to, before = bend;
-        station(survey, length_scale, reach, first + k, &from), station(survey, length_scale, reach, first + k + 1, &to);
+        station(survey, length_scale, reach, first + k, &from);
+        station(survey, length_scale, reach, first + k + 1, &to);
         bend = (to - from) * piece(hole, k)->rate;
         Kink passed = {piece(hole, k)->start, fabs(bend - before), 2.0};
         if (k > 0) *kink(hole, (*kinks)++) = passed;

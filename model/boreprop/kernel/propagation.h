@@ -45,8 +45,8 @@ typedef struct {
     double origin;  /* of Y */
     Step step;
     Pieces pieces;
-    Count kinks_end, ahead[MAX_STABILIZERS];       /* the next kink that each stabilizer will pass */
-    double accepted, rejected, events;            /* steps, steps, bounds met */
+    Count kinks_end, ahead[MAX_STABILIZERS]; /* the next kink that each stabilizer will pass */
+    double accepted, rejected, events;       /* steps, steps, bounds met */
 } State;
 
 /* The bit at the front of its hole, dimensionless: `drill` moves it, the rest looks. */
@@ -220,7 +220,9 @@ static inline int leave(Propagation *p, const Step *last, double *theta, double 
 }
 
 /* Collocation from (θ, Y) at `xi` over `h` in one mode. */
-static inline void try_step(const Propagation *p, const Law *law, double xi, double h, double theta, double Y, Trial *trial) {
+static inline void try_step(
+    const Propagation *p, const Law *law, double xi, double h, double theta, double Y, Trial *trial
+) {
     const Linear *rate = &law->theta_rate, *Theta = &law->Theta;
     double(*delayed)[POINTS] = trial->delayed;
     double *Ys = trial->Ys, *sines = trial->sines, *ahead = trial->ahead;
@@ -257,9 +259,10 @@ static inline void try_step(const Propagation *p, const Law *law, double xi, dou
     double moved_theta = trial->thetas[AT_CHECK] - theta, moved_Y = Ys[AT_CHECK] - Y, error_theta, error_Y;
     step_error(
         h, J,
-        step_slope(&p->radau, parts_theta) - h * (f_theta[AT_CHECK] + J.theta_theta * moved_theta + J.theta_Y * moved_Y),
-        step_slope(&p->radau, parts_Y) - h * (f_Y[AT_CHECK] + J.Y_theta * moved_theta + J.Y_Y * moved_Y), &error_theta,
-        &error_Y
+        step_slope(&p->radau, parts_theta) -
+            h * (f_theta[AT_CHECK] + J.theta_theta * moved_theta + J.theta_Y * moved_Y),
+        step_slope(&p->radau, parts_Y) - h * (f_Y[AT_CHECK] + J.Y_theta * moved_theta + J.Y_Y * moved_Y),
+        &error_theta, &error_Y
     );
     Step step = {xi, h, {0}, {0}, xi + h, NONE, 0, INFINITY};
     step_coefficients(&p->radau, theta, parts_theta, step.theta);
@@ -273,9 +276,8 @@ static inline double bound_value(const Propagation *p, const Bound *bound, const
     double theta, Y, delayed[MAX_STABILIZERS] = {0};
     step_state(step, xi, &theta, &Y);
     for (int i = 0; i < p->scaled.n; i++) delayed[i] = hole_Y(&p->hole, p->now.pieces, xi - p->scaled.s[i]);
-    return linear_at(
-        &bound->value, p->scaled.n, theta, Y, delayed, sin(Y - delayed[0]), xi - p->now.inputs_xi
-    );
+    double ahead = xi - p->now.inputs_xi;
+    return linear_at(&bound->value, p->scaled.n, theta, Y, delayed, sin(Y - delayed[0]), ahead);
 }
 
 /* Where a bound is passed on `side` in [a, b], its value at `b` being f_b beyond: by regula falsi with the weights of
@@ -316,7 +318,9 @@ static inline int extremes(const Sample *samples, int count, double *found) {
 }
 
 /* Where a step first meets one bound, given its values at the points; on which side, 0 if it does not. */
-static inline int meet(const Propagation *p, const Bound *bound, const Step *step, const double *values, double *where) {
+static inline int meet(
+    const Propagation *p, const Bound *bound, const Step *step, const double *values, double *where
+) {
     Sample known[2 * POINTS];
     double found[POINTS];
     int count = POINTS + 1;
@@ -353,7 +357,10 @@ static inline void cut_at_event(const Propagation *p, const Law *law, Trial *tri
         double near = NEAR * (high - low);
         if (low - near >= bound->lower && high + near <= bound->upper) continue;
         int side = meet(p, bound, &trial->step, values, &where);
-        if (side && where < trial->step.end) trial->step.end = where, trial->step.event = bound->part, trial->step.side = side;
+        if (side && where < trial->step.end) {
+            trial->step.end = where;
+            trial->step.event = bound->part, trial->step.side = side;
+        }
     }
 }
 
