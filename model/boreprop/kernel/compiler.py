@@ -22,7 +22,7 @@ from tempfile import TemporaryDirectory
 FOLDER = Path(__file__).resolve().parent  # of the kernel's sources
 
 # results must not depend on the processor: no fused multiply-add, no -march
-FLAGS = ("-std=c99", "-O2", "-g0", "-ffp-contract=off", "-fPIC", "-shared")
+FLAGS = ("-std=c99", "-O2", "-g0", "-ffp-contract=off", "-fPIC")
 
 # what zig may know of its surroundings: where its cache is, and what Windows needs to run anything
 ENVIRONMENT = {"HOME", "LOCALAPPDATA", "PATH", "SYSTEMROOT", "TEMP", "TMP", "TMPDIR", "USERPROFILE"}
@@ -45,21 +45,30 @@ class Platform:
         The same, as zig calls them.
     suffix
         Of its shared libraries.
-    flags
-        What zig is told for it besides.
+    sources
+        C files that are part of every library for it.
+    links
+        What zig is told to link it with.
     """
 
     system: str
     machine: str
     target: str
     suffix: str
-    flags: tuple[str, ...] = ()
+    sources: tuple[Path, ...] = ()
+    links: tuple[str, ...] = ("-lm",)
 
 
 PLATFORMS = {  # under the names of FMI 2.0.4
     "linux64": Platform("linux", "x86_64", "x86_64-linux-gnu.2.17", ".so"),
-    # not stripped it would hold when it was linked; what it exports stays
-    "win64": Platform("win32", "x86_64", "x86_64-windows-gnu", ".dll", ("-s",)),
+    "win64": Platform(
+        "win32",
+        "x86_64",
+        "x86_64-windows-gnu",
+        ".dll",
+        (FOLDER / "windows.c",),
+        ("-nostdlib", "-lucrtbase", "-s"),  # not stripped it would hold when it was linked; what it exports stays
+    ),
     "darwin64": Platform("darwin", "x86_64", "x86_64-macos.11.0", ".dylib"),
     "aarch64-linux": Platform("linux", "aarch64", "aarch64-linux-gnu.2.17", ".so"),
     "aarch64-darwin": Platform("darwin", "aarch64", "aarch64-macos.11.0", ".dylib"),
@@ -111,33 +120,36 @@ def compile_library(
     OSError
         If `output` cannot be written.
     """
-    if platform is None:
-        compiler = _own_compiler()
+    if platform is not None and platform not in PLATFORMS:
+        raise CompilerError(f"platform: must be one of {', '.join(PLATFORMS)}, got {platform!r}")
+    folders = [Path(folder).resolve() for folder in (source.parent, *include)]
+    sources = [source.resolve()]
+    links: tuple[str, ...] = ("-lm",)
+    if compiler := [] if platform else _own_compiler():
         flags = _words("CFLAGS")
         environment = dict(os.environ)
-    elif platform in PLATFORMS:
-        compiler = _zig(platform)
-        flags = list(PLATFORMS[platform].flags)
+    elif (zig := _zig()) and (made := PLATFORMS.get(platform or host_platform() or "")):
+        compiler = [str(zig), "cc", "-target", made.target]
+        flags = [f"-fmacro-prefix-map={folder}{os.sep}=" for folder in folders]
+        sources, links = [*sources, *made.sources], made.links
         environment = {name: value for name, value in os.environ.items() if name.upper() in ENVIRONMENT}
     else:
-        raise CompilerError(f"platform: must be one of {', '.join(PLATFORMS)}, got {platform!r}")
-    if not compiler:
         what = "ziglang" if platform else "a C compiler (cc, gcc, clang or $CC) or ziglang"
         target = platform or "this machine"
         raise CompilerError(f"{what} must be installed to compile for {target}: pip install 'boreprop[native]'")
 
-    folders = [Path(folder).resolve() for folder in (source.parent, *include)]
     flags += [f"-I{folder}" for folder in folders]
-    if platform is not None:
-        flags += [f"-fmacro-prefix-map={folder}{os.sep}=" for folder in folders]
     flags += [f"-D{name}={value}" for name, value in defines.items()]
     output = output.resolve()
     # linkers leave more than the library, and write its name, as it is given, into it
     with TemporaryDirectory(dir=output.parent, prefix=f".{output.name}.") as draft:
-        command = [*compiler, *FLAGS, *flags, "-o", output.name, str(source.resolve()), "-lm"]
-        run = subprocess.run(command, cwd=draft, env=environment, capture_output=True, text=True, errors="replace")
-        if run.returncode or not (Path(draft) / output.name).exists():
-            raise CompilerError(f"{source}: must compile with {Path(compiler[0]).name}, got: {_gist(run.stderr)}")
+        compiles = [["-c", str(path), "-o", f"{path.stem}.o"] for path in sources]
+        link = ["-shared", *(f"{path.stem}.o" for path in sources), "-o", output.name, *links]
+        for task in (*compiles, link):
+            command = [*compiler, *FLAGS, *flags, *task]
+            run = subprocess.run(command, cwd=draft, env=environment, capture_output=True, text=True, errors="replace")
+            if run.returncode:
+                raise CompilerError(f"{source}: must compile with {Path(compiler[0]).name}, got: {_gist(run.stderr)}")
         os.replace(Path(draft) / output.name, output)
     return output
 
@@ -151,7 +163,7 @@ def _own_compiler() -> list[str]:
             return [os.path.abspath(program), *words[1:]]
     if named:
         raise CompilerError(f"CC: must be the command of a C compiler, got {' '.join(named)!r}")
-    return _zig(host_platform())
+    return []
 
 
 def _words(name: str) -> list[str]:
@@ -159,18 +171,15 @@ def _words(name: str) -> list[str]:
     return shlex.split(os.environ.get(name, ""), posix=os.name == "posix")
 
 
-def _zig(platform: str | None) -> list[str]:
-    """The command of zig's C compiler for a platform (None: this machine, whatever it is); empty if there is none."""
+def _zig() -> Path | None:
+    """The program zig of the package ziglang, if that is installed."""
     # pip hides the packages of an environment from what it builds there, but not where they are
     folders = [sysconfig.get_path("purelib"), sysconfig.get_path("platlib")]
     spec = find_spec("ziglang")
     if spec and spec.origin:
         folders.insert(0, str(Path(spec.origin).parents[1]))
-    for folder in folders:
-        program = Path(folder) / "ziglang" / ("zig.exe" if os.name == "nt" else "zig")
-        if program.exists():
-            return [str(program), "cc", *(("-target", PLATFORMS[platform].target) if platform else ())]
-    return []
+    programs = [Path(folder, "ziglang", "zig.exe" if os.name == "nt" else "zig") for folder in folders]
+    return next(filter(Path.exists, programs), None)
 
 
 def _gist(messages: str) -> str:

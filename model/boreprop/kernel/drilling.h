@@ -70,7 +70,8 @@ static inline Status drilling_start(
     return DONE;
 }
 
-/* Drill on to a length, m from the start, under inputs from here; where the bit is, only they are taken over. */
+/* Drill on to a length, m from the start, under inputs from here; where the bit is, only they are taken over.
+   After FULL: `drilling_move`, and the same call again, which goes on; or `drilling_cancel`, and nothing has moved. */
 static inline Status drilling_advance(Drilling *d, double drilled_length, Inputs inputs, char why[MESSAGE]) {
     if (!check_inputs(inputs, why)) return FAILED;
     if (!check_at_least("drilled_length", drilled_length, d->drilled_length, why)) return FAILED;
@@ -79,6 +80,8 @@ static inline Status drilling_advance(Drilling *d, double drilled_length, Inputs
     if (status == DONE) d->drilled_length = drilled_length;
     return status;
 }
+
+static inline void drilling_cancel(Drilling *d) { go_back(&d->propagation); }
 
 /* Every output of the table of variables where the bit is, in its order; returns how many. */
 static inline int drilling_outputs(Drilling *d, double out[MOST_OUTPUTS]) {
@@ -230,7 +233,7 @@ static inline Status drilling_restore(Drilling *d, const double *state, Count co
     }
     if (d->propagation.hole.capacity < drilling_state_capacity(state, count)) return FULL;
     pass_state(&tape, d);
-    d->propagation.law_known = 0;
+    d->propagation.law_known = d->propagation.under_way = 0;
     return DONE;
 }
 
@@ -239,8 +242,10 @@ static inline void drilling_move(Drilling *d, void *memory, Count capacity) {
     Propagation *p = &d->propagation;
     State *now = &p->now;
     Hole hole = lay_out(memory, capacity);
-    for (Count k = now->pieces.first; k < now->pieces.end; k++) *piece(&hole, k) = *piece(&p->hole, k);
-    for (Count k = now->ahead[p->scaled.n - 1]; k < now->kinks_end; k++) *kink(&hole, k) = *kink(&p->hole, k);
+    Count first_piece = p->under_way ? p->oldest_piece : now->pieces.first;
+    Count first_kink = p->under_way ? p->oldest_kink : now->ahead[p->scaled.n - 1];
+    for (Count k = first_piece; k < now->pieces.end; k++) *piece(&hole, k) = *piece(&p->hole, k);
+    for (Count k = first_kink; k < now->kinks_end; k++) *kink(&hole, k) = *kink(&p->hole, k);
     p->hole = hole;
 }
 

@@ -34,7 +34,10 @@ static inline Status run_start(Run *run, const System *system, const Survey *sur
 static inline Status run_advance(Run *run, double drilled_length, Inputs inputs, char why[MESSAGE]) {
     Status status;
     while ((status = drilling_advance(&run->drilling, drilled_length, inputs, why)) == FULL)
-        if (grow(run, 2 * run->drilling.propagation.hole.capacity, 1, why) != DONE) return FAILED;
+        if (grow(run, 2 * run->drilling.propagation.hole.capacity, 1, why) != DONE) {
+            drilling_cancel(&run->drilling);
+            return FAILED;
+        }
     return status;
 }
 

@@ -59,7 +59,9 @@ typedef struct {
     State now;
     Law law;       /* of the present contact, tilt and inputs, */
     int law_known; /* once it has been asked for */
-    Count oldest_piece, oldest_kink; /* what the way back needs */
+    int under_way; /* from `before`, and what the way back there needs: */
+    State before;
+    Count oldest_piece, oldest_kink;
 } Propagation;
 
 /* A step as the collocation gives it, before events cut it, with values at the points. */
@@ -454,23 +456,31 @@ static inline void steer(Propagation *p, ScaledInputs inputs) {
         add_images(p, now->xi, 2, fabs(bend * mode_of(&p->modes, now->contact)->F_0.rss / inputs.eta_pi));
 }
 
-/* Drill on to `xi` under inputs that act from where the bit is. */
+/* Go back to where the way began that is not yet at its end. */
+static inline void go_back(Propagation *p) {
+    if (!p->under_way) return;
+    p->now = p->before;
+    p->law_known = p->under_way = 0;
+}
+
+/* Drill on to `xi` under inputs that act from where the bit is. After FULL the same call goes on in a larger memory. */
 static inline Status drill(Propagation *p, double xi, ScaledInputs inputs, char why[MESSAGE]) {
     State *now = &p->now;
     int changed = inputs.F_rss != present_force(now) || inputs.F_rss_slope != now->inputs.F_rss_slope ||
                   inputs.eta_pi != now->inputs.eta_pi;
     Status status = DONE;
     if (changed || xi > now->step.end) {
-        State before = *now;
-        p->oldest_piece = now->pieces.first, p->oldest_kink = now->ahead[p->scaled.n - 1];
-        if (changed && !has_room(p)) status = FULL;
-        else if (changed) steer(p, inputs);
-        while (status == DONE && xi > now->step.end) status = take_step(p, why);
-        if (status != DONE) {
-            *now = before;
-            p->law_known = 0;
-            return status;
+        if (!p->under_way) {
+            p->oldest_piece = now->pieces.first, p->oldest_kink = now->ahead[p->scaled.n - 1];
+            if (!has_room(p)) return FULL;
+            p->before = *now;
+            p->under_way = 1;
         }
+        if (changed) steer(p, inputs);
+        while (status == DONE && xi > now->step.end) status = take_step(p, why);
+        if (status == FAILED) go_back(p);
+        if (status != DONE) return status;
+        p->under_way = 0;
     }
     now->xi = xi;
     return DONE;

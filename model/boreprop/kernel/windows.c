@@ -1,0 +1,22 @@
+/* What a library for Windows needs besides Windows' own C library, ucrtbase.dll, where the start-up code and the
+   additions of MinGW are left out: zig compiles all of them, for a minute or two, when it first needs one. */
+#include <stdarg.h>
+#include <stdio.h>
+
+int vsnprintf(char *text, size_t size, const char *format, va_list arguments) {
+    return __stdio_common_vsprintf(_CRT_INTERNAL_PRINTF_STANDARD_SNPRINTF_BEHAVIOR, text, size, format, NULL, arguments);
+}
+
+int snprintf(char *text, size_t size, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(text, size, format, arguments);
+    va_end(arguments);
+    return length;
+}
+
+/* Nothing to start: no constructors, no variables of a thread. */
+int __stdcall _DllMainCRTStartup(void *library, unsigned long reason, void *reserved) {
+    (void)library, (void)reason, (void)reserved;
+    return 1;
+}
