@@ -27,16 +27,17 @@ lint: .venv/dev.installed  # style, types and the import contract
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-bench: .venv/dev.installed  # speed, side by side with something else
+bench: .venv/bench.installed  # speed, side by side with something else
 	$(BIN)/python benchmarks/integrator.py
 	$(BIN)/python benchmarks/whole_process.py
 	$(BIN)/python benchmarks/fmu_cost.py
 	$(BIN)/python benchmarks/viewer_cost.py
 	$(BIN)/python benchmarks/stability_chart.py
 	$(BIN)/python benchmarks/study.py
+	$(BIN)/python benchmarks/native.py
 
 clean:
-	rm -rf .venv out dist build .*_cache .hypothesis
+	rm -rf .venv out dist build .*_cache .hypothesis model/boreprop/kernel/boreprop_kernel.*
 
 .venv/%.installed: pyproject.toml
 	@$(PYTHON) -c 'import sys; v = sys.version.split()[0]; sys.exit(v and sys.version_info < (3, 11) and \
@@ -44,4 +45,5 @@ clean:
 	@echo 'Installing into .venv: a minute or two the first time'
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[$*]"
+	@$(BIN)/python -m boreprop.kernel >/dev/null 2>&1 || true  # again: the compiler may have come with the extras
 	@touch $@

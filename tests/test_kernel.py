@@ -196,7 +196,7 @@ def test_a_failure_moves_nothing(case: Case, to: float, force: float) -> None:
     before, outputs = run.save(), run.outputs()
     failure = run.advance(to, force, case.active_weight_on_bit)
     assert failure is not None
-    assert ("turns over" if force else "must take at most 524288 steps") in failure
+    assert ("turns over" if force else "must take at most 262144 steps") in failure
     np.testing.assert_array_equal(run.save(), before)
     assert run.outputs() == outputs
     assert run.advance(11.0, 100.0, case.active_weight_on_bit) is None

@@ -107,7 +107,8 @@ def compile_library(
     platform
         A name of `PLATFORMS`: with ziglang, for machines as old as with glibc 2.17 or macOS 11. The bytes depend on
         `source`, what it includes, `defines`, the name of `output` and the version of ziglang, on nothing else.
-        None: for this machine, with $CC, else cc, gcc or clang, else ziglang; $CFLAGS are obeyed.
+        For win64 there is of the C library what ucrtbase.dll has, and of printf's family snprintf and vsnprintf.
+        None: for this machine, with $CC, else cc, gcc or clang, else ziglang; $CFLAGS are for the former.
 
     Returns
     -------

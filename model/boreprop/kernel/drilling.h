@@ -66,8 +66,8 @@ static inline Status drilling_start(
     d->system = *system;
     d->drilled_length = 0.0;
     d->propagation.hole = lay_out(memory, capacity);
-    begin(&d->propagation, &scaled, survey, length_scale(system), scaled_inputs, system->relative_tolerance);
-    return DONE;
+    double tolerance = system->relative_tolerance;
+    return begin(&d->propagation, &scaled, survey, length_scale(system), scaled_inputs, tolerance, why);
 }
 
 /* Drill on to a length, m from the start, under inputs from here; where the bit is, only they are taken over.

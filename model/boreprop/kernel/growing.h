@@ -4,20 +4,22 @@
 
 #include "drilling.h"
 
-enum { MOST_PIECES = 1 << 20 }; /* of one step of a host: some thousands of ℓ₁ */
+enum { MOST_PIECES = 1 << 19, MOST_STEPS = MOST_PIECES / 2 }; /* in one step of a host: some thousands of ℓ₁ */
 
 typedef struct {
     Drilling drilling;
     void *memory;
 } Run;
 
+static inline Status too_long(char why[MESSAGE]) {
+    snprintf(why, MESSAGE, "step: must take at most %d steps of the integrator, got more", MOST_STEPS);
+    return FAILED;
+}
+
 /* Take memory of a capacity; what the run held stays. */
 static inline Status grow(Run *run, Count capacity, int started, char why[MESSAGE]) {
     void *memory = capacity <= MOST_PIECES ? malloc(drilling_memory(capacity)) : NULL;
-    if (!memory) {
-        snprintf(why, MESSAGE, "step: must take at most %d steps of the integrator, got more", MOST_PIECES / 2);
-        return FAILED;
-    }
+    if (!memory) return too_long(why);
     if (started) drilling_move(&run->drilling, memory, capacity);
     free(run->memory);
     run->memory = memory;
@@ -33,6 +35,8 @@ static inline Status run_start(Run *run, const System *system, const Survey *sur
 
 static inline Status run_advance(Run *run, double drilled_length, Inputs inputs, char why[MESSAGE]) {
     Status status;
+    double way = (drilled_length - drilling_length(&run->drilling)) / length_scale(&run->drilling.system);
+    if (isfinite(way) && way > MOST_STEPS * LARGEST_STEP) return too_long(why);
     while ((status = drilling_advance(&run->drilling, drilled_length, inputs, why)) == FULL)
         if (grow(run, 2 * run->drilling.propagation.hole.capacity, 1, why) != DONE) {
             drilling_cancel(&run->drilling);

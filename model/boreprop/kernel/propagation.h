@@ -145,16 +145,25 @@ static inline void add_images(Propagation *p, double xi, int order, double jump)
     if (order <= SMOOTHEST_KINK) *kink(&p->hole, p->now.kinks_end++) = added;
 }
 
+/* The line that says that numbers have run away. */
+static inline Status not_finite(double xi, char why[MESSAGE]) {
+    snprintf(why, MESSAGE, "the state is not finite at xi = %.9g: check inputs and parameters", xi);
+    return FAILED;
+}
+
 /* Find the mode under new inputs and mark the jump of the inclination, which was Θ, that they make. */
-static inline void restart(Propagation *p, double Theta) {
+static inline Status restart(Propagation *p, double Theta, char why[MESSAGE]) {
     State *now = &p->now;
     Loads loads = present_loads(p);
     const Mode *mode = settle(&p->modes, &loads, now->contact);
     double F_0 = row_value(&mode->F_0, &loads, p->scaled.n), psi_star = p->scaled.psi_star;
+    double jump = fabs(now->step.theta[0] - bit_tilt(F_0, now->inputs.eta_pi, psi_star) - Theta);
+    if (!isfinite(jump) || !isfinite(F_0)) return not_finite(now->xi, why);
     p->law_known = 0;
     now->contact = mode->contact;
     now->tilt = left(F_0 / now->inputs.eta_pi, -psi_star, psi_star);
-    add_images(p, now->xi, 1, fabs(now->step.theta[0] - bit_tilt(F_0, now->inputs.eta_pi, psi_star) - Theta));
+    add_images(p, now->xi, 1, jump);
+    return DONE;
 }
 
 static inline const Law *present_law(Propagation *p) {
@@ -399,10 +408,7 @@ static inline Status take_step(Propagation *p, char why[MESSAGE]) {
             return FAILED;
         }
         try_step(p, law, xi, h, theta, Y, &trial);
-        if (!isfinite(trial.error) || !isfinite(trial.step.Y[S])) {
-            snprintf(why, MESSAGE, "the state is not finite at xi = %.9g: check inputs and parameters", xi);
-            return FAILED;
-        }
+        if (!isfinite(trial.error) || !isfinite(trial.step.Y[S])) return not_finite(xi, why);
         growth = SAFETY * pow(larger(trial.error, 1e-12), -1.0 / (S + 1));
         if (trial.error > 1.0) {
             planned = resumed = h * larger(growth, 0.1);
@@ -444,16 +450,17 @@ static inline Status take_step(Propagation *p, char why[MESSAGE]) {
 /* moving */
 
 /* Take over inputs where the bit is. */
-static inline void steer(Propagation *p, ScaledInputs inputs) {
+static inline Status steer(Propagation *p, ScaledInputs inputs, char why[MESSAGE]) {
     State *now = &p->now;
     double before = inclination(p), theta, Y, bend = inputs.F_rss_slope - now->inputs.F_rss_slope;
     position_at(now, now->xi, &now->path[0], &now->path[1]);
     step_state(&now->step, now->xi, &theta, &Y);
     now->inputs = inputs, now->inputs_xi = now->xi;
     stand_still(now, theta, Y);
-    restart(p, before);
-    if (bend != 0 && !now->tilt)
+    Status status = restart(p, before, why);
+    if (status == DONE && bend != 0 && !now->tilt)
         add_images(p, now->xi, 2, fabs(bend * mode_of(&p->modes, now->contact)->F_0.rss / inputs.eta_pi));
+    return status;
 }
 
 /* Go back to where the way began that is not yet at its end. */
@@ -476,7 +483,7 @@ static inline Status drill(Propagation *p, double xi, ScaledInputs inputs, char 
             p->before = *now;
             p->under_way = 1;
         }
-        if (changed) steer(p, inputs);
+        if (changed) status = steer(p, inputs, why);
         while (status == DONE && xi > now->step.end) status = take_step(p, why);
         if (status == FAILED) go_back(p);
         if (status != DONE) return status;
@@ -487,9 +494,9 @@ static inline Status drill(Propagation *p, double xi, ScaledInputs inputs, char 
 }
 
 /* Start at the end of a survey; the rings must have room for it. */
-static inline void begin(
+static inline Status begin(
     Propagation *p, const Scaled *scaled, const Survey *survey, double length_scale, ScaledInputs inputs,
-    double relative_tolerance
+    double relative_tolerance, char why[MESSAGE]
 ) {
     State *now = &p->now;
     Hole hole = p->hole;
@@ -504,7 +511,7 @@ static inline void begin(
     double reach = scaled->s[scaled->n - 1];
     double final_inclination = take_survey(&hole, survey, length_scale, reach, &now->pieces, &now->kinks_end);
     stand_still(now, final_inclination, 0.0);
-    restart(p, final_inclination);
+    return restart(p, final_inclination, why);
 }
 
 #endif

@@ -1,10 +1,12 @@
-/* What a library for Windows needs besides Windows' own C library, ucrtbase.dll, where the start-up code and the
-   additions of MinGW are left out: zig compiles all of them, for a minute or two, when it first needs one. */
+/* What a library for Windows needs besides Windows' own C library, ucrtbase.dll, which does not export the standard's
+   functions that format. MinGW's start-up code and additions are left out: zig compiles all of them, for a minute or
+   two, when it first needs one. */
 #include <stdarg.h>
 #include <stdio.h>
 
 int vsnprintf(char *text, size_t size, const char *format, va_list arguments) {
-    return __stdio_common_vsprintf(_CRT_INTERNAL_PRINTF_STANDARD_SNPRINTF_BEHAVIOR, text, size, format, NULL, arguments);
+    const unsigned long long standard = _CRT_INTERNAL_PRINTF_STANDARD_SNPRINTF_BEHAVIOR;
+    return __stdio_common_vsprintf(standard, text, size, format, NULL, arguments);
 }
 
 int snprintf(char *text, size_t size, const char *format, ...) {
