@@ -5,13 +5,15 @@ import shutil
 import subprocess
 import sysconfig
 from collections.abc import Callable
+from hashlib import sha256
 from pathlib import Path
 
 import hypothesis
 import pytest
 
-from boreprop.case import Case, load_case
+from boreprop.case import Case, InputError, load_case
 from boreprop_fmu.build import build_fmu
+from flavours import PYTHON, Flavour
 
 # a landing tries the same examples as the last one, a developer's run new ones
 hypothesis.settings.register_profile("ci", derandomize=True)
@@ -21,6 +23,7 @@ if os.environ.get("CI"):
 EXAMPLES = Path(__file__).parents[1] / "examples"
 
 Command = Callable[..., subprocess.CompletedProcess[str]]
+Pack = Callable[[Case, Flavour], Path]
 
 
 @pytest.fixture(scope="session")
@@ -43,9 +46,40 @@ def case(paper_case: Path) -> Case:
 
 
 @pytest.fixture(scope="session")
-def fmu(case: Case, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Its FMU."""
-    return build_fmu(case, tmp_path_factory.mktemp("fmu") / "Borehole.fmu")
+def flavour(request: pytest.FixtureRequest) -> Flavour:
+    """Which FMU a test asks for; both, one after the other, with `both_flavours`."""
+    chosen: Flavour = getattr(request, "param", PYTHON)
+    return chosen
+
+
+@pytest.fixture(scope="session")
+def pack(tmp_path_factory: pytest.TempPathFactory) -> Pack:
+    """The FMU of a case, built once: ``pack(case, flavour)``. Without a compiler tests of native ones are skipped."""
+
+    folder = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        folder = folder.parent  # the workers share what they build
+
+    def packed(case: Case, flavour: Flavour) -> Path:
+        digest = sha256(repr(case).encode()).hexdigest()[:16]
+        fmu = folder / f"{flavour}_{digest}" / "Borehole.fmu"
+        if not fmu.exists():
+            fmu.parent.mkdir(exist_ok=True)
+            try:
+                build_fmu(case, fmu, runtime=flavour.runtime)
+            except InputError as error:
+                if "must be installed to compile" in str(error):
+                    pytest.skip(str(error))
+                raise
+        return fmu
+
+    return packed
+
+
+@pytest.fixture(scope="session")
+def fmu(case: Case, flavour: Flavour, pack: Pack) -> Path:
+    """The FMU of the paper's case."""
+    return pack(case, flavour)
 
 
 @pytest.fixture

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 from typing import Annotated, NoReturn
+from zipfile import ZipFile
 
 from boreprop import console
 from boreprop.console import positive, typer
@@ -23,6 +24,16 @@ def _boreprop_fmu(version: console.Version = False) -> None:
 def build(
     case_file: Annotated[Path, typer.Argument(metavar="CASE.toml", help="The case file.")],
     output: Annotated[Path, typer.Option(metavar="Borehole.fmu", help="The FMU.")],
+    runtime: Annotated[
+        str, typer.Option(metavar="python|native", help="What runs in it: Python, which the host has, or machine code.")
+    ] = "python",
+    platforms: Annotated[
+        str | None,
+        typer.Option(
+            metavar="linux64,win64,…|all|none",
+            help="What native code is compiled for, instead of this machine; none: only the C sources are packed.",
+        ),
+    ] = None,
 ) -> None:
     """Pack a case, and the model with it, as an FMU."""
     from boreprop.case import load_case
@@ -30,8 +41,25 @@ def build(
     from .build import build_fmu
 
     console.check_output(output, (".fmu",))
-    build_fmu(load_case(case_file), output)
-    print(f"{output}: {output.stat().st_size / 1e6:.1f} MB")
+    chosen = None if platforms is None else _chosen(platforms)
+    case = load_case(case_file)
+    with console.progress("compiling", 1 if chosen is None else len(chosen)) as done:
+        build_fmu(case, output, runtime=runtime, platforms=chosen, progress=done)
+    print(f"{output}: {output.stat().st_size / 1e6:.2g} MB, {runtime}: {', '.join(_contents(output))}")
+
+
+def _chosen(platforms: str) -> list[str]:
+    from boreprop.kernel.compiler import PLATFORMS
+
+    return {"all": list(PLATFORMS), "none": []}.get(platforms, platforms.split(","))
+
+
+def _contents(fmu: Path) -> list[str]:
+    """What an FMU runs on: platforms, and whether it has C sources."""
+    with ZipFile(fmu) as archive:
+        folders = [name.split("/")[:2] for name in archive.namelist()]
+    binaries = sorted({path[1] for path in folders if path[0] == "binaries"})
+    return binaries + ["C sources"] * any(path[0] == "sources" for path in folders)
 
 
 @app.command()

@@ -1,4 +1,4 @@
-"""Packs the model, as code and numbers, into an FMI 2.0 co-simulation FMU on pythonfmu's runtime.
+"""Packs the model, as code and numbers, into an FMI 2.0 co-simulation FMU: on pythonfmu's runtime, or as machine code.
 
 The archive is written here and not by pythonfmu's own builder, which imports the slave into the building process and
 makes a different file every time. From pythonfmu come the binaries and the base class of the slave.
@@ -6,13 +6,14 @@ makes a different file every time. From pythonfmu come the binaries and the base
 
 import json
 import zipfile
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from hashlib import sha256
 from importlib.resources import files
 from pathlib import Path
 from uuid import UUID, uuid5
 
-from boreprop.case import Case, dump_case
+from boreprop.case import Case, InputError, dump_case
 from boreprop.core.propagation import RELATIVE_TOLERANCE
 from boreprop.core.variables import BY_NAME
 from boreprop.results import replacing
@@ -25,7 +26,6 @@ IDENTIFIER = "Borehole"
 CAPABILITIES = {
     "needsExecutionTool": False,
     "canHandleVariableCommunicationStepSize": True,
-    "canInterpolateInputs": False,
     "canBeInstantiatedOnlyOncePerProcess": False,
     "canNotUseMemoryManagementFunctions": True,
     "canGetAndSetFMUstate": True,
@@ -49,18 +49,50 @@ class Borehole(Slave):
 '''
 EPOCH = (1980, 1, 1, 0, 0, 0)
 
+RUNTIMES = ("python", "native")
 
-def build_fmu(case: Case, output: Path) -> Path:
+
+def build_fmu(
+    case: Case,
+    output: Path,
+    *,
+    runtime: str = "python",
+    platforms: Sequence[str] | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Path:
     """Write the FMU of `case` to `output` and return that path. Same case, same code: same bytes.
+
+    Parameters
+    ----------
+    case
+        What the FMU starts from.
+    output
+        The file.
+    runtime
+        What runs in the FMU: "python", for hosts that have a Python; "native", machine code and its C sources.
+    platforms
+        For a native FMU: what it has binaries for, of `boreprop.kernel.compiler.PLATFORMS`. None: this machine; empty:
+        no binaries, only the sources.
+    progress
+        Called with the number of binaries compiled so far.
 
     Raises
     ------
+    InputError
+        If the runtime or a platform is unknown, there are platforms for Python, or nothing here compiles for one.
     OSError
         If the file cannot be written; nothing is left behind then.
     """
-    code = pack_code()
-    guid = str(uuid5(GUID_NAMESPACE, digest({**code, **pack_case(case, guid="")})))
-    archive = {**pack_case(case, guid), **code, **pack_runtime(), **pack_manual(case)}
+    if runtime not in RUNTIMES:
+        raise InputError(f"runtime: must be {' or '.join(RUNTIMES)}, got {runtime!r}")
+    if runtime == "native":
+        from .native import pack_native
+
+        archive = pack_native(case, platforms, progress)
+    elif platforms is not None:
+        raise InputError(f"platforms: must be left out for the runtime python, got {', '.join(platforms) or 'none'}")
+    else:
+        archive = pack_python(case)
     with replacing(output) as draft, zipfile.ZipFile(draft, "w") as fmu:
         for name in sorted(archive, key=lambda name: (name != "modelDescription.xml", name)):
             entry = zipfile.ZipInfo(name, EPOCH)
@@ -68,6 +100,19 @@ def build_fmu(case: Case, output: Path) -> Path:
             entry.external_attr = 0o644 << 16
             fmu.writestr(entry, archive[name])
     return output
+
+
+def pack_python(case: Case) -> dict[str, bytes]:
+    """The FMU on pythonfmu's runtime."""
+    code = pack_code()
+
+    def numbers(guid: str) -> dict[str, bytes]:
+        n = len(case.bha.stabilizer_positions)
+        packed = {"guid": guid, "stabilizers": n, "start": start_values(case), "survey": asdict(case.survey)}
+        return {**describe(case, guid), "resources/fmu.json": json.dumps(packed, indent=1).encode()}
+
+    guid = identify({**code, **numbers(guid="")})
+    return {**numbers(guid), **code, **pack_runtime(), **pack_manual(case, "python")}
 
 
 def pack_code() -> dict[str, bytes]:
@@ -85,25 +130,26 @@ def pack_code() -> dict[str, bytes]:
     }
 
 
-def pack_case(case: Case, guid: str) -> dict[str, bytes]:
-    """The numbers: the description, what the slave starts from, and the case file for whoever runs the FMU."""
-    n = len(case.bha.stabilizer_positions)
-    start = start_values(case)
-    packed = {"guid": guid, "stabilizers": n, "start": start, "survey": asdict(case.survey)}
+def describe(
+    case: Case, guid: str, *, interpolates: bool = False, source_files: Sequence[str] = ()
+) -> dict[str, bytes]:
+    """The description, and the case file for whoever runs the FMU."""
     description = model_description(
         IDENTIFIER,
         guid,
-        n,
-        start,
+        len(case.bha.stabilizer_positions),
+        start_values(case),
         stop_time=case.length,
         step_size=STEP_SIZE,
-        capabilities=CAPABILITIES,
+        capabilities={**CAPABILITIES, "canInterpolateInputs": interpolates},
+        source_files=source_files,
     )
-    return {
-        "modelDescription.xml": description,
-        "resources/fmu.json": json.dumps(packed, indent=1).encode(),
-        CASE_FILE: dump_case(case).encode(),
-    }
+    return {"modelDescription.xml": description, CASE_FILE: dump_case(case).encode()}
+
+
+def identify(archive: dict[str, bytes]) -> str:
+    """The guid of an FMU, from all that decides what it does."""
+    return str(uuid5(GUID_NAMESPACE, digest(archive)))
 
 
 def pack_runtime() -> dict[str, bytes]:
@@ -116,9 +162,9 @@ def pack_runtime() -> dict[str, bytes]:
     return archive
 
 
-def pack_manual(case: Case) -> dict[str, bytes]:
+def pack_manual(case: Case, runtime: str) -> dict[str, bytes]:
     """What people see: the icon and the documentation."""
-    return {"model.png": icon(), "documentation/index.html": documentation(case)}
+    return {"model.png": icon(), "documentation/index.html": documentation(case, runtime)}
 
 
 def start_values(case: Case) -> dict[str, float | str]:

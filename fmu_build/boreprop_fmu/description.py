@@ -1,6 +1,6 @@
 """modelDescription.xml of the borehole FMU, from the table of variables."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from math import isfinite, pi
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
@@ -46,6 +46,7 @@ def model_description(
     stop_time: float,
     step_size: float,
     capabilities: Mapping[str, bool],
+    source_files: Sequence[str] = (),
 ) -> bytes:
     """The XML document.
 
@@ -63,6 +64,8 @@ def model_description(
         The default experiment, s.
     capabilities
         Attributes of the element CoSimulation.
+    source_files
+        What is to be compiled of the folder sources/.
     """
     root = Element(
         "fmiModelDescription",
@@ -75,7 +78,11 @@ def model_description(
         variableNamingConvention="structured",
     )
     flags = {name: str(value).lower() for name, value in capabilities.items()}
-    SubElement(root, "CoSimulation", {"modelIdentifier": identifier, **flags})
+    simulation = SubElement(root, "CoSimulation", {"modelIdentifier": identifier, **flags})
+    if source_files:
+        files = SubElement(simulation, "SourceFiles")
+        for name in source_files:
+            SubElement(files, "File", name=name)
     _add_units(SubElement(root, "UnitDefinitions"))
     categories = SubElement(root, "LogCategories")
     for name, meaning in LOG_CATEGORIES.items():

@@ -45,7 +45,7 @@ beam theory. The integrator steps on its own grid: results do not depend on the 
 
 <h2>Variables</h2>
 <p>SI units; angles in rad, inclination from the downward vertical. Stabilizers count from the bit up. Inputs act from
-the start of a step. Parameters are fixed after initialization.</p>
+the start of a step{inputs}. Parameters are fixed after initialization.</p>
 <table>
 <tr><th>name</th><th>symbol</th><th>equation</th><th>unit</th><th>range</th><th>meaning</th></tr>
 {variables}
@@ -69,28 +69,49 @@ print(result[-1])
 </pre>
 
 <h2>Errors and states</h2>
-<p>A bad value is logged (status error, category logStatusError) with variable, constraint and value, and the step is
-discarded (fmi2Discard): nothing has moved, and the next step with good values works. After a bad parameter: fmi2Reset.
-After a state that is not one of this FMU's, every step is discarded until a good state is set or the instance is reset.
-</p>
+<p>{errors}</p>
 
 <h2>Hosts</h2>
-<p>64-bit Linux and Windows, with a CPython 3.10 to 3.13 and its standard library, nothing else. On Linux a host that is
-not Python itself must preload libpython.</p>
+<p>{hosts}</p>
 </body>
 </html>
 """
 
+TEXTS = {
+    "python": {
+        "inputs": "",
+        "errors": """A bad value is logged (status error, category logStatusError) with variable, constraint and value,
+and the step is discarded (fmi2Discard): nothing has moved, and the next step with good values works. After a bad
+parameter: fmi2Reset. After a state that is not one of this FMU's, every step is discarded until a good state is set or
+the instance is reset.""",
+        "hosts": """64-bit Linux and Windows, with a CPython 3.10 to 3.13 and its standard library, nothing else. On
+Linux a host that is not Python itself must preload libpython.""",
+    },
+    "native": {
+        "inputs": """; a derivative of an input (fmi2SetRealInputDerivatives, first order) acts over the next step,
+after which the input has the value that it came to. The rate of penetration is linear in time then, the force and the
+weight on bit are linear in the drilled length""",
+        "errors": """A bad value is logged (status error, category logStatusError) with variable, constraint and value,
+and the step is discarded (fmi2Discard): nothing has moved, and the next step with good values works. Bad parameters:
+fmi2ExitInitializationMode and every step give fmi2Error until fmi2Reset. Outputs that cannot be computed are NaN, with
+fmi2Error. A state that is not one of this FMU's is refused with fmi2Error and changes nothing; one that is may come
+from another process and another platform.""",
+        "hosts": """Any. The folder binaries/ says what this FMU is compiled for; for other platforms compile
+sources/fmi2.c, with any C99 compiler and no library but libm:
+<code>cc -shared -fPIC -O2 -ffp-contract=off -I sources sources/fmi2.c -lm -o Borehole.so</code>.""",
+    },
+}
 
-def documentation(case: Case) -> bytes:
-    """The page for the FMU of `case`, UTF-8."""
+
+def documentation(case: Case, runtime: str) -> bytes:
+    """The page for the FMU of `case` with this runtime, "python" or "native", UTF-8."""
     n = len(case.bha.stabilizer_positions)
     facts = (
         f"{n} stabilizer{'s' * (n > 1)}, the last one {case.bha.stabilizer_positions[-1]:g} m from the bit; "
         f"the existing hole ends at {degrees(case.survey.inclination[-1]):.3g}°"
     )
     rows = [_row(variable, variable.names(n)) for variable in VARIABLES if variable.names(n)]
-    return PAGE.format(case=facts, variables="\n".join(rows)).encode()
+    return PAGE.format(case=facts, variables="\n".join(rows), **TEXTS[runtime]).encode()
 
 
 def _row(variable: Variable, names: list[str]) -> str:

@@ -136,8 +136,9 @@ class Run:
             freeMemory=defaultCallbacks.freeMemory,
         )
         with TemporaryDirectory(prefix="boreprop-fmu-") as directory:
-            _check_readable(directory)
             fmpy.extract(self.fmu, directory)
+            if Path(directory, "resources", "slavemodule.txt").exists():
+                _check_readable(directory)
             try:
                 slave = FMU2Slave(
                     instanceName=self.fmu.stem,

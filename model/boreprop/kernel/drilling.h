@@ -126,6 +126,8 @@ typedef struct {
 
 enum { WHOLE_NUMBERS = 5 + 2 * MAX_STABILIZERS, FIXED_NUMBERS = WHOLE_NUMBERS + 28 };
 enum { NUMBERS_OF_PIECE = S + 3, NUMBERS_OF_KINK = 3 };
+enum { AT_LENGTH = WHOLE_NUMBERS + 1, AT_XI, AT_ETA_PI = AT_XI + 3, AT_INPUTS_XI, AT_STEP = AT_INPUTS_XI + 4 };
+enum { AT_STEP_END = AT_STEP + 2 * S + 4 }; /* places of some of the fixed numbers */
 
 static inline void pass(Tape *tape, int count, double *values) {
     memcpy(tape->reading ? values : tape->at, tape->reading ? tape->at : values, (size_t)count * sizeof *values);
@@ -211,6 +213,13 @@ static inline int is_state(const Drilling *d, const double *state, Count count) 
     if (!is_whole(state[WHOLE_NUMBERS - 1], -1, 1) || !(state[WHOLE_NUMBERS] > 0)) return 0;
     for (Count k = WHOLE_NUMBERS + 1; k < count; k++)
         if (!isfinite(state[k])) return 0;
+    double xi = state[AT_XI], error = fabs(state[AT_LENGTH] / length_scale(&d->system) - xi);
+    if (!(state[AT_ETA_PI] > 0) || state[AT_INPUTS_XI] > xi || !(error <= MERGE * larger(1, xi))) return 0;
+    if (state[AT_STEP] > xi || xi > state[AT_STEP_END] || !(state[AT_STEP + 1] > 0)) return 0;
+    for (Count k = 0; k < (Count)pieces; k++) {
+        const double *piece = state + FIXED_NUMBERS + NUMBERS_OF_PIECE * k;
+        if (!(piece[1] > 0) || (k > 0 && piece[0] < piece[-NUMBERS_OF_PIECE])) return 0;
+    }
     for (Count k = count - 1; k >= count - NUMBERS_OF_KINK * (Count)kinks; k -= NUMBERS_OF_KINK)
         if (!is_whole(state[k], 1, SMOOTHEST_KINK)) return 0;
     return 1;
@@ -220,7 +229,7 @@ static inline int is_state(const Drilling *d, const double *state, Count count) 
 static inline Count drilling_state_capacity(const double *state, Count count) {
     Count capacity = LEAST_CAPACITY;
     double wanted = count < FIXED_NUMBERS ? 0 : larger(state[0], state[1]);
-    while (capacity < 2 * wanted + 2 && capacity < 4 * count) capacity *= 2;
+    while ((double)capacity < 2 * wanted + 2 && capacity < 4 * count) capacity *= 2;
     return capacity;
 }
 

@@ -1,0 +1,451 @@
+/* The borehole as an FMI 2.0 co-simulation FMU: the kernel behind the functions of fmi2Functions.h.
+
+   What a call does when it cannot do what it was asked, always with one line to the logger:
+   - fmi2Discard, from fmi2DoStep: an input or the step is bad, or the integrator fails. Nothing has moved, and the next
+     step with good values works.
+   - fmi2Error: the call itself is wrong; the parameters make no drilling system (then every step, until fmi2Reset or a
+     good state); outputs cannot be computed (they are NaN); a state is not one of this FMU's (the instance keeps what it
+     had). The instance goes on.
+
+   Derivatives of inputs, of first order, act over the next step that is done and are zero after it: FMI 2.0 sets inputs
+   and their derivatives with respect to the beginning of a communication step. Over the step the rate of penetration is
+   linear in time; the force and the weight on bit are linear in the drilled length, between the values that they have
+   at its two ends in time. After the step an input has the value that it had at the end.
+
+   There are no globals but constants: any number of instances may live in any threads. */
+#if defined _MSC_VER && !defined _CRT_SECURE_NO_WARNINGS
+#define _CRT_SECURE_NO_WARNINGS
+#endif
+#ifdef __clang__
+#pragma STDC FP_CONTRACT OFF
+#endif
+#include "instance.h"
+
+/* What every call asks first */
+
+/* The instance; NULL, logged, if it does not allow the function in its present phase. */
+static Component *called(fmi2Component instance, const char *function, int phases) {
+    Component *c = instance;
+    char why[LINE];
+    if (!c || c->phase & phases) return c;
+    explain(why, "%s: must be called in another phase, got %s", function,
+            c->phase == INSTANTIATED     ? "instantiated"
+            : c->phase == INITIALIZATION ? "initialization"
+            : c->phase == STEPPING       ? "stepping"
+                                         : "terminated");
+    fail(c, fmi2Error, why);
+    return NULL;
+}
+
+/* Whether there is something at both addresses, which hold `count` values. */
+static int has(const Component *c, const char *function, size_t count, const void *first, const void *second) {
+    char why[LINE];
+    if (!count || (first && second)) return 1;
+    explain(why, "%s: must be given addresses to read from and write to, got NULL", function);
+    fail(c, fmi2Error, why);
+    return 0;
+}
+
+/* Whether the value reference is that of a variable of this kind. */
+static int is_of_kind(const Component *c, fmi2ValueReference reference, Kind kind) {
+    char why[LINE];
+    if (reference >= VARIABLES)
+        explain(why, "value reference: must be 0 to %d, got %lu", VARIABLES - 1, (unsigned long)reference);
+    else if (VARIABLE[reference].kind != kind)
+        explain(
+            why, "%s: must be used as %s, got '%s'", VARIABLE[reference].name, KIND[VARIABLE[reference].kind],
+            KIND[kind]
+        );
+    else return 1;
+    fail(c, fmi2Error, why);
+    return 0;
+}
+
+/* Whether a variable has a value now. */
+static int known(Component *c, fmi2ValueReference reference, Kind kind) {
+    return is_of_kind(c, reference, kind) && (VARIABLE[reference].role != OUTPUT || refreshed(c));
+}
+
+/* Whether a variable may be set to another value now. */
+static int settable(const Component *c, fmi2ValueReference reference, const char *got) {
+    char why[LINE];
+    const Variable *variable = &VARIABLE[reference];
+    if (variable->role == OUTPUT) explain(why, "%s: must not be set, it is an output, got %s", variable->name, got);
+    else if (variable->role == PARAMETER && c->phase == STEPPING)
+        explain(why, "%s: must not change after initialization, got %s", variable->name, got);
+    else return 1;
+    fail(c, fmi2Error, why);
+    return 0;
+}
+
+/* Inquiry, logging, life */
+
+const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
+
+const char *fmi2GetVersion(void) { return fmi2Version; }
+
+fmi2Status fmi2SetDebugLogging(fmi2Component instance, fmi2Boolean on, size_t count, const fmi2String categories[]) {
+    Component *c = called(instance, "fmi2SetDebugLogging", ANY);
+    int wanted = !count;
+    char why[LINE], shown[SHOWN];
+    if (!c || !has(c, "fmi2SetDebugLogging", count, categories, categories)) return fmi2Error;
+    for (size_t i = 0; i < count; i++) {
+        const char *category = categories[i] ? categories[i] : "";
+        if (strcmp(category, CATEGORY) && strcmp(category, "logAll")) {
+            explain(why, "category: must be %s, got %s", CATEGORY, quoted(category, shown));
+            return fail(c, fmi2Error, why);
+        }
+        wanted = 1;
+    }
+    c->logging = on && wanted;
+    return fmi2OK;
+}
+
+fmi2Component fmi2Instantiate(
+    fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources, const fmi2CallbackFunctions *callbacks,
+    fmi2Boolean visible, fmi2Boolean logging
+) {
+    char why[LINE] = "", shown[SHOWN];
+    Component *c = NULL;
+    (void)resources, (void)visible;
+    if (!callbacks) return NULL;
+    if (type != fmi2CoSimulation) explain(why, "fmuType: must be fmi2CoSimulation, got %d", (int)type);
+    else if (!guid || strcmp(guid, GUID))
+        explain(why, "fmuGUID: must be '%s', got %s", GUID, quoted(guid ? guid : "", shown));
+    else if ((c = calloc(1, sizeof *c))) {
+        c->callbacks = *callbacks, c->logging = logging != fmi2False;
+        c->name = copy(name ? name : "");
+        if (c->name && start_over(c)) return c;
+    }
+    log_line(callbacks, name ? name : "", *why ? why : "instance: must fit into the memory");
+    fmi2FreeInstance(c);
+    return NULL;
+}
+
+void fmi2FreeInstance(fmi2Component instance) {
+    Component *c = instance;
+    if (!c) return;
+    free_run(c->run);
+    free(c->survey_file);
+    free(c->name);
+    free(c);
+}
+
+fmi2Status fmi2Reset(fmi2Component instance) {
+    Component *c = called(instance, "fmi2Reset", ANY);
+    if (!c) return fmi2Error;
+    return start_over(c) ? fmi2OK : fail(c, fmi2Error, "instance: must fit into the memory");
+}
+
+/* The tolerance is the parameter relative_tolerance, whatever a host suggests; there is no end. */
+fmi2Status fmi2SetupExperiment(
+    fmi2Component instance, fmi2Boolean tolerance_defined, fmi2Real tolerance, fmi2Real start, fmi2Boolean stop_defined,
+    fmi2Real stop
+) {
+    Component *c = called(instance, "fmi2SetupExperiment", INSTANTIATED);
+    char why[LINE];
+    (void)tolerance_defined, (void)tolerance, (void)stop_defined, (void)stop;
+    if (!c) return fmi2Error;
+    if (!check_finite("startTime", start, why)) return fail(c, fmi2Error, why);
+    c->time = start;
+    return fmi2OK;
+}
+
+fmi2Status fmi2EnterInitializationMode(fmi2Component instance) {
+    Component *c = called(instance, "fmi2EnterInitializationMode", INSTANTIATED);
+    if (!c) return fmi2Error;
+    c->phase = INITIALIZATION;
+    return fmi2OK;
+}
+
+fmi2Status fmi2ExitInitializationMode(fmi2Component instance) {
+    Component *c = called(instance, "fmi2ExitInitializationMode", INITIALIZATION);
+    if (!c) return fmi2Error;
+    c->phase = STEPPING;
+    if (c->outputs == MISSING) c->outputs = STALE; /* say it again: here it counts */
+    return refreshed(c) ? fmi2OK : fmi2Error;
+}
+
+fmi2Status fmi2Terminate(fmi2Component instance) {
+    Component *c = called(instance, "fmi2Terminate", STEPPING);
+    if (!c) return fmi2Error;
+    c->phase = TERMINATED;
+    return fmi2OK;
+}
+
+/* Values: getting may be done at any time */
+
+fmi2Status fmi2GetReal(fmi2Component instance, const fmi2ValueReference vr[], size_t count, fmi2Real value[]) {
+    Component *c = called(instance, "fmi2GetReal", ANY);
+    fmi2Status status = fmi2OK;
+    if (!c || !has(c, "fmi2GetReal", count, vr, value)) return fmi2Error;
+    for (size_t i = 0; i < count; i++) {
+        int there = known(c, vr[i], REAL);
+        value[i] = there ? c->value[vr[i]] : (double)NAN;
+        if (!there) status = fmi2Error;
+    }
+    return status;
+}
+
+fmi2Status fmi2GetInteger(fmi2Component instance, const fmi2ValueReference vr[], size_t count, fmi2Integer value[]) {
+    Component *c = called(instance, "fmi2GetInteger", ANY);
+    fmi2Status status = fmi2OK;
+    if (!c || !has(c, "fmi2GetInteger", count, vr, value)) return fmi2Error;
+    for (size_t i = 0; i < count; i++) {
+        int there = known(c, vr[i], INTEGER);
+        value[i] = there ? (int)c->value[vr[i]] : 0;
+        if (!there) status = fmi2Error;
+    }
+    return status;
+}
+
+fmi2Status fmi2GetBoolean(fmi2Component instance, const fmi2ValueReference vr[], size_t count, fmi2Boolean value[]) {
+    Component *c = called(instance, "fmi2GetBoolean", ANY);
+    if (!c || !has(c, "fmi2GetBoolean", count, vr, value)) return fmi2Error;
+    for (size_t i = 0; i < count; i++) value[i] = is_of_kind(c, vr[i], BOOLEAN); /* there are none */
+    return count ? fmi2Error : fmi2OK;
+}
+
+/* The text is valid until it is set again. */
+fmi2Status fmi2GetString(fmi2Component instance, const fmi2ValueReference vr[], size_t count, fmi2String value[]) {
+    Component *c = called(instance, "fmi2GetString", ANY);
+    fmi2Status status = fmi2OK;
+    if (!c || !has(c, "fmi2GetString", count, vr, value)) return fmi2Error;
+    for (size_t i = 0; i < count; i++) {
+        int there = known(c, vr[i], STRING);
+        value[i] = there ? c->survey_file : "";
+        if (!there) status = fmi2Error;
+    }
+    return status;
+}
+
+/* Inputs and parameters are taken as they are, all of them or none, and checked when they are used. */
+fmi2Status fmi2SetReal(fmi2Component instance, const fmi2ValueReference vr[], size_t count, const fmi2Real value[]) {
+    Component *c = called(instance, "fmi2SetReal", INSTANTIATED | INITIALIZATION | STEPPING);
+    char got[32];
+    if (!c || !has(c, "fmi2SetReal", count, vr, value)) return fmi2Error;
+    for (size_t i = 0; i < count; i++) {
+        if (!is_of_kind(c, vr[i], REAL)) return fmi2Error;
+        int other = VARIABLE[vr[i]].role == OUTPUT || value[i] != c->value[vr[i]];
+        if (other && !settable(c, vr[i], represent(value[i], got))) return fmi2Error;
+    }
+    for (size_t i = 0; i < count; i++)
+        if (value[i] != c->value[vr[i]]) {
+            c->value[vr[i]] = value[i];
+            changed(c);
+        }
+    return fmi2OK;
+}
+
+fmi2Status fmi2SetInteger(
+    fmi2Component instance, const fmi2ValueReference vr[], size_t count, const fmi2Integer value[]
+) {
+    Component *c = called(instance, "fmi2SetInteger", INSTANTIATED | INITIALIZATION | STEPPING);
+    char got[32];
+    if (!c || !has(c, "fmi2SetInteger", count, vr, value)) return fmi2Error;
+    if (count) snprintf(got, sizeof got, "%d", value[0]);
+    if (count && is_of_kind(c, vr[0], INTEGER)) settable(c, vr[0], got); /* which says no: all of them are outputs */
+    return count ? fmi2Error : fmi2OK;
+}
+
+fmi2Status fmi2SetBoolean(
+    fmi2Component instance, const fmi2ValueReference vr[], size_t count, const fmi2Boolean value[]
+) {
+    Component *c = called(instance, "fmi2SetBoolean", INSTANTIATED | INITIALIZATION | STEPPING);
+    if (!c || !has(c, "fmi2SetBoolean", count, vr, value)) return fmi2Error;
+    return count && !is_of_kind(c, vr[0], BOOLEAN) ? fmi2Error : fmi2OK; /* there are none */
+}
+
+fmi2Status fmi2SetString(
+    fmi2Component instance, const fmi2ValueReference vr[], size_t count, const fmi2String value[]
+) {
+    Component *c = called(instance, "fmi2SetString", INSTANTIATED | INITIALIZATION | STEPPING);
+    char shown[SHOWN], why[LINE];
+    if (!c || !has(c, "fmi2SetString", count, vr, value)) return fmi2Error;
+    for (size_t i = 0; i < count; i++) { /* there is one, survey_file */
+        if (!is_of_kind(c, vr[i], STRING)) return fmi2Error;
+        const char *text = value[i] ? value[i] : "";
+        if (!value[i] || !is_utf8(text)) {
+            explain(why, "%s: must be UTF-8 text, got %s", VARIABLE[vr[i]].name, value[i] ? "other bytes" : "NULL");
+            return fail(c, fmi2Error, why);
+        }
+        if (!strcmp(text, c->survey_file)) continue;
+        if (!settable(c, vr[i], quoted(text, shown))) return fmi2Error;
+        char *own = copy(text);
+        if (!own) return fail(c, fmi2Error, "survey_file: must fit into the memory");
+        free(c->survey_file);
+        c->survey_file = own;
+        changed(c);
+    }
+    return fmi2OK;
+}
+
+/* Steps */
+
+fmi2Status fmi2DoStep(fmi2Component instance, fmi2Real time, fmi2Real size, fmi2Boolean no_way_back) {
+    Component *c = called(instance, "fmi2DoStep", STEPPING);
+    char why[LINE];
+    (void)no_way_back;
+    if (!c) return fmi2Error;
+    fmi2Status status = step(c, time, size, why);
+    return status == fmi2OK ? fmi2OK : fail(c, status, why);
+}
+
+fmi2Status fmi2SetRealInputDerivatives(
+    fmi2Component instance, const fmi2ValueReference vr[], size_t count, const fmi2Integer order[],
+    const fmi2Real value[]
+) {
+    Component *c = called(instance, "fmi2SetRealInputDerivatives", INSTANTIATED | INITIALIZATION | STEPPING);
+    char why[LINE], got[32];
+    if (!c || !has(c, "fmi2SetRealInputDerivatives", count, vr, value) ||
+        !has(c, "fmi2SetRealInputDerivatives", count, order, value))
+        return fmi2Error;
+    for (size_t i = 0; i < count; i++) {
+        if (!is_of_kind(c, vr[i], REAL)) return fmi2Error;
+        const Variable *variable = &VARIABLE[vr[i]];
+        if (variable->role != INPUT) explain(why, "%s: must be an input to have a derivative", variable->name);
+        else if (order[i] != 1)
+            explain(why, "%s: order of the derivative: must be 1, got %d", variable->name, order[i]);
+        else if (!isfinite(value[i]))
+            explain(why, "%s: derivative: must be a finite number, got %s", variable->name, represent(value[i], got));
+        else continue;
+        return fail(c, fmi2Error, why);
+    }
+    for (size_t i = 0; i < count; i++) c->derivative[vr[i]] = value[i];
+    return fmi2OK;
+}
+
+fmi2Status fmi2GetRealOutputDerivatives(
+    fmi2Component instance, const fmi2ValueReference vr[], size_t count, const fmi2Integer order[], fmi2Real value[]
+) {
+    Component *c = called(instance, "fmi2GetRealOutputDerivatives", ANY);
+    (void)vr, (void)order;
+    if (!c || !has(c, "fmi2GetRealOutputDerivatives", count, value, value)) return fmi2Error;
+    for (size_t i = 0; i < count; i++) value[i] = (double)NAN;
+    return fail(c, fmi2Error, "fmi2GetRealOutputDerivatives: must not be called, maxOutputDerivativeOrder is 0");
+}
+
+fmi2Status fmi2GetDirectionalDerivative(
+    fmi2Component instance, const fmi2ValueReference unknown[], size_t unknowns, const fmi2ValueReference given[],
+    size_t givens, const fmi2Real change[], fmi2Real value[]
+) {
+    Component *c = called(instance, "fmi2GetDirectionalDerivative", ANY);
+    (void)unknown, (void)unknowns, (void)given, (void)givens, (void)change, (void)value;
+    if (!c) return fmi2Error;
+    return fail(c, fmi2Error, "fmi2GetDirectionalDerivative: must not be called, the FMU does not provide it");
+}
+
+fmi2Status fmi2CancelStep(fmi2Component instance) {
+    Component *c = called(instance, "fmi2CancelStep", ANY);
+    return c ? fail(c, fmi2Error, "fmi2CancelStep: must not be called, no step is ever pending") : fmi2Error;
+}
+
+/* What may be asked of a step that is over: where the last good one ended, and that it does not end the simulation */
+
+static fmi2Status unanswered(fmi2Component instance, const char *function, fmi2StatusKind kind) {
+    Component *c = called(instance, function, ANY);
+    char why[LINE];
+    if (!c) return fmi2Error;
+    explain(why, "%s: must be asked for what it answers, got fmi2StatusKind %d", function, (int)kind);
+    return fail(c, fmi2Discard, why);
+}
+
+fmi2Status fmi2GetStatus(fmi2Component instance, const fmi2StatusKind kind, fmi2Status *value) {
+    (void)value;
+    return unanswered(instance, "fmi2GetStatus", kind);
+}
+
+fmi2Status fmi2GetRealStatus(fmi2Component instance, const fmi2StatusKind kind, fmi2Real *value) {
+    Component *c = called(instance, "fmi2GetRealStatus", ANY);
+    if (!c || !has(c, "fmi2GetRealStatus", 1, value, value)) return fmi2Error;
+    if (kind != fmi2LastSuccessfulTime) return unanswered(instance, "fmi2GetRealStatus", kind);
+    *value = c->time;
+    return fmi2OK;
+}
+
+fmi2Status fmi2GetIntegerStatus(fmi2Component instance, const fmi2StatusKind kind, fmi2Integer *value) {
+    (void)value;
+    return unanswered(instance, "fmi2GetIntegerStatus", kind);
+}
+
+fmi2Status fmi2GetBooleanStatus(fmi2Component instance, const fmi2StatusKind kind, fmi2Boolean *value) {
+    Component *c = called(instance, "fmi2GetBooleanStatus", ANY);
+    if (!c || !has(c, "fmi2GetBooleanStatus", 1, value, value)) return fmi2Error;
+    if (kind != fmi2Terminated) return unanswered(instance, "fmi2GetBooleanStatus", kind);
+    *value = fmi2False;
+    return fmi2OK;
+}
+
+fmi2Status fmi2GetStringStatus(fmi2Component instance, const fmi2StatusKind kind, fmi2String *value) {
+    (void)value;
+    return unanswered(instance, "fmi2GetStringStatus", kind);
+}
+
+/* States */
+
+fmi2Status fmi2GetFMUstate(fmi2Component instance, fmi2FMUstate *kept) {
+    Component *c = called(instance, "fmi2GetFMUstate", ANY);
+    if (!c || !has(c, "fmi2GetFMUstate", 1, kept, kept)) return fmi2Error;
+    Saved *state = *kept ? *kept : calloc(1, sizeof *state);
+    if (!state) return fail(c, fmi2Error, "state: must fit into the memory");
+    fmi2Status status = save(c, state);
+    if (status == fmi2OK) *kept = state;
+    else if (!*kept) free(state);
+    return status;
+}
+
+fmi2Status fmi2SetFMUstate(fmi2Component instance, fmi2FMUstate kept) {
+    Component *c = called(instance, "fmi2SetFMUstate", ANY);
+    char why[LINE];
+    if (!c || !has(c, "fmi2SetFMUstate", 1, kept, kept)) return fmi2Error;
+    return restore(c, kept, why) ? fmi2OK : fail(c, fmi2Error, why);
+}
+
+fmi2Status fmi2FreeFMUstate(fmi2Component instance, fmi2FMUstate *kept) {
+    if (!called(instance, "fmi2FreeFMUstate", ANY)) return fmi2Error;
+    Saved *state = kept ? *kept : NULL;
+    if (state) {
+        free(state->bytes);
+        free(state);
+        *kept = NULL;
+    }
+    return fmi2OK;
+}
+
+fmi2Status fmi2SerializedFMUstateSize(fmi2Component instance, fmi2FMUstate kept, size_t *size) {
+    Component *c = called(instance, "fmi2SerializedFMUstateSize", ANY);
+    if (!c || !has(c, "fmi2SerializedFMUstateSize", 1, kept, size)) return fmi2Error;
+    *size = SEAL + ((const Saved *)kept)->size;
+    return fmi2OK;
+}
+
+fmi2Status fmi2SerializeFMUstate(fmi2Component instance, fmi2FMUstate kept, fmi2Byte bytes[], size_t size) {
+    Component *c = called(instance, "fmi2SerializeFMUstate", ANY);
+    const Saved *state = kept;
+    char why[LINE], line[SEAL + 1];
+    if (!c || !has(c, "fmi2SerializeFMUstate", 1, kept, bytes)) return fmi2Error;
+    if (size < SEAL + state->size) {
+        explain(why, "size: must be at least %lu, got %lu", (unsigned long)(SEAL + state->size), (unsigned long)size);
+        return fail(c, fmi2Error, why);
+    }
+    seal(GUID, state->bytes, state->size, line);
+    memcpy(bytes, line, SEAL);
+    memcpy(bytes + SEAL, state->bytes, state->size);
+    return fmi2OK;
+}
+
+fmi2Status fmi2DeSerializeFMUstate(fmi2Component instance, const fmi2Byte bytes[], size_t size, fmi2FMUstate *kept) {
+    Component *c = called(instance, "fmi2DeSerializeFMUstate", ANY);
+    char why[LINE];
+    if (!c || !has(c, "fmi2DeSerializeFMUstate", 1, kept, bytes)) return fmi2Error;
+    *kept = NULL;
+    if (!is_sealed((const unsigned char *)bytes, size, GUID, why)) return fail(c, fmi2Error, why);
+    Saved *state = malloc(sizeof *state);
+    if (state && (state->bytes = malloc(size))) {
+        memcpy(state->bytes, bytes + SEAL, state->size = size - SEAL);
+        *kept = state;
+        return fmi2OK;
+    }
+    free(state);
+    return fail(c, fmi2Error, "state: must fit into the memory");
+}

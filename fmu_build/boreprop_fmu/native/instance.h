@@ -1,0 +1,292 @@
+/* An instance of the FMU: what it holds, the drilling system behind it, its steps and its states. */
+#ifndef BOREPROP_INSTANCE_H
+#define BOREPROP_INSTANCE_H
+
+#include "fmi2Functions.h"
+#include "growing.h"
+#include "state.h"
+#include "survey.h"
+
+typedef enum { INPUT, OUTPUT, PARAMETER } Role;
+typedef enum { REAL, INTEGER, BOOLEAN, STRING } Kind;
+typedef struct {
+    const char *name;
+    Role role;
+    Kind kind;
+    double start;
+} Variable;
+#include "case.h"
+
+enum { FIXED = 10 }; /* numbers of a state before the values of the variables */
+#define MOST_STAIRS 1000.0
+static const char *const KIND[] = {"Real", "Integer", "Boolean", "String"};
+static const char CATEGORY[] = "logStatusError";
+
+typedef enum { INSTANTIATED = 1, INITIALIZATION = 2, STEPPING = 4, TERMINATED = 8, ANY = 15 } Phase;
+typedef enum { STALE, FRESH, MISSING } Outputs; /* MISSING: cannot be computed, and the log has said why */
+
+typedef struct {
+    fmi2CallbackFunctions callbacks;
+    char *name;
+    int logging;
+    Phase phase;
+    double value[VARIABLES]; /* by value reference; those of outputs as `outputs` says */
+    char *survey_file;
+    Outputs outputs;
+    double derivative[INPUTS]; /* of the inputs over the next step, 1/s */
+    double time;               /* where the last step ended */
+    double since, from, rate;  /* since this time, from this drilled length, at this rate of penetration */
+    int settled;               /* the run has the present inputs */
+    Run *run;                  /* made when it is first needed */
+} Component;
+
+/* Messages */
+
+static void log_line(const fmi2CallbackFunctions *callbacks, const char *name, const char *line) {
+    char format[2 * LINE], *to = format; /* a logger formats its message like printf */
+    for (; *line; line++) {
+        if (*line == '%') *to++ = '%';
+        *to++ = *line;
+    }
+    *to = '\0';
+    if (callbacks->logger) callbacks->logger(callbacks->componentEnvironment, name, fmi2Error, CATEGORY, format);
+}
+
+static fmi2Status fail(const Component *c, fmi2Status status, const char *why) {
+    if (c->logging) log_line(&c->callbacks, c->name, why);
+    return status;
+}
+
+/* The drilling system */
+
+static void free_run(Run *run) {
+    if (run) free(run->memory);
+    free(run);
+}
+
+static System system_of(const double value[VARIABLES]) {
+    System system = {0};
+    system.n = STABILIZERS;
+    for (int i = 0; i < STABILIZERS; i++) system.stabilizer_position[i] = value[STABILIZER_POSITION + i];
+    for (int i = 0; i < STABILIZERS - 1; i++) system.stabilizer_clearance[i] = value[STABILIZER_CLEARANCE + i];
+    system.rss_position = value[RSS_POSITION];
+    system.distributed_weight = value[DISTRIBUTED_WEIGHT];
+    system.flexural_stiffness = value[FLEXURAL_STIFFNESS];
+    system.lateral_steering_resistance = value[LATERAL_STEERING_RESISTANCE];
+    system.angular_steering_resistance = value[ANGULAR_STEERING_RESISTANCE];
+    system.bit_tilt_limit = value[BIT_TILT_LIMIT];
+    system.relative_tolerance = value[RELATIVE_TOLERANCE];
+    return system;
+}
+
+/* A run at its start; NULL with `why` if the parameters or the inputs are bad. */
+static Run *new_run(const double value[VARIABLES], const Survey *survey, Inputs inputs, char why[LINE]) {
+    System system = system_of(value);
+    Run *run = calloc(1, sizeof *run);
+    if (!run) explain(why, "run: must fit into the memory");
+    else if (run_start(run, &system, survey, inputs, why) == DONE) return run;
+    free_run(run);
+    return NULL;
+}
+
+static char *copy(const char *text) {
+    size_t size = strlen(text) + 1;
+    char *own = malloc(size);
+    return own ? memcpy(own, text, size) : NULL;
+}
+
+/* As it is after fmi2Instantiate. */
+static int start_over(Component *c) {
+    char *none = copy("");
+    if (!none) return 0;
+    free_run(c->run);
+    free(c->survey_file);
+    c->run = NULL, c->survey_file = none;
+    c->phase = INSTANTIATED, c->outputs = STALE, c->settled = 0;
+    c->time = c->since = c->from = 0.0, c->rate = -1.0;
+    memset(c->derivative, 0, sizeof c->derivative);
+    for (int i = 0; i < VARIABLES; i++) c->value[i] = VARIABLE[i].start;
+    return 1;
+}
+
+/* After a variable has got another value. */
+static void changed(Component *c) {
+    c->outputs = STALE, c->settled = 0;
+    if (c->phase == STEPPING) return;
+    free_run(c->run);
+    c->run = NULL;
+}
+
+/* Whether there is a drilling system; it is made now if there is none. */
+static int ready(Component *c, char why[LINE]) {
+    Survey survey = {STATIONS, MEASURED_DEPTH, INCLINATION};
+    Inputs inputs = {c->value[RSS_FORCE], 0.0, c->value[ACTIVE_WEIGHT_ON_BIT]};
+    double *numbers = NULL;
+    char fault[LINE];
+    if (c->run) return 1;
+    if (c->survey_file[0] && !(numbers = read_survey(c->survey_file, &survey, fault)))
+        return explain(why, "%.*s (survey_file)", LINE - 32, fault);
+    c->run = new_run(c->value, &survey, inputs, why);
+    free(numbers);
+    return c->run != NULL;
+}
+
+static int check_given(const double input[INPUTS], char why[LINE]) {
+    return check_finite("rss_force", input[RSS_FORCE], why) &&
+           check_positive("active_weight_on_bit", input[ACTIVE_WEIGHT_ON_BIT], why) &&
+           check_at_least("rate_of_penetration", input[RATE_OF_PENETRATION], 0.0, why);
+}
+
+/* The outputs of the present hole under the present inputs: 0 with `why` if there are none. */
+static int compute(Component *c, char why[LINE]) {
+    Inputs inputs = {c->value[RSS_FORCE], 0.0, c->value[ACTIVE_WEIGHT_ON_BIT]};
+    double outputs[MOST_OUTPUTS];
+    if (!ready(c, why)) return 0;
+    if (!c->settled && run_advance(c->run, drilling_length(&c->run->drilling), inputs, why) != DONE) return 0;
+    c->settled = 1;
+    int count = drilling_outputs(&c->run->drilling, outputs);
+    for (int i = 0; i < count; i++)
+        if (!check_finite(VARIABLE[DRILLED_LENGTH + i].name, outputs[i], why)) return 0;
+    memcpy(c->value + DRILLED_LENGTH, outputs, (size_t)count * sizeof *outputs);
+    return 1;
+}
+
+/* Whether there are outputs; they are computed now if need be. */
+static int refreshed(Component *c) {
+    char why[LINE];
+    if (c->outputs == STALE) {
+        c->outputs = compute(c, why) ? FRESH : MISSING;
+        if (c->outputs == MISSING) fail(c, fmi2Error, why);
+    }
+    return c->outputs == FRESH;
+}
+
+/* Drill to a length while the inputs go from their values to those at the end: the force linearly in the length; the
+   weight, which the kernel holds, in stairs of equal lengths and of a thousandth at most of its larger value. All of
+   it or nothing. */
+static int drill_on(Component *c, double to, const double end[INPUTS], char why[LINE]) {
+    Drilling *drilling = &c->run->drilling;
+    double from = drilling_length(drilling), force = c->value[RSS_FORCE], weight = c->value[ACTIVE_WEIGHT_ON_BIT];
+    double slope = to > from ? (end[RSS_FORCE] - force) / (to - from) : 0.0, rise = end[ACTIVE_WEIGHT_ON_BIT] - weight;
+    int stairs = to > from ? (int)ceil(MOST_STAIRS * (fabs(rise) / larger(weight, weight + rise))) : 1;
+    int stair = 0, done = 1;
+    Count size = drilling_state_size(drilling);
+    double *before = NULL, accepted = drilling->propagation.now.accepted;
+    if (!check_finite("rss_force_slope", slope, why)) return 0;
+    if (stairs > 1) {
+        before = malloc((size_t)size * sizeof *before);
+        if (!before) return explain(why, "step: must fit into the memory");
+        drilling_save(drilling, before);
+    } else stairs = 1;
+    for (; done && stair < stairs; stair++) {
+        double at = drilling_length(drilling);
+        Inputs inputs = {force + slope * (at - from), slope, weight + rise * (stair + 0.5) / stairs};
+        double next = stair + 1 < stairs ? from + (to - from) * (stair + 1) / stairs : to;
+        done = run_advance(c->run, next, inputs, why) == DONE;
+        if (done && drilling->propagation.now.accepted - accepted > MOST_PIECES)
+            done = explain(why, "step: must take at most %d steps of the integrator, got more", MOST_PIECES);
+    }
+    if (!done && before) drilling_restore(drilling, before, size, (char[MESSAGE]){""});
+    free(before);
+    if (done) c->settled = rise == 0.0 && (to > from || end[RSS_FORCE] == force);
+    return done;
+}
+
+/* One communication step. The length counts from an anchor, so that rounding does not add up from step to step. */
+static fmi2Status step(Component *c, double time, double size, char why[LINE]) {
+    double end[INPUTS], *value = c->value, start_rate = value[RATE_OF_PENETRATION];
+    double since = c->since, from = c->from;
+    for (int i = 0; i < INPUTS; i++) end[i] = value[i] + c->derivative[i] * size;
+    double *end_rate = &end[RATE_OF_PENETRATION];
+    if (*end_rate < 0.0 && *end_rate > -1e-12 * start_rate) *end_rate = 0.0; /* rounding */
+    if (!check_finite("current_time", time, why) || !check_positive("step_size", size, why)) return fmi2Discard;
+    if (!check_given(value, why) || !check_given(end, why)) return fmi2Discard;
+    if (!ready(c, why)) return fmi2Error;
+    double here = drilling_length(&c->run->drilling);
+    double close = larger(1e-12 * larger(fabs(time), fabs(c->time)), 1e-9 * size);
+    if (start_rate != c->rate || *end_rate != start_rate || fabs(time - c->time) > close) since = time, from = here;
+    double length = from + start_rate * (time + size - since) + (*end_rate - start_rate) * size / 2;
+    if (!check_finite("drilled_length", length, why)) return fmi2Discard;
+    if (!drill_on(c, larger(length, here), end, why)) return fmi2Discard;
+    c->time = time + size, c->since = since, c->from = from, c->rate = start_rate;
+    memcpy(value, end, sizeof end);
+    memset(c->derivative, 0, sizeof c->derivative);
+    c->outputs = STALE;
+    return fmi2OK;
+}
+
+/* States */
+
+static fmi2Status save(Component *c, Saved *saved) {
+    Count count = c->run ? drilling_state_size(&c->run->drilling) : 0;
+    size_t text = strlen(c->survey_file), size = ((size_t)count + FIXED + VARIABLES) * 8 + text;
+    unsigned char *bytes = malloc(size), *to = bytes;
+    double *numbers = malloc((size_t)(count + 1) * sizeof *numbers);
+    double fixed[FIXED] = {c->phase, c->time, c->since, c->from, c->rate, c->settled, c->derivative[0],
+                           c->derivative[1], c->derivative[2], (double)text};
+    if (bytes && numbers) {
+        for (int i = 0; i < FIXED; i++) to = put_double(to, fixed[i]);
+        for (int i = 0; i < VARIABLES; i++) to = put_double(to, VARIABLE[i].role == OUTPUT ? 0.0 : c->value[i]);
+        if (c->run) drilling_save(&c->run->drilling, numbers);
+        for (Count i = 0; i < count; i++) to = put_double(to, numbers[i]);
+        memcpy(to, c->survey_file, text);
+        free(saved->bytes);
+        saved->bytes = bytes, saved->size = size;
+    } else free(bytes);
+    free(numbers);
+    return bytes && numbers ? fmi2OK : fail(c, fmi2Error, "state: must fit into the memory");
+}
+
+/* Go back to a state, or keep everything as it is, with `why`. */
+static int restore(Component *c, const Saved *saved, char why[LINE]) {
+    static const size_t least = (FIXED + VARIABLES) * 8;
+    const unsigned char *from = saved->bytes;
+    size_t size = saved->size;
+    double fixed[FIXED], value[VARIABLES];
+    if (size < least) return explain(why, "state: must be one of this FMU, got one of %lu bytes", (unsigned long)size);
+    for (int i = 0; i < FIXED; i++) fixed[i] = get_double(&from);
+    for (int i = 0; i < VARIABLES; i++) value[i] = get_double(&from);
+    double text = fixed[FIXED - 1];
+    int phase = fixed[0] >= 0.0 && fixed[0] <= 8.0 ? (int)fixed[0] : 0;
+    if (!(phase == INSTANTIATED || phase == INITIALIZATION || phase == STEPPING || phase == TERMINATED) ||
+        !(text >= 0.0 && text <= (double)(size - least)) || (size - (size_t)text) % 8)
+        return explain(why, "state: must be one of this FMU, got a phase or a length that there is not");
+    for (int i = 1; i < FIXED; i++)
+        if (!check_finite("state", fixed[i], why)) return 0;
+    Count count = (Count)((size - least - (size_t)text) / 8);
+    char *survey_file = calloc((size_t)text + 1, 1);
+    double *numbers = malloc((size_t)(count + 1) * sizeof *numbers);
+    Run *run = NULL;
+    if (survey_file && numbers) {
+        for (Count i = 0; i < count; i++) numbers[i] = get_double(&from);
+        memcpy(survey_file, from, (size_t)text);
+        if (!is_utf8(survey_file)) {
+            explain(why, "state: must be one of this FMU, got bytes that are no text");
+            count = -1;
+        }
+        if (count > 0) { /* any survey and inputs: those of the run are in the state */
+            Survey survey = {STATIONS, MEASURED_DEPTH, INCLINATION};
+            Inputs inputs = {0.0, 0.0, VARIABLE[ACTIVE_WEIGHT_ON_BIT].start};
+            run = new_run(value, &survey, inputs, why);
+        }
+        if (run && run_restore(run, numbers, count, why) != DONE) {
+            free_run(run);
+            run = NULL;
+        }
+    } else explain(why, "state: must fit into the memory");
+    int whole = survey_file && numbers && (run || !count);
+    free(numbers);
+    if (!whole) {
+        free(survey_file);
+        return 0;
+    }
+    free_run(c->run);
+    free(c->survey_file);
+    c->run = run, c->survey_file = survey_file, c->phase = (Phase)phase, c->outputs = STALE;
+    c->time = fixed[1], c->since = fixed[2], c->from = fixed[3], c->rate = fixed[4], c->settled = fixed[5] != 0.0;
+    memcpy(c->derivative, fixed + 6, sizeof c->derivative);
+    memcpy(c->value, value, sizeof value);
+    return 1;
+}
+
+#endif

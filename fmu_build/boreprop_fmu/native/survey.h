@@ -1,0 +1,152 @@
+/* Surveys from CSV files: columns measured_depth (m) and inclination_deg, by name; others are ignored. */
+#ifndef BOREPROP_SURVEY_H
+#define BOREPROP_SURVEY_H
+
+#include "hole.h"
+#include "text.h"
+#include <errno.h>
+
+enum { COLUMNS = 2, LARGEST = 1 << 26 }; /* bytes of a file */
+
+static const char *const COLUMN[COLUMNS] = {"measured_depth", "inclination_deg"};
+
+static FILE *open_file(const char *path) {
+#ifdef _WIN32
+    wchar_t wide[LINE], *to = wide;
+    while (*path && to < wide + LINE - 2) {
+        long point = next_character(&path);
+        if (point >= 0x10000) *to++ = (wchar_t)(0xD800 + ((point - 0x10000) >> 10));
+        *to++ = (wchar_t)(point >= 0x10000 ? 0xDC00 + (point & 0x3FF) : point);
+    }
+    *to = L'\0';
+    return _wfopen(wide, L"rb");
+#else
+    return fopen(path, "rb");
+#endif
+}
+
+/* The whole content of a file, to be freed; NULL with `why` if it cannot be read or is no text. */
+static char *read_text(const char *path, char why[LINE]) {
+    char *text = NULL;
+    const char *fault = NULL;
+    size_t size = 0, room = 0;
+    errno = 0;
+    FILE *file = open_file(path);
+    while (file && !fault && !feof(file) && !ferror(file)) {
+        if (size + 1 >= room) {
+            char *larger_text = realloc(text, room = room ? 2 * room : 1 << 14);
+            if (!larger_text) fault = "out of memory";
+            else text = larger_text;
+        }
+        if (!fault) size += fread(text + size, 1, room - size - 1, file);
+        if (size >= LARGEST) fault = "more than 64 MB";
+    }
+    if (!file || ferror(file)) fault = strerror(errno);
+    if (file) fclose(file);
+    if (!fault) {
+        text[size] = '\0';
+        if (strlen(text) != size || !is_utf8(text)) fault = "bytes that are no UTF-8 text";
+    }
+    if (!fault) return text;
+    free(text);
+    explain(why, "%s: must be a readable CSV file, got: %s", path, fault);
+    return NULL;
+}
+
+/* Take one field of a row: `*from` moves behind it, `*field` is its text. Gives the character that ended it. */
+static char next_field(char **from, char **field) {
+    char *at = *from, *to = at;
+    int in_quotes = *at == '"';
+    at += in_quotes;
+    *field = to;
+    for (; *at && (in_quotes || !strchr(",\r\n", *at)); at++) {
+        if (in_quotes && *at == '"' && at[1] != '"') in_quotes = 0;
+        else {
+            at += in_quotes && *at == '"'; /* two of them mean one */
+            *to++ = *at;
+        }
+    }
+    char end = *at;
+    *from = at + (end != '\0') + (end == '\r' && at[1] == '\n');
+    *to = '\0';
+    return end;
+}
+
+/* Positions of the columns in the header row, and how many values it has: 0 with `why` if a column is missing. */
+static int read_header(const char *path, char **from, int position[COLUMNS], char why[LINE]) {
+    char got[LINE / 4] = "", shown[SHOWN], *field, end;
+    int count = 0;
+    for (int i = 0; i < COLUMNS; i++) position[i] = -1;
+    if (**from) do {
+        end = next_field(from, &field);
+        field += strspn(field, " \t");
+        for (size_t length = strlen(field); length && strchr(" \t", field[length - 1]);) field[--length] = '\0';
+        for (int i = 0; i < COLUMNS; i++)
+            if (position[i] < 0 && !strcmp(field, COLUMN[i])) position[i] = count;
+        if (strlen(got) + SHOWN < sizeof got) strcat(strcat(got, count ? ", " : ""), quoted(field, shown));
+        count++;
+    } while (end == ',');
+    for (int i = 0; i < COLUMNS; i++)
+        if (position[i] < 0) return explain(why, "%s: must have a column '%s', got [%s]", path, COLUMN[i], got);
+    return count;
+}
+
+/* Read the rows under the header into `columns`, of as many numbers as there are lines. Gives their count, or −1. */
+static long read_rows(
+    const char *path, char *from, long line, int width, const int position[COLUMNS], double *columns[COLUMNS],
+    char why[LINE]
+) {
+    long rows = 0;
+    for (; *from; line++) {
+        char *field, *text[COLUMNS] = {NULL}, end, shown[SHOWN];
+        int count = 0;
+        if (*from == '\r' || *from == '\n') {
+            next_field(&from, &field);
+            continue;
+        }
+        do {
+            end = next_field(&from, &field);
+            for (int i = 0; i < COLUMNS; i++)
+                if (count == position[i]) text[i] = field;
+            count++;
+        } while (end == ',');
+        if (count != width)
+            return explain(why, "%s:%ld: must have %d values like the header, got %d", path, line, width, count) - 1;
+        for (int i = 0; i < COLUMNS; i++)
+            if (!parse_number(text[i], &columns[i][rows]) || !isfinite(columns[i][rows]))
+                return explain(why, "%s:%ld: %s: must be a finite number, got %s", path, line, COLUMN[i],
+                               quoted(text[i], shown)) - 1;
+        rows++;
+    }
+    return rows;
+}
+
+/* Read a survey file. Its numbers lie in `*memory`, to be freed; NULL with `why` if it cannot be used. */
+static double *read_survey(const char *path, Survey *survey, char why[LINE]) {
+    char *text = read_text(path, why), *from = text, *blank, fault[MESSAGE];
+    double *numbers = NULL, *columns[COLUMNS];
+    int position[COLUMNS], width = 0;
+    long lines = 1, line = 2, rows = -1;
+    if (!text) return NULL;
+    if (!strncmp(text, "\xEF\xBB\xBF", 3)) from += 3;
+    for (; *from == '\r' || *from == '\n'; line++) next_field(&from, &blank);
+    for (const char *at = from; *at; at++) lines += *at == '\n' || *at == '\r';
+    width = read_header(path, &from, position, why);
+    if (width) {
+        numbers = malloc((size_t)lines * COLUMNS * sizeof *numbers);
+        for (int i = 0; i < COLUMNS; i++) columns[i] = numbers + i * lines;
+        if (numbers) rows = read_rows(path, from, line, width, position, columns, why);
+        else explain(why, "%s: must fit into the memory, got %ld lines", path, lines);
+    }
+    if (rows >= 0) {
+        for (long k = 0; k < rows; k++) columns[1][k] *= 3.141592653589793 / 180.0;
+        survey->count = rows, survey->measured_depth = columns[0], survey->inclination = columns[1];
+        if (!check_survey(survey, fault)) rows = explain(why, "%s: %s", path, fault) - 1;
+    }
+    free(text);
+    if (rows >= 0) return numbers;
+    free(numbers);
+    return NULL;
+}
+
+#endif

@@ -1,0 +1,116 @@
+"""The two FMUs of a case, on pythonfmu's runtime and as machine code: where they may differ it stands here only."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from boreprop.case import Case
+from boreprop_fmu.build import build_fmu
+
+
+@dataclass(frozen=True)
+class Change:
+    """Another version of our code: in one file `new` for `old`."""
+
+    file: str
+    old: str
+    new: str
+
+
+@dataclass(frozen=True, eq=False)
+class Flavour:
+    """What one of them answers.
+
+    Parameters
+    ----------
+    runtime
+        Its name, for `build_fmu`.
+    to_read
+        What `build_fmu` is told for one that is not to run.
+    wrong_call
+        Status of a call that cannot be right: a reference that there is not, a state of another FMU.
+    under_bad_input
+        What has become of the outputs while they cannot be computed from an input, see `fmu_host.outputs`.
+    without_system
+        With parameters that make no drilling system: statuses of the end of the initialization and of a step.
+    after_bad_state
+        What a step then does, and what has become of the outputs.
+    modules
+        Whose modules of the model are in a process that runs it, see `fmu_host.modules`.
+    leak
+        What ten thousand bad calls, or five hundred instances, may leave, bytes.
+    numbers
+        Where it has the numbers of its case; what else it has of resources/ and sources/ is code.
+    interpolates
+        Whether it takes derivatives of inputs.
+    any_folder
+        Whether it runs from folders that are not named in ASCII.
+    heavy, loud
+        A version in which gravity bends more, and one that shows every Real output ten times as large.
+    """
+
+    runtime: str
+    to_read: dict[str, Any]
+    wrong_call: str
+    under_bad_input: str
+    without_system: tuple[str, str]
+    after_bad_state: tuple[str, str]
+    modules: str
+    leak: float
+    numbers: str
+    interpolates: bool
+    any_folder: bool
+    heavy: Change
+    loud: Change
+
+    def __str__(self) -> str:
+        return self.runtime
+
+
+PYTHON = Flavour(
+    runtime="python",
+    to_read={"runtime": "python"},
+    wrong_call="ok",  # pythonfmu would make fmi2Fatal of any other answer: the log says it, and the next step
+    under_bad_input="kept",
+    without_system=("ok", "discard"),
+    after_bad_state=("discard", "unknown"),
+    modules="own",
+    leak=8e6,  # pythonfmu's library keeps each line logged, some 100 bytes, and 6 kB of each instance; a state is 5 kB
+    numbers="resources/fmu.json",
+    interpolates=False,
+    any_folder=False,
+    heavy=Change("boreprop/core/beam.py", "self.F0_g = 5 / 8", "self.F0_g = 7 / 8"),
+    loud=Change(
+        "boreprop_fmu/slave.py",
+        "values[index] = self._outputs[name]",
+        'values[index] = self._outputs[name] * (10 if kind == "Real" else 1)',
+    ),
+)
+NATIVE = Flavour(
+    runtime="native",
+    to_read={"runtime": "native", "platforms": ()},
+    wrong_call="error",
+    under_bad_input="unknown",
+    without_system=("error", "error"),
+    after_bad_state=("ok", "kept"),
+    modules="none",
+    leak=1e5,
+    numbers="sources/case.h",
+    interpolates=True,
+    any_folder=True,
+    heavy=Change("boreprop/kernel/beam.h", "beam.F0_g = 5.0 / 8", "beam.F0_g = 7.0 / 8"),
+    loud=Change(
+        "boreprop_fmu/native/fmi2.c",
+        "value[i] = there ? c->value[vr[i]]",
+        "value[i] = there ? (VARIABLE[vr[i]].role == OUTPUT ? 10.0 : 1.0) * c->value[vr[i]]",
+    ),
+)
+
+both_flavours = pytest.mark.parametrize("flavour", [PYTHON, NATIVE], ids=str, indirect=True, scope="session")
+
+
+def build_to_read(case: Case, output: Path, flavour: Flavour) -> Path:
+    """An FMU that is not to run: nothing is compiled for it."""
+    return build_fmu(case, output, **flavour.to_read)
