@@ -8,6 +8,7 @@ import json
 import shutil
 import sys
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from copy import copy
 from math import inf, nan
@@ -16,9 +17,10 @@ from random import Random
 from tempfile import TemporaryDirectory
 from types import ModuleType
 
+import psutil
 from fmpy.fmi2 import FMU2Slave
 
-from fmu_host import Instance, instance, own_modules
+from fmu_host import Instance, attempt, instance, modules, outputs
 
 Row = dict[str, float]
 
@@ -66,11 +68,12 @@ def invaded(packages: str, *fmus: str) -> object:
     return {"rows": rows, "undisturbed": all(sys.modules[f"boreprop.core.{n}"] is m for n, m in before.items())}
 
 
-def crowd(fmu: str, count: str) -> object:
-    """Rows of many instances in one directory, as one host has them, and where their code came from."""
+@contextmanager
+def siblings(fmu: str, count: int) -> Iterator[list[Instance]]:
+    """Many instances in one directory, as one host has them."""
     with instance(fmu) as first:
         made = [first]
-        for k in range(1, int(count)):
+        for k in range(1, count):
             one = copy(first)
             one.slave = FMU2Slave(
                 guid=one.description.guid,
@@ -80,23 +83,50 @@ def crowd(fmu: str, count: str) -> object:
             )
             one.slave.instantiate(loggingOn=False)
             made.append(one)
-        rows = weave(made)
+        yield made
         for one in made[1:]:
             one.slave.fmi2FreeInstance(one.slave.component)
-        return {"rows": rows, "own modules": own_modules(first)}
+
+
+def crowd(fmu: str, count: str) -> object:
+    """Rows of many instances, and where their code came from."""
+    with siblings(fmu, int(count)) as made:
+        return {"rows": weave(made), "modules": modules(made[0])}
+
+
+def threads(fmu: str, count: str) -> object:
+    """Rows of many instances that run one after the other, and then of all at once, each in its own thread."""
+
+    def live(numbered: tuple[int, Instance]) -> list[Row]:
+        number, one = numbered
+        one.slave.reset()
+        one.initialize(rss_force=500.0 * number, flexural_stiffness=7e6 + 1e5 * number)
+        rows = []
+        for k in range(20):
+            one.set(rss_force=500.0 * (-1) ** k * (number + 1))
+            rows += one.steps(1, 60.0)  # long enough for the threads to meet in it
+            one.set_state(one.state())
+            one.set(rate_of_penetration=nan)
+            assert one.step(0.5) == "discard"
+            one.set(rate_of_penetration=1.0)
+        return rows
+
+    with siblings(fmu, int(count)) as made, ThreadPoolExecutor(len(made)) as pool:
+        alone = [live(numbered) for numbered in enumerate(made)]
+        return [alone, list(pool.map(live, enumerate(made)))]
 
 
 def reborn(fmu: str, count: str) -> object:
     """Whether every one of many instances, one after the other, gives the same row; growth of memory, bytes."""
-    rows = []
     with instance(fmu) as one:
+        same, first = True, one.initialize().steps(1, 0.7)
         for k in range(int(count)):
-            rows.append(one.initialize().steps(1, 0.7)[0])
             one.slave.fmi2FreeInstance(one.slave.component)
             one.slave.instantiate(loggingOn=False)
+            same &= one.initialize().steps(1, 0.7) == first
             if k == 50:
                 before = memory()
-        return [all(row == rows[0] for row in rows), memory() - before]
+        return [same, memory() - before]
 
 
 def homeless(fmu: str) -> object:
@@ -159,13 +189,14 @@ def far_again(fmu: str, path: str) -> object:
 
 
 def spoilt_states(fmu: str, *others: str) -> object:
-    """What becomes of bad states: the log, the steps after it, outputs, and steps after a good state or a reset."""
+    """What becomes of bad states: statuses, the log, outputs, steps, and steps after a good state or a reset."""
     random = Random(3)
     with instances(fmu, *others) as (one, *foreigners):
         foreign = [other.initialize().state() for other in foreigners]
         one.initialize(rss_force=1e3).steps(3, 1.7)
         good, time, row = one.state(), one.time, one.row()
         bad = {f"foreign {k}": content for k, content in enumerate(foreign)}
+        bad |= {"text": good.replace(b"0", b"1"), "no text": b"\xff\x00"}
         bad |= {f"cut at {k}": good[:k] for k in range(0, len(good), 211)}
         for _ in range(100):
             at, bit = random.randrange(len(good)), random.randrange(8)
@@ -175,11 +206,11 @@ def spoilt_states(fmu: str, *others: str) -> object:
         reports = []
         for k, (name, content) in enumerate(bad.items()):
             one.log.clear()
-            one.set_state(content)
+            refused = attempt(one.set_state, content)
             lines = [line for _, _, line in one.log]
             levels = {(status, category) for status, category, _ in one.log}
+            becomes = outputs(one, row)
             steps = [one.step(0.5) for _ in range(3)]
-            unknown = all(one.get(v) != one.get(v) for v in ("bit_inclination", "drilled_length"))
             if k % 2:
                 one.slave.reset()
                 one.initialize(rss_force=1e3)
@@ -188,8 +219,9 @@ def spoilt_states(fmu: str, *others: str) -> object:
                 one.set_state(good)
                 one.time = time
                 recovered = one.row() == row and one.step(0.5) == "ok"
-            reports.append([name, lines, sorted(levels), steps, unknown, recovered])
+            reports.append([name, refused, lines, sorted(levels), becomes, steps, recovered])
             one.set_state(good)
+            one.time = time
         return reports
 
 
@@ -203,6 +235,21 @@ def faulty_state(fmu: str) -> object:
         one.set_state(good)
         before = one.step(0.5)
         one.set_state(faulty)
+        return [before, one.step(0.5)]
+
+
+def systemless_state(fmu: str) -> object:
+    """Steps from a good state, and after going back to one that was taken under bad parameters."""
+    with instance(fmu) as one:
+        one.initialize()
+        good = one.state()
+        one.slave.reset()
+        one.set(flexural_stiffness=-1.0)
+        attempt(one.initialize)
+        systemless = one.state()
+        one.set_state(good)
+        before = one.step(0.5)
+        one.set_state(systemless)
         return [before, one.step(0.5)]
 
 
@@ -266,7 +313,7 @@ def changed_inputs(fmu: str) -> object:
 
 
 def bad_values(fmu: str) -> object:
-    """For each bad value: status, the log, whether anything moved, the status after a good value."""
+    """For each bad value: status, the log, outputs under it, whether anything moved, the status after a good value."""
     bad = [
         (name, value)
         for name in ("rss_force", "active_weight_on_bit", "rate_of_penetration")
@@ -282,34 +329,34 @@ def bad_values(fmu: str) -> object:
             one.log.clear()
             one.set_names({name: value})
             status = one.step(0.5)
-            log = list(one.log)
+            log, under = list(one.log), outputs(one, before)
             one.set_names({name: good})
-            reports.append([name, value, status, log, one.row() == before and one.state() == state, one.step(0.5)])
+            unmoved = one.row() == before and one.state() == state
+            reports.append([name, value, status, log, under, unmoved, one.step(0.5)])
         for size in (0.0, -1.0, nan, inf):
             before, state = one.row(), one.state()
             one.log.clear()
             status = one.step(size)
             log, one.time = list(one.log), one.get("drilled_length")
-            reports.append(
-                ["step_size", size, status, log, one.row() == before and one.state() == state, one.step(0.5)]
-            )
+            under, unmoved = outputs(one, before), one.state() == state
+            reports.append(["step_size", size, status, log, under, unmoved, one.step(0.5)])
     return reports
 
 
 def bad_parameters(fmu: str, bad: str) -> object:
-    """For each bad parameter: statuses of two steps, the log of one, status of a step after a reset."""
+    """For each bad parameter: statuses of the initialization and of two steps, the log of each, then after a reset."""
     reports = []
     with instance(fmu) as one:
         for name, value in json.loads(bad):
             one.set_names({name: value})
-            one.initialize()
-            statuses = [one.step(0.5)]
-            one.log.clear()
-            statuses.append(one.step(0.5))
-            log = list(one.log)
+            statuses, logs = [], []
+            for call in (one.initialize, lambda: one.slave.doStep(0.0, 0.5), lambda: one.slave.doStep(0.0, 0.5)):
+                one.log.clear()
+                statuses.append(attempt(call))
+                logs.append(list(one.log))
             one.slave.reset()
             one.initialize()
-            reports.append([name, value, statuses, log, one.step(0.5)])
+            reports.append([name, value, statuses, logs, one.step(0.5)])
             one.slave.reset()
     return reports
 
@@ -337,47 +384,47 @@ def unforeseen(fmu: str) -> object:
 
 
 def endure(fmu: str, count: str) -> object:
-    """Growth of memory, bytes, over many calls of each kind; the status of a good step at the end."""
+    """Growth of memory, bytes, and the statuses, over many calls of each kind; the status of a good step at the end."""
     with instance(fmu) as one:
         one.initialize()
         good, bad = one.state(), one.state()[:-3]
 
-        def wrong_value() -> None:
+        def wrong_value() -> str:
             one.set(rss_force=nan)
-            assert one.step(0.5) == "discard"
+            status = one.step(0.5)
             one.set(rss_force=0.0)
+            return status
 
-        def wrong_step() -> None:
-            assert one.step(-1.0) == "discard"
+        def wrong_step() -> str:
+            return one.step(-1.0)
 
-        def wrong_state() -> None:
-            one.set_state(bad)
-            assert one.step(0.5) == "discard"
+        def wrong_state() -> str:
+            statuses = f"{attempt(one.set_state, bad)}, {one.step(0.5)}"
             one.set_state(good)
+            return statuses
 
-        def wrong_reference() -> None:
-            one.slave.getReal([10_000])
+        def wrong_reference() -> str:
+            return attempt(one.slave.getReal, [10_000])
 
-        def right_state() -> None:
-            one.set_state(one.state())
+        def right_state() -> str:
+            return attempt(one.set_state, one.state())
 
-        growth = {}
+        growth, statuses = {}, {}
         for action in (wrong_value, wrong_step, wrong_state, wrong_reference, right_state):
+            seen = set()
             for k in range(int(count) + 500):
                 if k == 500:
                     before = memory()
-                action()
+                seen.add(action())
                 one.log.clear()
-            growth[action.__name__] = memory() - before
+            growth[action.__name__], statuses[action.__name__] = memory() - before, sorted(seen)
         one.time = 0.0
-        return [growth, one.step(0.5)]
+        return [growth, statuses, one.step(0.5)]
 
 
 def memory() -> int:
-    """The most memory this process ever had, bytes."""
-    import resource  # not on Windows
-
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    """What this process holds now, bytes."""
+    return int(psutil.Process().memory_info().rss)
 
 
 if __name__ == "__main__":

@@ -14,9 +14,9 @@ from fmpy.validation import validate_fmu
 from boreprop.case import Case, InputError
 from boreprop.core.assembly import BottomHoleAssembly
 from boreprop.core.variables import BY_NAME, VARIABLES, scalar_names
-from boreprop_fmu import build
-from boreprop_fmu.build import build_fmu
+from boreprop_fmu.build import CASE_FILE, pack_code, read_modules
 from boreprop_fmu.drive import Run, read_packed_case
+from flavours import Flavour, both_flavours, build_to_read
 
 
 @pytest.fixture(scope="module")
@@ -25,12 +25,15 @@ def description(fmu: Path) -> Element:
         return fromstring(archive.read("modelDescription.xml"))
 
 
+@both_flavours
 @pytest.mark.parametrize("n", [1, 2, 6])
-def test_fmpy_finds_no_fault_in_the_description(case: Case, tmp_path: Path, n: int) -> None:
+def test_fmpy_finds_no_fault_in_the_description(flavour: Flavour, case: Case, tmp_path: Path, n: int) -> None:
     bha = BottomHoleAssembly(tuple(3.0 * i for i in range(1, n + 1)), (1e-3,) * (n - 1), 0.5, 1e3, 7e6)
-    assert validate_fmu(str(build_fmu(replace(case, bha=bha), tmp_path / "Borehole.fmu"))) == []
+    made = build_to_read(replace(case, bha=bha), tmp_path / "Borehole.fmu", flavour)
+    assert validate_fmu(str(made)) == []
 
 
+@both_flavours
 def test_every_variable_of_the_table_is_declared_with_its_role_unit_and_bounds(description: Element) -> None:
     scalars = description.findall("ModelVariables/ScalarVariable")
     assert [scalar.get("name") for scalar in scalars] == scalar_names(VARIABLES, 2)
@@ -47,6 +50,7 @@ def test_every_variable_of_the_table_is_declared_with_its_role_unit_and_bounds(d
         assert float(typed.get("max", "inf")) == variable.max
 
 
+@both_flavours
 def test_units_are_products_of_powers_of_si_base_units(description: Element) -> None:
     expected = {
         "N": "kg m s-2",
@@ -63,6 +67,7 @@ def test_units_are_products_of_powers_of_si_base_units(description: Element) -> 
         assert powers == expected.get(unit.attrib["name"], unit.attrib["name"].replace("1", ""))
 
 
+@both_flavours
 def test_a_display_value_is_what_an_engineer_expects(description: Element) -> None:
     factors = {
         display.attrib["name"]: float(display.attrib["factor"])
@@ -75,6 +80,7 @@ def test_a_display_value_is_what_an_engineer_expects(description: Element) -> No
     assert factors["kN"] * 2500 == pytest.approx(2.5)
 
 
+@both_flavours
 def test_start_values_are_those_of_the_case(description: Element, case: Case) -> None:
     start = {
         scalar.attrib["name"]: typed.attrib["start"]
@@ -91,59 +97,73 @@ def test_start_values_are_those_of_the_case(description: Element, case: Case) ->
     assert set(start) == set(scalar_names(tuple(v for v in VARIABLES if v.role != "output"), 2))
 
 
+@both_flavours
 def test_the_default_experiment_drills_the_length_of_the_case(description: Element, case: Case) -> None:
     experiment = description.find("DefaultExperiment")
     assert experiment is not None
     assert float(experiment.attrib["stopTime"]) == case.length
 
 
-def test_hosts_may_use_states_and_need_no_tool(description: Element) -> None:
+@both_flavours
+def test_hosts_may_use_states_and_many_instances_and_need_no_tool(flavour: Flavour, description: Element) -> None:
     capabilities = description.find("CoSimulation")
     assert capabilities is not None
     assert capabilities.get("needsExecutionTool") == "false"
     assert capabilities.get("canGetAndSetFMUstate") == capabilities.get("canSerializeFMUstate") == "true"
+    assert capabilities.get("canBeInstantiatedOnlyOncePerProcess") == "false"
+    assert (capabilities.get("canInterpolateInputs") == "true") == flavour.interpolates
 
 
+@both_flavours
 def test_the_case_comes_back_out_of_the_fmu(fmu: Path, case: Case) -> None:
     assert read_packed_case(fmu) == case
 
 
-def test_two_builds_are_the_same_bytes_in_any_process(fmu: Path, paper_case: Path, tmp_path: Path) -> None:
+@both_flavours
+def test_two_builds_are_the_same_bytes_in_any_process(
+    flavour: Flavour, fmu: Path, paper_case: Path, tmp_path: Path
+) -> None:
     program = "import sys; from boreprop_fmu.build import *; from boreprop.case import load_case\n"
-    program += "build_fmu(load_case(sys.argv[1]), Path(sys.argv[2]))"
+    program += "build_fmu(load_case(sys.argv[1]), Path(sys.argv[2]), runtime=sys.argv[3])"
     again = tmp_path / "again.fmu"
-    subprocess.run(
-        [sys.executable, "-c", program, paper_case, again], check=True, env={**os.environ, "PYTHONHASHSEED": "7"}
-    )
+    command = [sys.executable, "-c", program, str(paper_case), str(again), flavour.runtime]
+    subprocess.run(command, check=True, env={**os.environ, "PYTHONHASHSEED": "7"})
     assert again.read_bytes() == fmu.read_bytes()
 
 
-def test_another_case_is_another_fmu_with_the_same_code(fmu: Path, case: Case, tmp_path: Path) -> None:
-    other = build_fmu(replace(case, length=2 * case.length), tmp_path / "other.fmu")
+@both_flavours
+def test_another_case_is_another_fmu_with_the_same_code(
+    flavour: Flavour, fmu: Path, case: Case, tmp_path: Path
+) -> None:
+    other = build_to_read(replace(case, length=2 * case.length), tmp_path / "other.fmu", flavour)
     with zipfile.ZipFile(fmu) as a, zipfile.ZipFile(other) as b:
         guids = [fromstring(archive.read("modelDescription.xml")).get("guid") for archive in (a, b)]
         assert guids[0] != guids[1]
-        assert a.read("resources/slavemodule.txt") == b.read("resources/slavemodule.txt")
+        packed = [name for name in a.namelist() if name.startswith(("resources/", "sources/"))]
+        assert {name for name in packed if a.read(name) != b.read(name)} == {CASE_FILE, flavour.numbers}
 
 
 def test_names_of_packed_modules_follow_their_content(monkeypatch: pytest.MonkeyPatch) -> None:
     def names() -> set[str]:
-        return {path.split("/")[1] for path in build.pack_code()} - {"slavemodule.txt"}
+        return {path.split("/")[1] for path in pack_code()} - {"slavemodule.txt"}
 
     before = names()
-    read = build.read_modules
-    monkeypatch.setattr(build, "read_modules", lambda package: {**read(package), "beam.py": b"# changed"})
+    monkeypatch.setattr(
+        "boreprop_fmu.build.read_modules", lambda package: {**read_modules(package), "beam.py": b"# changed"}
+    )
     assert len(before) == len(names()) == 2
     assert before.isdisjoint(names())
 
 
-def test_nothing_is_left_behind_when_the_file_cannot_be_written(case: Case, tmp_path: Path) -> None:
+@both_flavours
+def test_nothing_is_left_behind_when_the_file_cannot_be_written(flavour: Flavour, case: Case, tmp_path: Path) -> None:
     (tmp_path / "taken.fmu").mkdir()
     with pytest.raises(OSError, match="taken"):
-        build_fmu(case, tmp_path / "taken.fmu")
+        build_to_read(case, tmp_path / "taken.fmu", flavour)
     assert [path.name for path in tmp_path.iterdir()] == ["taken.fmu"]
 
 
+@both_flavours
 def test_an_fmu_without_our_names_is_refused(fmu: Path, tmp_path: Path) -> None:
     with zipfile.ZipFile(fmu) as archive, zipfile.ZipFile(tmp_path / "other.fmu", "w") as other:
         other.writestr("modelDescription.xml", archive.read("modelDescription.xml").replace(b"rss_force", b"pad_force"))

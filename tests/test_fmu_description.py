@@ -1,6 +1,7 @@
 """What an FMU says of itself and what it shows: checked against the standard's own schema, and by using it."""
 
 import io
+import json
 import re
 import struct
 import subprocess
@@ -19,7 +20,7 @@ from lxml import etree
 from boreprop.case import Case
 from boreprop.core.assembly import BottomHoleAssembly
 from boreprop.core.variables import VARIABLES, scalar_names
-from boreprop_fmu.build import build_fmu
+from flavours import Flavour, both_flavours, build_to_read
 
 SCHEMA = Path(fmpy.__file__).parent / "schema" / "fmi2" / "fmi2ModelDescription.xsd"
 
@@ -39,20 +40,25 @@ def contents(fmu: Path) -> dict[str, bytes]:
         return {name: archive.read(name) for name in archive.namelist()}
 
 
+@both_flavours
 @pytest.mark.parametrize("n", [1, 2, 6])
-def test_the_description_is_valid_against_the_schema_of_fmi_2(case: Case, tmp_path: Path, n: int) -> None:
+def test_the_description_is_valid_against_the_schema_of_fmi_2(
+    flavour: Flavour, case: Case, tmp_path: Path, n: int
+) -> None:
     bha = BottomHoleAssembly(tuple(3.0 * i for i in range(1, n + 1)), (1e-3,) * (n - 1), 0.5, 1e3, 7e6)
-    packed = contents(build_fmu(replace(case, bha=bha), tmp_path / "Borehole.fmu"))
+    packed = contents(build_to_read(replace(case, bha=bha), tmp_path / "Borehole.fmu", flavour))
     schema = etree.XMLSchema(etree.parse(SCHEMA))
     schema.assertValid(etree.parse(io.BytesIO(packed["modelDescription.xml"])))
 
 
+@both_flavours
 def test_the_schema_is_one_that_can_fail(archive: dict[str, bytes]) -> None:
     schema = etree.XMLSchema(etree.parse(SCHEMA))
     wrong = archive["modelDescription.xml"].replace(b'causality="input"', b'causality="cause"')
     assert not schema.validate(etree.parse(io.BytesIO(wrong)))
 
 
+@both_flavours
 def test_every_real_says_how_large_it_usually_is_and_starts_within_a_thousand_times_that(description: Element) -> None:
     reals = description.findall("ModelVariables/ScalarVariable/Real")
     assert all(float(real.attrib["nominal"]) > 0 for real in reals)
@@ -62,6 +68,7 @@ def test_every_real_says_how_large_it_usually_is_and_starts_within_a_thousand_ti
         assert start == 0 or abs(start) >= 1e-3 * nominal
 
 
+@both_flavours
 def test_angles_are_shown_in_degrees_and_curvature_in_degrees_per_30_m(description: Element) -> None:
     shown = {"rad": "deg", "rad/m": "deg/30m"}
     angular = [r for r in description.findall("ModelVariables/ScalarVariable/Real") if r.get("unit") in shown]
@@ -69,6 +76,7 @@ def test_angles_are_shown_in_degrees_and_curvature_in_degrees_per_30_m(descripti
     assert all(real.get("displayUnit") == shown[real.attrib["unit"]] for real in angular)
 
 
+@both_flavours
 def test_the_force_acts_at_once_on_the_hole_but_not_on_the_bit_axis(description: Element) -> None:
     names = [scalar.attrib["name"] for scalar in description.findall("ModelVariables/ScalarVariable")]
     depends = {
@@ -79,6 +87,7 @@ def test_the_force_acts_at_once_on_the_hole_but_not_on_the_bit_axis(description:
     assert depends["bit_inclination"] == depends["drilled_length"] == set()
 
 
+@both_flavours
 def test_every_output_is_an_initial_unknown(description: Element) -> None:
     structure = [
         [unknown.get("index") for unknown in description.findall(f"ModelStructure/{part}/Unknown")]
@@ -87,28 +96,33 @@ def test_every_output_is_an_initial_unknown(description: Element) -> None:
     assert structure[0] == structure[1] != []
 
 
-def test_the_guid_names_code_and_case_and_nothing_else(fmu: Path, case: Case, tmp_path: Path) -> None:
+@both_flavours
+def test_the_guid_names_code_and_case_and_nothing_else(flavour: Flavour, fmu: Path, case: Case, tmp_path: Path) -> None:
     def guid(which: Case) -> str:
-        path = build_fmu(which, tmp_path / "other.fmu")
+        path = build_to_read(which, tmp_path / "other.fmu", flavour)
         return fromstring(contents(path)["modelDescription.xml"]).attrib["guid"]
 
     assert guid(case) == fromstring(contents(fmu)["modelDescription.xml"]).attrib["guid"]
     assert guid(replace(case, active_weight_on_bit=2 * case.active_weight_on_bit)) != guid(case)
 
 
-def test_the_clock_the_user_and_the_place_leave_no_trace(fmu: Path, paper_case: Path, tmp_path: Path) -> None:
+@both_flavours
+def test_the_clock_the_user_and_the_place_leave_no_trace(
+    flavour: Flavour, case: Case, paper_case: Path, tmp_path: Path
+) -> None:
     program = (
-        "import sys, time; time.time = lambda: 2e9\n"
+        "import json, sys, time; time.time = lambda: 2e9\n"
         "from pathlib import Path; from boreprop_fmu.build import build_fmu; from boreprop.case import load_case\n"
-        "build_fmu(load_case(Path(sys.argv[1])), Path('other name.fmu'))"
+        "build_fmu(load_case(Path(sys.argv[1])), Path('other name.fmu'), **json.loads(sys.argv[2]))"
     )
     environment = {"TZ": "Asia/Tokyo", "LC_ALL": "C", "PYTHONHASHSEED": "11", "USER": "somebody", "PYTHONUTF8": "0"}
-    subprocess.run(
-        [sys.executable, "-X", "utf8=0", "-c", program, paper_case], cwd=tmp_path, env=environment, check=True
-    )
-    assert (tmp_path / "other name.fmu").read_bytes() == fmu.read_bytes()
+    command = [sys.executable, "-X", "utf8=0", "-c", program, str(paper_case), json.dumps(flavour.to_read)]
+    subprocess.run(command, cwd=tmp_path, env=environment, check=True)
+    expected = build_to_read(case, tmp_path / "Borehole.fmu", flavour)
+    assert (tmp_path / "other name.fmu").read_bytes() == expected.read_bytes()
 
 
+@both_flavours
 def test_the_icon_is_a_small_png(archive: dict[str, bytes]) -> None:
     png = archive["model.png"]
     assert png[:8] == b"\x89PNG\r\n\x1a\n"
@@ -155,6 +169,7 @@ def page(archive: dict[str, bytes]) -> Page:
     return parser
 
 
+@both_flavours
 def test_the_documentation_lists_every_variable_with_its_symbol_and_meaning(page: Page) -> None:
     text = " ".join(page.cells)
     assert all(variable.meaning in text for variable in VARIABLES)
@@ -164,6 +179,7 @@ def test_the_documentation_lists_every_variable_with_its_symbol_and_meaning(page
     assert all(f"({number})" in equations for number in (5, 7, 8, 10, 16, 17, 18))
 
 
+@both_flavours
 def test_the_example_of_the_documentation_runs(fmu: Path, page: Page, tmp_path: Path) -> None:
     (tmp_path / "Borehole.fmu").write_bytes(fmu.read_bytes())
     done = subprocess.run(

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from boreprop.case import load_case
-from boreprop_fmu.build import build_fmu
+from flavours import both_flavours
 
 pytest.importorskip("libcosimpy")
 HERE = Path(__file__).parent
@@ -25,11 +24,6 @@ def host(scenario: str, *arguments: object) -> Any:
 
 
 @pytest.fixture(scope="module")
-def fmu(paper_case: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return build_fmu(load_case(paper_case), tmp_path_factory.mktemp("fmu") / "Borehole.fmu")
-
-
-@pytest.fixture(scope="module")
 def steering(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("steering")
     command = [sys.executable, "-m", "pythonfmu", "build", "-f", str(HERE / "fmu_steering_slave.py"), "-d", str(folder)]
@@ -37,12 +31,14 @@ def steering(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "Steering.fmu"
 
 
+@both_flavours
 def test_libcosim_and_fmpy_agree_on_a_run_whose_force_changes(fmu: Path) -> None:
     rows, expected = host("alone", fmu, 0.5, 40), host("alone_in_fmpy", fmu, 0.5, 40)
     np.testing.assert_array_equal(rows, expected)
     assert rows[-1, 0] == 40.0
 
 
+@both_flavours
 def test_libcosim_and_fmpy_agree_on_a_loop_closed_through_a_second_fmu(fmu: Path, steering: Path) -> None:
     # steps of 1/8 s: the times are the same floats, whether a master adds them up or counts them
     rows, expected = host("connected", fmu, steering, 0.125, 320), host("connected_in_fmpy", fmu, steering, 0.125, 320)

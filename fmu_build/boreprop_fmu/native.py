@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 
 from boreprop.case import Case, InputError
 from boreprop.core.variables import INPUTS, VARIABLES
-from boreprop.kernel.compiler import PLATFORMS, CompilerError, compile_library, host_platform
+from boreprop.kernel.compiler import PLATFORMS, CompilerError, NoCompilerError, compile_library, host_platform
 
 from .build import IDENTIFIER, describe, identify, pack_manual, start_values
 
@@ -153,7 +153,7 @@ def _compile(source: Path, library: Path, platform: str, *, own: bool) -> None:
     try:
         try:
             compile_library(source, library, platform=platform)
-        except CompilerError:
+        except NoCompilerError:
             if not own:
                 raise
             compile_library(source, library)

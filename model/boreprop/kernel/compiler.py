@@ -25,12 +25,16 @@ FOLDER = Path(__file__).resolve().parent  # of the kernel's sources
 FLAGS = ("-std=c99", "-O2", "-g0", "-ffp-contract=off", "-fPIC")
 
 # what zig may know of its surroundings: where its cache is, and what Windows needs to run anything
-ENVIRONMENT = {"HOME", "LOCALAPPDATA", "PATH", "SYSTEMROOT", "TEMP", "TMP", "TMPDIR", "USERPROFILE"}
-ENVIRONMENT |= {"XDG_CACHE_HOME", "ZIG_GLOBAL_CACHE_DIR"}
+CACHES = {"HOME", "LOCALAPPDATA", "XDG_CACHE_HOME", "ZIG_GLOBAL_CACHE_DIR"}
+ENVIRONMENT = CACHES | {"PATH", "SYSTEMROOT", "TEMP", "TMP", "TMPDIR", "USERPROFILE"}
 
 
 class CompilerError(RuntimeError):
     """Nothing was compiled. The message says on one line what is missing or wrong and what helps."""
+
+
+class NoCompilerError(CompilerError):
+    """There is nothing to compile with."""
 
 
 @dataclass(frozen=True)
@@ -116,8 +120,10 @@ def compile_library(
 
     Raises
     ------
+    NoCompilerError
+        If there is no compiler.
     CompilerError
-        If there is no compiler, it finds a mistake, or the platform is not known.
+        If it finds a mistake, or the platform is not known.
     OSError
         If `output` cannot be written.
     """
@@ -137,13 +143,15 @@ def compile_library(
     else:
         what = "ziglang" if platform else "a C compiler (cc, gcc, clang or $CC) or ziglang"
         target = platform or "this machine"
-        raise CompilerError(f"{what} must be installed to compile for {target}: pip install 'boreprop[native]'")
+        raise NoCompilerError(f"{what} must be installed to compile for {target}: pip install 'boreprop[native]'")
 
     flags += [f"-I{folder}" for folder in folders]
     flags += [f"-D{name}={value}" for name, value in defines.items()]
     output = output.resolve()
     # linkers leave more than the library, and write its name, as it is given, into it
     with TemporaryDirectory(dir=output.parent, prefix=f".{output.name}.") as draft:
+        if not CACHES & set(environment):  # zig would not start
+            environment["ZIG_GLOBAL_CACHE_DIR"] = str(Path(draft, "cache"))
         compiles = [["-c", str(path), "-o", f"{path.stem}.o"] for path in sources]
         link = ["-shared", *(f"{path.stem}.o" for path in sources), "-o", output.name, *links]
         for task in (*compiles, link):

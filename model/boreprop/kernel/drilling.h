@@ -24,13 +24,15 @@ static inline int check_inputs(Inputs inputs, char why[MESSAGE]) {
            check_positive("active_weight_on_bit", inputs.active_weight_on_bit, why);
 }
 
-static inline ScaledInputs scale_inputs(const System *system, Inputs inputs) {
+/* The dimensionless inputs; 0 where they are good, but not over F*. */
+static inline int scale_inputs(const System *system, Inputs inputs, ScaledInputs *scaled, char why[MESSAGE]) {
     double F_star = force_scale(system);
-    ScaledInputs scaled = {
-        inputs.rss_force / F_star, inputs.rss_force_slope * length_scale(system) / F_star,
-        eta_pi(system, inputs.active_weight_on_bit)
-    };
-    return scaled;
+    scaled->F_rss = inputs.rss_force / F_star;
+    scaled->F_rss_slope = inputs.rss_force_slope * length_scale(system) / F_star;
+    scaled->eta_pi = eta_pi(system, inputs.active_weight_on_bit);
+    return check_inputs(inputs, why) && check_finite("rss_force / F*", scaled->F_rss, why) &&
+           check_finite("rss_force_slope / F*", scaled->F_rss_slope, why) &&
+           check_positive("eta_pi", scaled->eta_pi, why) && check_finite("1 / eta_pi", 1 / scaled->eta_pi, why);
 }
 
 /* Capacity, in pieces of hole, that a run under ordinary inputs needs. */
@@ -54,15 +56,14 @@ static inline Status drilling_start(
     Drilling *d, const System *system, const Survey *survey, Inputs inputs, void *memory, Count capacity,
     char why[MESSAGE]
 ) {
-    if (!check_survey(survey, why) || !check_system(system, why) || !check_inputs(inputs, why)) return FAILED;
+    ScaledInputs scaled_inputs;
+    if (!check_survey(survey, why) || !check_system(system, why)) return FAILED;
+    if (!scale_inputs(system, inputs, &scaled_inputs, why)) return FAILED;
     if (capacity < drilling_capacity(system, survey)) return FULL;
     Scaled scaled = scale(system);
-    ScaledInputs scaled_inputs = scale_inputs(system, inputs);
-    double numbers = scaled.Delta + scaled.w + scaled.epsilon + scaled.s[scaled.n - 1] + scaled_inputs.F_rss;
-    if (!isfinite(numbers) || !isfinite(1 / scaled_inputs.eta_pi) || !isfinite(1 / scaled.epsilon)) {
-        snprintf(why, MESSAGE, "parameters: must give finite numbers, got eta_pi = %g", scaled_inputs.eta_pi);
+    if (!check_finite("s_n / l_1", scaled.s[scaled.n - 1], why) || !check_finite("w l_1 / F*", scaled.w, why) ||
+        !check_positive("epsilon", scaled.epsilon, why) || !check_finite("1 / epsilon", 1 / scaled.epsilon, why))
         return FAILED;
-    }
     d->system = *system;
     d->drilled_length = 0.0;
     d->propagation.hole = lay_out(memory, capacity);
@@ -73,10 +74,11 @@ static inline Status drilling_start(
 /* Drill on to a length, m from the start, under inputs from here; where the bit is, only they are taken over.
    After FULL: `drilling_move`, and the same call again, which goes on; or `drilling_cancel`, and nothing has moved. */
 static inline Status drilling_advance(Drilling *d, double drilled_length, Inputs inputs, char why[MESSAGE]) {
-    if (!check_inputs(inputs, why)) return FAILED;
+    ScaledInputs scaled_inputs;
+    if (!scale_inputs(&d->system, inputs, &scaled_inputs, why)) return FAILED;
     if (!check_at_least("drilled_length", drilled_length, d->drilled_length, why)) return FAILED;
     double xi = drilled_length / length_scale(&d->system);
-    Status status = drill(&d->propagation, xi, scale_inputs(&d->system, inputs), why);
+    Status status = drill(&d->propagation, xi, scaled_inputs, why);
     if (status == DONE) d->drilled_length = drilled_length;
     return status;
 }
