@@ -1,7 +1,6 @@
 """A schedule in, a trajectory out."""
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +13,7 @@ from .core.variables import OUTPUTS, scalar_names
 from .kernel.binding import NativeDrilling, available
 from .results import Trajectory
 
+AnyDrilling = Drilling | NativeDrilling
 Floats = NDArray[np.float64]
 
 ENGINES = ("python", "native")
@@ -66,28 +66,17 @@ def simulate(
     KernelError
         If the native engine is not there.
     """
-    if engine not in ENGINES:
-        raise ParameterError("engine", f"must be {' or '.join(ENGINES)}", engine)
     length = case.length if length is None else length
     check_number("length", length, above=0.0)
     check_number("sample_interval", sample_interval, above=0.0)
     weight = case.active_weight_on_bit
-    native = engine == "native"
-    make, follow = (NativeDrilling, NativeDrilling.follow) if native else (Drilling, _follow)
-    drilling: Any = make(
-        case.bha,
-        case.bit,
-        case.survey,
-        active_weight_on_bit=weight,
-        rss_force=case.schedule.rss_force[0],
-        relative_tolerance=relative_tolerance,
-    )
+    drilling = start(case, engine, relative_tolerance)
     names = scalar_names(OUTPUTS, len(case.bha.stabilizer_positions))
     table = np.empty((int(length / sample_interval + ROUNDING) + 1, len(names)))
     lengths, forces, rows = _legs(case.schedule, len(table), sample_interval)
     batch = len(lengths) // PARTS + 1 if progress else len(lengths)
-    for start in range(0, len(lengths), batch):
-        part = slice(start, start + batch)
+    for first in range(0, len(lengths), batch):
+        part = slice(first, first + batch)
         failure = follow(drilling, lengths[part], forces[part], weight, rows[part], table)
         if failure:
             raise SimulationError(f"after {drilling.drilled_length:g} m of {length:g} m: {failure}")
@@ -102,6 +91,36 @@ def best_engine() -> str:
     return "native" if available() else "python"
 
 
+def start(case: Case, engine: str, relative_tolerance: float) -> AnyDrilling:
+    """A case before its first step, under its first force; errors as in `simulate`."""
+    if engine not in ENGINES:
+        raise ParameterError("engine", f"must be {' or '.join(ENGINES)}", engine)
+    make = NativeDrilling if engine == "native" else Drilling
+    return make(
+        case.bha,
+        case.bit,
+        case.survey,
+        active_weight_on_bit=case.active_weight_on_bit,
+        rss_force=case.schedule.rss_force[0],
+        relative_tolerance=relative_tolerance,
+    )
+
+
+def follow(
+    drilling: AnyDrilling, lengths: Floats, forces: Floats, weight: float, rows: NDArray[np.intc], table: Floats
+) -> str | None:
+    """Drill leg after leg, as `NativeDrilling.follow`, on either engine."""
+    if isinstance(drilling, NativeDrilling):
+        return drilling.follow(lengths, forces, weight, rows, table)
+    for length, force, row in zip(lengths.tolist(), forces.tolist(), rows.tolist(), strict=True):
+        failure = drilling.advance(length, force, weight)
+        if failure:
+            return failure
+        if row >= 0:
+            table[row] = tuple(drilling.outputs().values())
+    return None
+
+
 def _legs(schedule: Schedule, count: int, sample_interval: float) -> tuple[Floats, Floats, NDArray[np.intc]]:
     """Where the legs of a run end, m, the force along each, N, and the row that each ends on; −1: the force changes."""
     at = sample_interval * np.arange(count)
@@ -112,16 +131,3 @@ def _legs(schedule: Schedule, count: int, sample_interval: float) -> tuple[Float
     rows = np.insert(np.arange(count, dtype=np.intc), before, -1)
     changed = rows < 0
     return lengths, np.array(schedule.rss_force)[np.cumsum(changed) - changed], rows
-
-
-def _follow(
-    drilling: Drilling, lengths: Floats, forces: Floats, weight: float, rows: NDArray[np.intc], table: Floats
-) -> str | None:
-    """Drill leg after leg, as `NativeDrilling.follow`."""
-    for length, force, row in zip(lengths.tolist(), forces.tolist(), rows.tolist(), strict=True):
-        failure = drilling.advance(length, force, weight)
-        if failure:
-            return failure
-        if row >= 0:
-            table[row] = tuple(drilling.outputs().values())
-    return None

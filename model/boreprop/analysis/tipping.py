@@ -22,12 +22,11 @@ from numpy.typing import NDArray
 
 from ..case import Case
 from ..core.assembly import check_number
-from ..core.drilling import Drilling
 from ..core.hole import Survey
 from ..core.propagation import RELATIVE_TOLERANCE
 from ..core.variables import OUTPUTS, scalar_names
 from ..results import Trajectory
-from ..simulation import SimulationError
+from ..simulation import SimulationError, best_engine, follow, start
 from .design import vary
 from .rippling import REACH, SMALLEST_AMPLITUDE, TREND, WINDOW, Rippling, examine_rippling, find_rippling
 from .workers import WorkerLost, work
@@ -62,19 +61,18 @@ def drill_until_settled(case: Case, *, relative_tolerance: float = RELATIVE_TOLE
         If the integrator cannot go on.
     """
     bha, l1 = case.bha, case.bha.length_scale
-    force, weight = case.schedule.rss_force[0], case.active_weight_on_bit
-    drilling = Drilling(
-        bha, case.bit, case.survey, active_weight_on_bit=weight, rss_force=force, relative_tolerance=relative_tolerance
-    )
+    drilling = start(case, best_engine(), relative_tolerance)
     names = scalar_names(OUTPUTS, len(bha.stabilizer_positions))
-    rows: list[tuple[float, ...]] = []
+    rows = np.empty((0, len(names)))
     while True:
-        for _ in range(int(LOOK * ROWS)):
-            failure = drilling.advance(len(rows) * l1 / ROWS, force, weight)
-            if failure:
-                raise SimulationError(f"after {drilling.drilled_length:g} m: {failure}")
-            rows.append(tuple(drilling.outputs().values()))
-        run = Trajectory(dict(zip(names, np.array(rows).T, strict=True)), case)
+        more = np.empty((int(LOOK * ROWS), len(names)))
+        lengths = np.arange(len(rows), len(rows) + len(more)) * l1 / ROWS
+        force = np.full(len(more), case.schedule.rss_force[0])
+        failure = follow(drilling, lengths, force, case.active_weight_on_bit, np.arange(len(more), dtype=np.intc), more)
+        if failure:
+            raise SimulationError(f"after {drilling.drilled_length:g} m: {failure}")
+        rows = np.concatenate((rows, more))
+        run = Trajectory(dict(zip(names, rows.T, strict=True)), case)
         if _at_rest(run, bha.stabilizer_positions[-1] + LOOK * l1):
             return run, Rippling(False)
         if len(rows) >= EARLIEST * ROWS:
