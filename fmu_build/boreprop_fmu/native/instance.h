@@ -79,12 +79,12 @@ static System system_of(const double value[VARIABLES]) {
     return system;
 }
 
-/* A run at its start; NULL with `why` if the parameters or the inputs are bad. */
-static Run *new_run(const double value[VARIABLES], const Survey *survey, Inputs inputs, char why[LINE]) {
+/* A drilling system that has not begun; NULL with `why` if the parameters are bad. */
+static Run *new_run(const double value[VARIABLES], char why[LINE]) {
     System system = system_of(value);
     Run *run = calloc(1, sizeof *run);
     if (!run) explain(why, "run: must fit into the memory");
-    else if (run_start(run, &system, survey, inputs, why) == DONE) return run;
+    else if (run_prepare(run, &system, why) == DONE) return run;
     free_run(run);
     return NULL;
 }
@@ -126,7 +126,11 @@ static int ready(Component *c, char why[LINE]) {
     if (c->run) return 1;
     if (c->survey_file[0] && !(numbers = read_survey(c->survey_file, &survey, fault)))
         return explain(why, "%.*s (survey_file)", LINE - 32, fault);
-    c->run = new_run(c->value, &survey, inputs, why);
+    c->run = new_run(c->value, why);
+    if (c->run && run_start(c->run, &survey, inputs, why) != DONE) {
+        free_run(c->run);
+        c->run = NULL;
+    }
     free(numbers);
     return c->run != NULL;
 }
@@ -183,7 +187,7 @@ static int drill_on(Component *c, double to, const double end[INPUTS], char why[
         Inputs inputs = {force + slope * (at - from), slope, weight + rise * (stair + 0.5) / stairs};
         double next = stair + 1 < stairs ? from + (to - from) * (stair + 1) / stairs : to;
         done = run_advance(c->run, next, inputs, why) == DONE;
-        if (done && drilling->propagation.now.accepted - accepted > MOST_PIECES)
+        if (done && drilling->propagation.now.accepted - accepted > (double)MOST_PIECES)
             done = explain(why, "step: must take at most %d steps of the integrator, got more", MOST_PIECES);
     }
     if (!done && before) drilling_restore(drilling, before, size, (char[MESSAGE]){""});
@@ -264,11 +268,7 @@ static int restore(Component *c, const Saved *saved, char why[LINE]) {
             explain(why, "state: must be one of this FMU, got bytes that are no text");
             count = -1;
         }
-        if (count > 0) { /* any survey and inputs: those of the run are in the state */
-            Survey survey = {STATIONS, MEASURED_DEPTH, INCLINATION};
-            Inputs inputs = {0.0, 0.0, VARIABLE[ACTIVE_WEIGHT_ON_BIT].start};
-            run = new_run(value, &survey, inputs, why);
-        }
+        if (count > 0) run = new_run(value, why);
         if (run && run_restore(run, numbers, count, why) != DONE) {
             free_run(run);
             run = NULL;

@@ -51,24 +51,28 @@ static inline Hole lay_out(void *memory, Count capacity) {
     return hole;
 }
 
-/* Start at the end of the survey. Everything is checked; the survey need not live on, the memory must. */
-static inline Status drilling_start(
-    Drilling *d, const System *system, const Survey *survey, Inputs inputs, void *memory, Count capacity,
-    char why[MESSAGE]
+/* A drilling system that has not begun: `drilling_start` or `drilling_restore` is next. The memory must live on. */
+static inline Status drilling_prepare(
+    Drilling *d, const System *system, void *memory, Count capacity, char why[MESSAGE]
 ) {
-    ScaledInputs scaled_inputs;
-    if (!check_survey(survey, why) || !check_system(system, why)) return FAILED;
-    if (!scale_inputs(system, inputs, &scaled_inputs, why)) return FAILED;
-    if (capacity < drilling_capacity(system, survey)) return FULL;
+    if (!check_system(system, why)) return FAILED;
     Scaled scaled = scale(system);
     if (!check_finite("s_n / l_1", scaled.s[scaled.n - 1], why) || !check_finite("w l_1 / F*", scaled.w, why) ||
         !check_positive("epsilon", scaled.epsilon, why) || !check_finite("1 / epsilon", 1 / scaled.epsilon, why))
         return FAILED;
     d->system = *system;
     d->drilled_length = 0.0;
-    d->propagation.hole = lay_out(memory, capacity);
-    double tolerance = system->relative_tolerance;
-    return begin(&d->propagation, &scaled, survey, length_scale(system), scaled_inputs, tolerance, why);
+    prepare(&d->propagation, &scaled, system->relative_tolerance, lay_out(memory, capacity));
+    return DONE;
+}
+
+/* Start at the end of the survey, which need not live on. */
+static inline Status drilling_start(Drilling *d, const Survey *survey, Inputs inputs, char why[MESSAGE]) {
+    ScaledInputs scaled_inputs;
+    if (!check_survey(survey, why)) return FAILED;
+    if (!scale_inputs(&d->system, inputs, &scaled_inputs, why)) return FAILED;
+    if (d->propagation.hole.capacity < drilling_capacity(&d->system, survey)) return FULL;
+    return begin(&d->propagation, survey, length_scale(&d->system), scaled_inputs, why);
 }
 
 /* Drill on to a length, m from the start, under inputs from here; where the bit is, only they are taken over.
@@ -207,7 +211,7 @@ static inline int is_state(const Drilling *d, const double *state, Count count) 
     if (count < FIXED_NUMBERS) return 0;
     double pieces = state[0], kinks = state[1], most = (double)count;
     if (!is_whole(pieces, 1, most) || !is_whole(kinks, 0, most)) return 0;
-    if (FIXED_NUMBERS + NUMBERS_OF_PIECE * pieces + NUMBERS_OF_KINK * kinks != most) return 0;
+    if ((double)FIXED_NUMBERS + (double)NUMBERS_OF_PIECE * pieces + (double)NUMBERS_OF_KINK * kinks != most) return 0;
     for (int i = 0; i < MAX_STABILIZERS; i++)
         if (!is_whole(state[2 + 2 * i], 0, kinks) || !is_whole(state[3 + 2 * i], -1, 1)) return 0;
     if (state[2 * n] != 0) return 0; /* the last stabilizer is the last to pass a kink */
@@ -215,12 +219,13 @@ static inline int is_state(const Drilling *d, const double *state, Count count) 
     if (!is_whole(state[WHOLE_NUMBERS - 1], -1, 1) || !(state[WHOLE_NUMBERS] > 0)) return 0;
     for (Count k = WHOLE_NUMBERS + 1; k < count; k++)
         if (!isfinite(state[k])) return 0;
-    double xi = state[AT_XI], error = fabs(state[AT_LENGTH] / length_scale(&d->system) - xi);
-    if (!(state[AT_ETA_PI] > 0) || state[AT_INPUTS_XI] > xi || !(error <= MERGE * larger(1, xi))) return 0;
+    double xi = state[AT_XI];
+    if (state[AT_LENGTH] < 0 || state[AT_LENGTH] / length_scale(&d->system) != xi) return 0;
+    if (!(state[AT_ETA_PI] > 0) || !isfinite(1 / state[AT_ETA_PI]) || state[AT_INPUTS_XI] > xi) return 0;
     if (state[AT_STEP] > xi || xi > state[AT_STEP_END] || !(state[AT_STEP + 1] > 0)) return 0;
     for (Count k = 0; k < (Count)pieces; k++) {
         const double *piece = state + FIXED_NUMBERS + NUMBERS_OF_PIECE * k;
-        if (!(piece[1] > 0) || (k > 0 && piece[0] < piece[-NUMBERS_OF_PIECE])) return 0;
+        if (!(piece[1] > 0) || piece[0] > state[AT_STEP] || (k > 0 && piece[0] < piece[-NUMBERS_OF_PIECE])) return 0;
     }
     for (Count k = count - 1; k >= count - NUMBERS_OF_KINK * (Count)kinks; k -= NUMBERS_OF_KINK)
         if (!is_whole(state[k], 1, SMOOTHEST_KINK)) return 0;

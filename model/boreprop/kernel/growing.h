@@ -26,17 +26,23 @@ static inline Status grow(Run *run, Count capacity, int started, char why[MESSAG
     return DONE;
 }
 
-static inline Status run_start(Run *run, const System *system, const Survey *survey, Inputs inputs, char why[MESSAGE]) {
-    if (!check_survey(survey, why) || !check_system(system, why)) return FAILED;
-    Count capacity = drilling_capacity(system, survey);
-    if (grow(run, capacity, 0, why) != DONE) return FAILED;
-    return drilling_start(&run->drilling, system, survey, inputs, run->memory, capacity, why);
+/* A drilling system that has not begun: `run_start` or `run_restore` is next. */
+static inline Status run_prepare(Run *run, const System *system, char why[MESSAGE]) {
+    if (grow(run, LEAST_CAPACITY, 0, why) != DONE) return FAILED;
+    return drilling_prepare(&run->drilling, system, run->memory, LEAST_CAPACITY, why);
+}
+
+static inline Status run_start(Run *run, const Survey *survey, Inputs inputs, char why[MESSAGE]) {
+    if (!check_survey(survey, why)) return FAILED;
+    Count capacity = drilling_capacity(&run->drilling.system, survey);
+    if (capacity > LEAST_CAPACITY && grow(run, capacity, 1, why) != DONE) return FAILED;
+    return drilling_start(&run->drilling, survey, inputs, why);
 }
 
 static inline Status run_advance(Run *run, double drilled_length, Inputs inputs, char why[MESSAGE]) {
     Status status;
     double way = (drilled_length - drilling_length(&run->drilling)) / length_scale(&run->drilling.system);
-    if (isfinite(way) && way > MOST_STEPS * LARGEST_STEP) return too_long(why);
+    if (isfinite(way) && way > (double)MOST_STEPS * LARGEST_STEP) return too_long(why);
     while ((status = drilling_advance(&run->drilling, drilled_length, inputs, why)) == FULL)
         if (grow(run, 2 * run->drilling.propagation.hole.capacity, 1, why) != DONE) {
             drilling_cancel(&run->drilling);

@@ -17,7 +17,7 @@ EXPORT Run *boreprop_start(
 ) {
     Survey survey = {count, measured_depth, inclination};
     Run *run = calloc(1, sizeof *run);
-    if (run && run_start(run, system, &survey, *inputs, why) == DONE) return run;
+    if (run && run_prepare(run, system, why) == DONE && run_start(run, &survey, *inputs, why) == DONE) return run;
     if (run) free(run->memory);
     free(run);
     return NULL;

@@ -493,13 +493,8 @@ static inline Status drill(Propagation *p, double xi, ScaledInputs inputs, char 
     return DONE;
 }
 
-/* Start at the end of a survey; the rings must have room for it. */
-static inline Status begin(
-    Propagation *p, const Scaled *scaled, const Survey *survey, double length_scale, ScaledInputs inputs,
-    double relative_tolerance, char why[MESSAGE]
-) {
-    State *now = &p->now;
-    Hole hole = p->hole;
+/* What does not evolve; before `begin`, or before a state is restored. */
+static inline void prepare(Propagation *p, const Scaled *scaled, double relative_tolerance, Hole hole) {
     memset(p, 0, sizeof *p);
     p->hole = hole;
     p->scaled = *scaled;
@@ -507,9 +502,18 @@ static inline Status begin(
     memcpy(p->modes.y_star, scaled->y_star, sizeof p->modes.y_star);
     p->radau = make_radau();
     p->tolerance = relative_tolerance;
+}
+
+/* Start at the end of a survey; the rings must have room for it. */
+static inline Status begin(
+    Propagation *p, const Survey *survey, double length_scale, ScaledInputs inputs, char why[MESSAGE]
+) {
+    State *now = &p->now;
+    double reach = p->scaled.s[p->scaled.n - 1];
+    double final_inclination = take_survey(&p->hole, survey, length_scale, reach, &now->pieces, &now->kinks_end);
+    for (Count k = 0; k < now->pieces.end; k++)
+        if (!check_finite("l_1 / distance of stations", piece(&p->hole, k)->rate, why)) return FAILED;
     now->inputs = inputs;
-    double reach = scaled->s[scaled->n - 1];
-    double final_inclination = take_survey(&hole, survey, length_scale, reach, &now->pieces, &now->kinks_end);
     stand_still(now, final_inclination, 0.0);
     return restart(p, final_inclination, why);
 }

@@ -1,0 +1,457 @@
+/* Leads many short lives of the native FMU at random, and asks after every call what must always hold.
+
+   fuzz_native SEED COUNT FOLDER [FIRST]
+
+   FOLDER is for survey files. One program with the FMU: compile this file with the sources/ of an unpacked FMU on the
+   include path, with -fsanitize=address,undefined,float-cast-overflow. An input is one life, number FIRST (0) on: an
+   instance is made, set, initialized, and gets up to fifteen random things to do. Chance depends on SEED and the number
+   of the life only, so `fuzz_native SEED 1 FOLDER NUMBER` leads one of them again, and shows its log.
+
+   What must hold: a call ends, with fmi2OK, fmi2Discard or fmi2Error, and with a line in the log if it is not OK;
+   outputs that are OK are finite; what is refused moves nothing, to the bit; a state that was serialized goes on as the
+   instance that it was taken from, to the bit; a state that has been tampered with is refused, or, where the checksum
+   was tampered with too, is refused or can be lived with. */
+#define _XOPEN_SOURCE 700
+#include "fmi2.c"
+#include <signal.h>
+#include <sys/time.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { SECONDS = 2 };               /* of the processor, that one life may take */
+static const double FARTHEST = 4.0; /* ℓ₁ that one step is asked to drill: the work grows with it */
+
+static uint64_t seed, number, drawn;
+static char survey_path[1024];
+static long lines;    /* in the log */
+static int listening; /* whether there is a log */
+static int showing;   /* the log, where there is one life only */
+static int tampered;  /* whether a state that no run has saved was taken */
+
+static void give_up(const char *what) {
+    fprintf(stderr, "input %llu of seed %llu: %s\n", (unsigned long long)number, (unsigned long long)seed, what);
+    abort();
+}
+
+static void must(int holds, const char *what) {
+    if (!holds) give_up(what);
+}
+
+static void give_up_waiting(int signal_number) {
+    static const char what[] = "an input took too long\n";
+    (void)signal_number;
+    if (write(STDERR_FILENO, what, sizeof what - 1) > 0) give_up("must end in time");
+    abort();
+}
+
+/* Chance (splitmix64) */
+
+static uint64_t mix(uint64_t x) {
+    x = (x ^ x >> 30) * 0xBF58476D1CE4E5B9u;
+    x = (x ^ x >> 27) * 0x94D049BB133111EBu;
+    return x ^ x >> 31;
+}
+
+static uint64_t draw(void) { return mix(drawn += 0x9E3779B97F4A7C15u); }
+
+static size_t below(size_t count) { return (size_t)(draw() % count); }
+
+static double between(double low, double high) { return low + (high - low) * (double)(draw() >> 11) * 0x1p-53; }
+
+static double any_number(double usual) {
+    static const double odd[] = {0.0, 1.0, 1e-12, 1e-6, 1e6, 1e12, 1e300, 1.7976931348623157e308,
+                                 2.2250738585072014e-308, 5e-324, (double)NAN, (double)INFINITY};
+    uint64_t bits = draw();
+    double value;
+    switch (below(8)) {
+        case 0: return odd[below(sizeof odd / sizeof *odd)];
+        case 1: return -odd[below(sizeof odd / sizeof *odd)];
+        case 2: return -usual;
+        case 3: return usual * pow(10.0, between(-12.0, 12.0));
+        case 4: memcpy(&value, &bits, sizeof value); return value;
+        default: return usual * pow(10.0, between(-1.5, 1.5));
+    }
+}
+
+static double good_number(double usual) { return usual * between(0.7, 1.4); }
+
+/* What is asked of an instance */
+
+static void listen(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status, fmi2String category,
+                   fmi2String message, ...) {
+    char line[2 * LINE];
+    va_list arguments;
+    va_start(arguments, message);
+    int length = vsnprintf(line, sizeof line, message, arguments);
+    va_end(arguments);
+    if (showing) fprintf(stderr, "%s\n", line);
+    must(environment == &lines && name && status == fmi2Error, "a line must say whose it is");
+    must(!strcmp(category, CATEGORY), "a line must be of a category");
+    must(length > 0 && length < LINE && is_utf8(line) && !strchr(line, '\n'), "a message must be one line of text");
+    lines++;
+}
+
+static const fmi2CallbackFunctions callbacks = {listen, calloc, free, NULL, &lines};
+
+static fmi2Component born(int logging) {
+    fmi2Component c = fmi2Instantiate("one", fmi2CoSimulation, GUID, NULL, &callbacks, 0, logging);
+    must(c != NULL, "fmi2Instantiate must give an instance");
+    return c;
+}
+
+/* The status of a call that may say no, with a line in the log since there were `before`. */
+static fmi2Status answered(fmi2Status status, long before) {
+    must(status == fmi2OK || status == fmi2Discard || status == fmi2Error, "a status must be OK, Discard or Error");
+    must(status == fmi2OK || lines > before || !listening, "what is refused must be logged");
+    return status;
+}
+#define CALL(expression) answered(expression, lines)
+
+/* What can be seen of an instance: every number. */
+typedef struct {
+    fmi2Status status;
+    double value[VARIABLES];
+} Sight;
+
+static Sight look(fmi2Component c) {
+    Sight sight = {fmi2OK, {0}};
+    for (unsigned i = 0; i < VARIABLES; i++) {
+        int whole = 0;
+        fmi2Status status = fmi2OK;
+        if (VARIABLE[i].kind == REAL) status = fmi2GetReal(c, &i, 1, &sight.value[i]);
+        if (VARIABLE[i].kind == INTEGER) status = fmi2GetInteger(c, &i, 1, &whole), sight.value[i] = whole;
+        must(status == fmi2OK || status == fmi2Error, "a value must be OK or an error");
+        if (status != fmi2OK) sight.status = status;
+        if (VARIABLE[i].role == OUTPUT && status == fmi2OK) must(isfinite(sight.value[i]), "an output must be finite");
+        must(status == fmi2OK || VARIABLE[i].role == OUTPUT, "an input or a parameter must have a value");
+    }
+    return sight;
+}
+
+static void must_be_same(Sight a, Sight b, const char *what) {
+    must(a.status == b.status && !memcmp(a.value, b.value, sizeof a.value), what);
+}
+
+/* A state as bytes. */
+typedef struct {
+    fmi2Byte *bytes;
+    size_t size;
+} Content;
+
+static Content serialized(fmi2Component c) {
+    fmi2FMUstate state = NULL;
+    Content content = {NULL, 0};
+    must(fmi2GetFMUstate(c, &state) == fmi2OK, "a state must be got");
+    must(fmi2SerializedFMUstateSize(c, state, &content.size) == fmi2OK, "a state must have a size");
+    content.bytes = malloc(content.size);
+    must(fmi2SerializeFMUstate(c, state, content.bytes, content.size) == fmi2OK, "a state must be serialized");
+    must(fmi2FreeFMUstate(c, &state) == fmi2OK && !state, "a state must be freed");
+    return content;
+}
+
+static int is_same(Content a, Content b) { return a.size == b.size && !memcmp(a.bytes, b.bytes, a.size); }
+
+/* Whether the instance takes these bytes as its state; if not nothing has moved. */
+static int takes(fmi2Component c, Content content) {
+    fmi2FMUstate state = NULL;
+    fmi2Status status = CALL(fmi2DeSerializeFMUstate(c, content.bytes, content.size, &state));
+    must((status == fmi2OK) == (state != NULL), "a state must be there if it is OK");
+    if (status != fmi2OK) return 0;
+    status = CALL(fmi2SetFMUstate(c, state));
+    fmi2FreeFMUstate(c, &state);
+    return status == fmi2OK;
+}
+
+/* What there is to do */
+
+static double time_of(fmi2Component c) {
+    double time = -1.0;
+    must(fmi2GetRealStatus(c, fmi2LastSuccessfulTime, &time) == fmi2OK, "the time must be known");
+    return time;
+}
+
+/* A size of a step that drills at most so many ℓ₁. */
+static double step_size(const Component *c) {
+    double rate = c->value[RATE_OF_PENETRATION], l1 = c->value[STABILIZER_POSITION];
+    double xi = FARTHEST * pow(10.0, between(-12.0, 0.0)), size = xi * l1 / rate, end_rate;
+    if (below(8) == 0) size = any_number(1.0);
+    end_rate = rate + c->derivative[RATE_OF_PENETRATION] * size;
+    if (isfinite(size) && larger(rate, end_rate) * size > FARTHEST * l1) size = l1 / larger(rate, end_rate);
+    return size;
+}
+
+/* Whether a step would drill farther, as it may in a state that has been tampered with. */
+static int is_too_far(const Component *c, double time, double size) {
+    if (!c->run) return 0;
+    double from = larger(c->from, c->run->drilling.drilled_length), rate = c->value[RATE_OF_PENETRATION];
+    double to = larger(from, from + rate * (time + size - c->since)) / c->value[STABILIZER_POSITION];
+    return to - c->run->drilling.propagation.now.step.end > 4 * FARTHEST;
+}
+
+static fmi2Status go(fmi2Component c, double size) {
+    double time = time_of(c);
+    if (is_too_far(c, time, size)) return fmi2OK;
+    long before = lines;
+    fmi2Status status = CALL(fmi2DoStep(c, below(16) ? time : any_number(time), size, (int)below(2)));
+    must(lines <= before + (status != fmi2OK), "a step must say at most one thing");
+    return status;
+}
+
+static void take_step_at_random(fmi2Component c, int looking) {
+    Sight sight;
+    Content state = {NULL, 0};
+    double time = time_of(c);
+    if (looking) sight = look(c), state = serialized(c);
+    if (go(c, step_size(c)) != fmi2OK) {
+        must(time_of(c) == time || time != time, "a step that is refused must take no time");
+        if (looking) {
+            Content after = serialized(c);
+            must(is_same(state, after), "a step that is refused must leave the state");
+            must_be_same(sight, look(c), "a step that is refused must move nothing");
+            free(after.bytes);
+        }
+    }
+    free(state.bytes);
+}
+
+static void set_at_random(fmi2Component c, Role role, int wild) {
+    for (unsigned i = 0; i < VARIABLES; i++) {
+        double usual = VARIABLE[i].start != 0.0 ? VARIABLE[i].start : 1e4;
+        if (VARIABLE[i].role != role || VARIABLE[i].kind != REAL || below(2)) continue;
+        double value = wild && below(4) == 0 ? any_number(usual) : good_number(usual);
+        CALL(fmi2SetReal(c, &i, 1, &value));
+    }
+}
+
+static void bend_at_random(fmi2Component c, int wild) {
+    static const unsigned input[INPUTS] = {RSS_FORCE, ACTIVE_WEIGHT_ON_BIT, RATE_OF_PENETRATION};
+    static const int order[INPUTS] = {1, 1, 1};
+    double slope[INPUTS];
+    for (int i = 0; i < INPUTS; i++) {
+        double usual = ((Component *)c)->value[i] * between(-1.0, 1.0);
+        slope[i] = wild && below(4) == 0 ? any_number(1.0) : below(3) ? 0.0 : usual;
+    }
+    CALL(fmi2SetRealInputDerivatives(c, input, INPUTS, order, slope));
+}
+
+/* There and back within one instance, and on from there in another one. */
+static void there_and_back(fmi2Component c) {
+    fmi2FMUstate kept = NULL;
+    fmi2Component other = born(listening);
+    Sight sight = look(c);
+    Content content = serialized(c), again;
+    if (!takes(other, content)) {
+        must(tampered, "a serialized state must be taken");
+        fmi2FreeInstance(other);
+        free(content.bytes);
+        return;
+    }
+    must(fmi2GetFMUstate(c, &kept) == fmi2OK, "a state must be got");
+    again = serialized(other);
+    must(is_same(content, again), "a state must be what was set");
+    must_be_same(look(other), sight, "a serialized state must look the same");
+    take_step_at_random(c, 0);
+    must(fmi2SetFMUstate(c, kept) == fmi2OK, "a state must be set");
+    must(fmi2FreeFMUstate(c, &kept) == fmi2OK && !kept, "a state must be freed");
+    must_be_same(look(c), sight, "a state must look the same");
+    double time = time_of(c), size = step_size(c);
+    if (!is_too_far(c, time, size)) {
+        fmi2Status status = CALL(fmi2DoStep(c, time, size, 1));
+        must(fmi2DoStep(other, time, size, 1) == status, "a serialized state must go on the same way");
+        must_be_same(look(other), look(c), "a serialized state must get to the same place");
+    }
+    fmi2FreeInstance(other);
+    free(again.bytes);
+    free(content.bytes);
+}
+
+static void tamper(fmi2Component c) {
+    Sight sight = look(c);
+    Content good = serialized(c), bad = {malloc(good.size + 64), good.size};
+    fmi2Byte *body = bad.bytes + SEAL;
+    memcpy(bad.bytes, good.bytes, good.size);
+    memset(bad.bytes + good.size, (int)below(256), 64);
+    switch (below(4)) {
+        case 0: bad.size = below(4) ? below(good.size) : SEAL + 8 * below((good.size - SEAL) / 8); break;
+        case 1: bad.size += below(64); break;
+        case 2:
+            for (size_t flips = 1 + below(4); flips--;) bad.bytes[below(good.size)] ^= (fmi2Byte)(1 << below(8));
+            break;
+        default:
+            for (size_t times = 1 + below(3); times--;) {
+                static const double COUNTS[] = {-1, 0, 1, 2, 4, 8, 1e6, 9e15, 1e18, 1e19, -1e19};
+                unsigned char *at = (unsigned char *)body + 8 * below(below(2) ? FIXED : (good.size - SEAL) / 8);
+                const unsigned char *from = at;
+                double count = COUNTS[below(sizeof COUNTS / sizeof *COUNTS)];
+                put_double(at, below(2) ? count : any_number(get_double(&from)));
+            }
+    }
+    int intact = is_same(good, bad), mended = bad.size >= SEAL && below(4) > 0;
+    if (mended) {
+        char line[SEAL + 1];
+        seal(GUID, (unsigned char *)body, bad.size - SEAL, line);
+        memcpy(bad.bytes, line, SEAL);
+    }
+    int taken = takes(c, bad);
+    if (taken && !intact) tampered = 1;
+    must(!taken || mended || intact, "a state that was tampered with must be refused");
+    if (!taken) {
+        Content after = serialized(c);
+        must(is_same(good, after), "a state that is refused must leave the present one");
+        must_be_same(look(c), sight, "a state that is refused must move nothing");
+        free(after.bytes);
+    }
+    free(bad.bytes);
+    free(good.bytes);
+}
+
+static void ask_nonsense(fmi2Component c) {
+    unsigned reference[3] = {(unsigned)below(VARIABLES + 2), (unsigned)below(VARIABLES), (unsigned)draw()};
+    double value[3] = {any_number(1.0), any_number(1.0), any_number(1.0)};
+    int whole[3] = {(int)draw(), (int)below(3), 0};
+    const char *text[3] = {"\xFF", "%s%n", "no\nwhere.csv"};
+    const unsigned *references = below(8) ? reference : NULL;
+    double *values = below(8) ? value : NULL;
+    int *wholes = below(8) ? whole : NULL;
+    const char **texts = below(8) ? text : NULL;
+    size_t count = below(4), size = 0;
+    fmi2Boolean flag;
+    fmi2Status status;
+    fmi2FMUstate none = NULL;
+    if (below(8) == 0) text[0] = NULL;
+    if (below(16) == 0) c = NULL;
+    int unheard = listening;
+    if (!c) listening = 0;
+    switch (below(24)) {
+        case 0: fmi2GetReal(c, references, count, values); break; /* what cannot be computed is logged once */
+        case 1: fmi2GetInteger(c, references, count, wholes); break;
+        case 2: CALL(fmi2GetBoolean(c, references, count, wholes)); break;
+        case 3: CALL(fmi2GetString(c, references, count, texts)); break;
+        case 4: CALL(fmi2SetReal(c, references, count, values)); break;
+        case 5: CALL(fmi2SetInteger(c, references, count, wholes)); break;
+        case 6: CALL(fmi2SetBoolean(c, references, count, wholes)); break;
+        case 7: CALL(fmi2SetString(c, references, count, texts)); break;
+        case 8: CALL(fmi2SetRealInputDerivatives(c, references, count, wholes, values)); break;
+        case 9: CALL(fmi2GetRealOutputDerivatives(c, references, count, wholes, values)); break;
+        case 10: CALL(fmi2GetDirectionalDerivative(c, references, count, references, count, values, values)); break;
+        case 11: CALL(fmi2CancelStep(c)); break;
+        case 12: CALL(fmi2GetStatus(c, (fmi2StatusKind)below(5), below(2) ? &status : NULL)); break;
+        case 13: CALL(fmi2GetRealStatus(c, (fmi2StatusKind)below(5), values)); break;
+        case 14: CALL(fmi2GetIntegerStatus(c, (fmi2StatusKind)below(5), wholes)); break;
+        case 15: CALL(fmi2GetBooleanStatus(c, (fmi2StatusKind)below(5), below(2) ? &flag : NULL)); break;
+        case 16: CALL(fmi2GetStringStatus(c, (fmi2StatusKind)below(5), texts)); break;
+        case 17: CALL(fmi2SetupExperiment(c, 0, 0.0, values ? *values : 0.0, 1, 1.0)); break;
+        case 18: CALL(fmi2EnterInitializationMode(c)); break;
+        case 19: CALL(fmi2ExitInitializationMode(c)); break;
+        case 20: CALL(fmi2Terminate(c)); break;
+        case 21: CALL(fmi2SetFMUstate(c, NULL)); break;
+        case 22: CALL(fmi2DeSerializeFMUstate(c, below(2) ? "" : NULL, 0, &none)); break;
+        default: CALL(fmi2SerializedFMUstateSize(c, NULL, &size));
+    }
+    listening = unheard;
+}
+
+/* Instances that must not come to be. */
+static void instantiate_wrongly(void) {
+    static const fmi2CallbackFunctions silent = {NULL, NULL, NULL, NULL, NULL};
+    static const char *const guids[] = {NULL, "", "other", "%n%s"};
+    int logging = (int)below(2);
+    switch (below(3)) {
+        case 0: must(!fmi2Instantiate("one", fmi2CoSimulation, GUID, NULL, NULL, 0, logging), "no callbacks"); break;
+        case 1:
+            must(!fmi2Instantiate("one", fmi2ModelExchange, GUID, NULL, &callbacks, 0, logging), "no model exchange");
+            break;
+        default:
+            must(!fmi2Instantiate(below(2) ? NULL : "%s", fmi2CoSimulation, guids[below(4)], NULL,
+                                  below(2) ? &silent : &callbacks, 0, logging), "a wrong guid");
+    }
+}
+
+static void name_survey(fmi2Component c) {
+    static const char *const pieces[] = {"measured_depth", "inclination_deg", "other", ",", ",", "\n", "\r\n", "\"", " ",
+                                         "1", "2.5", "-3e2", "1e400", "nan", "1000", "90", "\xEF\xBB\xBF", "\xFF", "é"};
+    static const char *const headers[] = {"measured_depth,inclination_deg\n0,1\n",
+                                          "\"inclination_deg\",measured_depth\r\n2,5\r\n", ""};
+    unsigned reference = SURVEY_FILE;
+    const char *path = below(8) ? survey_path : below(2) ? "nowhere/%s.csv" : "no\nwhere.csv";
+    FILE *file = fopen(survey_path, "wb");
+    must(file != NULL, "a survey file must be written");
+    fputs(headers[below(3)], file);
+    for (size_t k = below(40); k--;) {
+        if (below(12) == 0) fputc((int)below(256), file);
+        else if (below(2)) fputs(pieces[below(sizeof pieces / sizeof *pieces)], file);
+        else fprintf(file, "%g,%g\n", any_number(1.0), any_number(1.0));
+    }
+    fclose(file);
+    CALL(fmi2SetString(c, &reference, 1, &path));
+}
+
+static void initialize(fmi2Component c, int wild) {
+    set_at_random(c, PARAMETER, wild);
+    set_at_random(c, INPUT, wild);
+    if (below(64) == 0) name_survey(c);
+    CALL(fmi2SetupExperiment(c, 0, 0.0, below(4) ? 0.0 : wild ? any_number(1.0) : 1e3, 0, 0.0));
+    CALL(fmi2EnterInitializationMode(c));
+    if (below(4) == 0) set_at_random(c, INPUT, wild);
+    CALL(fmi2ExitInitializationMode(c));
+}
+
+static void live(void) {
+    int wild = below(2) == 0;
+    listening = below(8) != 0, tampered = 0;
+    fmi2Component c = born(listening);
+    if (below(16) == 0) instantiate_wrongly();
+    if (below(16)) initialize(c, wild);
+    for (size_t k = below(16); k--;) {
+        switch (below(16)) {
+            case 0:
+            case 1: set_at_random(c, INPUT, wild); break;
+            case 2: bend_at_random(c, wild); break;
+            case 3: look(c); break;
+            case 4: there_and_back(c); break;
+            case 5:
+            case 6: tamper(c); break;
+            case 7:
+            case 8: ask_nonsense(c); break;
+            case 9:
+                if (below(4)) break;
+                must(fmi2Reset(c) == fmi2OK, "fmi2Reset must work");
+                initialize(c, wild);
+                break;
+            default: take_step_at_random(c, below(2) == 0);
+        }
+    }
+    look(c);
+    fmi2FreeInstance(c);
+}
+
+static double now(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+int main(int count, char **arguments) {
+    if (count < 4) {
+        fprintf(stderr, "fuzz_native SEED COUNT FOLDER [FIRST]\n");
+        return 2;
+    }
+    uint64_t inputs = strtoull(arguments[2], NULL, 10), first = count > 4 ? strtoull(arguments[4], NULL, 10) : 0;
+    uint64_t slowest_number = first;
+    double start = now(), slowest = 0.0;
+    seed = strtoull(arguments[1], NULL, 10);
+    snprintf(survey_path, sizeof survey_path, "%s/survey.csv", arguments[3]);
+    showing = inputs == 1;
+    signal(SIGPROF, give_up_waiting);
+    for (number = first; number < first + inputs; number++) {
+        double began = now();
+        drawn = mix(seed) ^ mix(number + 1);
+        setitimer(ITIMER_PROF, &(struct itimerval){{0, 0}, {SECONDS, 0}}, NULL);
+        live();
+        double took = now() - began;
+        if (took > slowest) slowest = took, slowest_number = number;
+    }
+    printf("%llu inputs, %.1f s, ", (unsigned long long)inputs, now() - start);
+    printf("slowest %.1f ms (%llu), %ld lines in the log\n", 1e3 * slowest, (unsigned long long)slowest_number, lines);
+    return 0;
+}
