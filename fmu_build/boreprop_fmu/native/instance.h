@@ -190,7 +190,7 @@ static int drill_on(Component *c, double to, const double end[INPUTS], char why[
         if (done && drilling->propagation.now.accepted - accepted > (double)MOST_PIECES)
             done = explain(why, "step: must take at most %d steps of the integrator, got more", MOST_PIECES);
     }
-    if (!done && before) drilling_restore(drilling, before, size, (char[MESSAGE]){""});
+    if (!done && before) drilling_return(drilling, before);
     free(before);
     if (done) c->settled = rise == 0.0 && (to > from || end[RSS_FORCE] == force);
     return done;

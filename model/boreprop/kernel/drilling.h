@@ -133,7 +133,7 @@ typedef struct {
 enum { WHOLE_NUMBERS = 5 + 2 * MAX_STABILIZERS, FIXED_NUMBERS = WHOLE_NUMBERS + 28 };
 enum { NUMBERS_OF_PIECE = S + 3, NUMBERS_OF_KINK = 3 };
 enum { AT_LENGTH = WHOLE_NUMBERS + 1, AT_XI, AT_ETA_PI = AT_XI + 3, AT_INPUTS_XI, AT_STEP = AT_INPUTS_XI + 4 };
-enum { AT_STEP_END = AT_STEP + 2 * S + 4 }; /* places of some of the fixed numbers */
+enum { AT_Y = AT_STEP + S + 3, AT_STEP_END = AT_Y + S + 1 }; /* places of some of the fixed numbers */
 
 static inline void pass(Tape *tape, int count, double *values) {
     memcpy(tape->reading ? values : tape->at, tape->reading ? tape->at : values, (size_t)count * sizeof *values);
@@ -223,9 +223,13 @@ static inline int is_state(const Drilling *d, const double *state, Count count) 
     if (state[AT_LENGTH] < 0 || state[AT_LENGTH] / length_scale(&d->system) != xi) return 0;
     if (!(state[AT_ETA_PI] > 0) || !isfinite(1 / state[AT_ETA_PI]) || state[AT_INPUTS_XI] > xi) return 0;
     if (state[AT_STEP] > xi || xi > state[AT_STEP_END] || !(state[AT_STEP + 1] > 0)) return 0;
-    for (Count k = 0; k < (Count)pieces; k++) {
-        const double *piece = state + FIXED_NUMBERS + NUMBERS_OF_PIECE * k;
-        if (!(piece[1] > 0) || piece[0] > state[AT_STEP] || (k > 0 && piece[0] < piece[-NUMBERS_OF_PIECE])) return 0;
+    for (Count k = 0; k < (Count)pieces; k++) { /* the hole is in one piece, and the last is that of the step */
+        const double *at = state + FIXED_NUMBERS + NUMBERS_OF_PIECE * k, *step = state + AT_STEP;
+        int last = k + 1 == (Count)pieces, stands = state[AT_STEP_END] == step[0];
+        double end = last ? step[0] : at[NUMBERS_OF_PIECE], Y = last ? state[AT_Y] : at[NUMBERS_OF_PIECE + 2];
+        if (!(at[1] > 0) || end < at[0] || !(fabs(polynomial(at + 2, (end - at[0]) * at[1]) - Y) <= MERGE)) return 0;
+        if (last && !stands && (at[0] != step[0] || at[1] != 1 / step[1])) return 0;
+        if (last && !stands && memcmp(at + 2, state + AT_Y, (S + 1) * sizeof *at)) return 0;
     }
     for (Count k = count - 1; k >= count - NUMBERS_OF_KINK * (Count)kinks; k -= NUMBERS_OF_KINK)
         if (!is_whole(state[k], 1, SMOOTHEST_KINK)) return 0;
@@ -240,16 +244,21 @@ static inline Count drilling_state_capacity(const double *state, Count count) {
     return capacity;
 }
 
-/* Go back to a state of a run with the same system. */
-static inline Status drilling_restore(Drilling *d, const double *state, Count count, char why[MESSAGE]) {
+/* Go back to a state that this run has saved itself. */
+static inline void drilling_return(Drilling *d, const double *state) {
     Tape tape = {(double *)state, 1};
+    pass_state(&tape, d);
+    d->propagation.law_known = d->propagation.under_way = 0;
+}
+
+/* Go to a state of a run with the same system, if it can be one. */
+static inline Status drilling_restore(Drilling *d, const double *state, Count count, char why[MESSAGE]) {
     if (!is_state(d, state, count)) {
         snprintf(why, MESSAGE, "state: must be one of this system, got %lld numbers that are none", count);
         return FAILED;
     }
     if (d->propagation.hole.capacity < drilling_state_capacity(state, count)) return FULL;
-    pass_state(&tape, d);
-    d->propagation.law_known = d->propagation.under_way = 0;
+    drilling_return(d, state);
     return DONE;
 }
 
