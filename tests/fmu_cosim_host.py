@@ -4,6 +4,7 @@ python fmu_cosim_host.py SCENARIO ARGUMENT … → JSON on the last line of stdo
 """
 
 import json
+import os
 import sys
 from typing import Any
 
@@ -89,4 +90,5 @@ def connected_in_fmpy(fmu: str, steering: str, step: str, steps: str) -> object:
 
 
 if __name__ == "__main__":
-    print(json.dumps(globals()[sys.argv[1]](*sys.argv[2:])))
+    print(json.dumps(globals()[sys.argv[1]](*sys.argv[2:])), flush=True)
+    os._exit(0)  # libcosim does not call pythonfmu's finalizer: at exit its library may drop its static state twice

@@ -251,6 +251,15 @@ def test_a_number_in_a_message_reads_back_as_the_same(value: float) -> None:
     assert float(written) == value
 
 
+@pytest.mark.parametrize(
+    ("forces", "rows", "shape"), [(1, [0, 1], (2, 16)), (2, [0, 2], (2, 16)), (2, [0], (2, 16)), (2, [0, 1], (2, 15))]
+)
+def test_arrays_that_do_not_fit_are_refused(case: Case, forces: int, rows: list[int], shape: tuple[int, int]) -> None:
+    run = NativeDrilling(case.bha, case.bit, case.survey, active_weight_on_bit=case.active_weight_on_bit)
+    with pytest.raises(ValueError, match=r"must (be 2, of a table of 2|have 16 columns), got "):
+        run.follow(np.array([1.0, 2.0]), np.zeros(forces), 5e4, rows, np.empty(shape))
+
+
 # what happens where it is not
 
 

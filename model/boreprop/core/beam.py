@@ -9,6 +9,7 @@ sums over ⟨Θ⟩_k − θ in (14), (17) and (21) depend on these offsets only,
 """
 
 from .assembly import Scaled
+from .linear import dot
 
 
 def flexibility(s: float, p: float, lambda_: float) -> float:
@@ -76,12 +77,12 @@ class Beam:
 
     def bit_moment(self, e_n: float, F: list[float], F_rss: float, sin_Theta_1: float) -> float:
         """M = −M_0, the moment that turns the bit, eq. (17)."""
-        contact = sum(m * f for m, f in zip(self.M_F, F, strict=True))
+        contact = dot(self.M_F, F)
         return self.M_e * e_n + contact + self.M_rss * F_rss + self.M_g * sin_Theta_1
 
     def bit_force(self, e_n: float, F: list[float], F_rss: float, sin_Theta_1: float) -> float:
         """F_0, the lateral force on the bit, eq. (14)."""
-        contact = sum(b * f for b, f in zip(self.F0_F, F, strict=True))
+        contact = dot(self.F0_F, F)
         return self.F0_e * e_n + contact + self.F0_rss * F_rss + self.F0_g * sin_Theta_1
 
     def shape(self, s: float, e_n: float, F: list[float], F_rss: float, sin_Theta_1: float) -> float:
@@ -89,7 +90,7 @@ class Beam:
 
         The deflection from the *hole* axis, eq. (5), is this plus e(s) = Y(ξ) − Y(ξ−s) − s θ.
         """
-        contact = sum(flexibility(s, s_j, self.lambda_) * F_j for s_j, F_j in zip(self.s[:-1], F, strict=True))
+        contact = dot([flexibility(s, s_j, self.lambda_) for s_j in self.s[:-1]], F)
         return (
             end_offset_deflection(s, self.lambda_) * e_n
             + contact

@@ -39,10 +39,10 @@ class Row:
     def plus(self, factors: list[float], rows: "list[Row]") -> "Row":
         """Add a sum of factors times rows."""
         return Row(
-            [own + sum(f * row.e[i] for f, row in zip(factors, rows, strict=True)) for i, own in enumerate(self.e)],
-            self.rss + sum(f * row.rss for f, row in zip(factors, rows, strict=True)),
-            self.g + sum(f * row.g for f, row in zip(factors, rows, strict=True)),
-            self.one + sum(f * row.one for f, row in zip(factors, rows, strict=True)),
+            [own + dot(factors, [row.e[i] for row in rows]) for i, own in enumerate(self.e)],
+            self.rss + dot(factors, [row.rss for row in rows]),
+            self.g + dot(factors, [row.g for row in rows]),
+            self.one + dot(factors, [row.one for row in rows]),
         )
 
 

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from .assembly import Scaled
 from .contact import Mode, Modes, Row
+from .linear import dot, total
 
 
 class Linear(NamedTuple):
@@ -26,8 +27,8 @@ class Linear(NamedTuple):
     def of(cls, row: Row, s: tuple[float, ...], F_rss: float, scale: float) -> "Linear":
         """`scale` times `row`, with e_i = Y − Y(ξ−s_i) − s_i θ put in."""
         return cls(
-            theta=-scale * sum(c * s_i for c, s_i in zip(row.e, s)),
-            Y=scale * sum(row.e),
+            theta=-scale * dot(row.e, s),
+            Y=scale * total(row.e),
             delayed=tuple(-scale * c for c in row.e),
             g=scale * row.g,
             one=scale * (row.rss * F_rss + row.one),

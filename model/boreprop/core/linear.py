@@ -1,14 +1,23 @@
 """The little linear algebra the core needs, on lists of rows."""
 
+from collections.abc import Iterable
 from operator import mul
 from typing import TypeVar
 
 Number = TypeVar("Number", float, complex)
 
 
-def dot(a: list[float], b: list[float]) -> float:
+def total(values: Iterable[float]) -> float:
+    """Sum from left to right: the same in every Python, where from 3.12 on `sum` compensates for rounding."""
+    result = 0.0
+    for value in values:
+        result += value
+    return result
+
+
+def dot(a: Iterable[float], b: Iterable[float]) -> float:
     """Sum of the products of two lists."""
-    return sum(map(mul, a, b), 0.0)
+    return total(map(mul, a, b))
 
 
 def inverse(matrix: list[list[Number]]) -> list[list[Number]]:

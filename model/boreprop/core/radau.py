@@ -6,7 +6,7 @@ eigenvalues of the collocation matrix split that solve into one 2×2 solve per e
 Ordinary Differential Equations II, sections IV.5 and IV.8).
 """
 
-from .linear import inverse
+from .linear import dot, inverse
 
 S = 5
 # The right Radau nodes on [0, 1], and the eigenvalues of A⁻¹, A the collocation matrix (one of each conjugate pair):
@@ -49,7 +49,9 @@ _EIGENPOLYNOMIALS = [_eigenpolynomial(gamma, _node_polynomial()) for gamma in GA
 def _at(t: float, derivative: int = 0) -> tuple[float, ...]:
     """Value or derivative at `t` of the step's polynomial, as factors of the parts of W."""
     powers = [t ** (m + 1) if derivative == 0 else (m + 1) * t**m for m in range(S)]
-    return _in_real_parts([sum(c * power for c, power in zip(v, powers, strict=True)) for v in _EIGENPOLYNOMIALS])
+    return _in_real_parts(
+        [complex(dot([c.real for c in v], powers), dot([c.imag for c in v], powers)) for v in _EIGENPOLYNOMIALS]
+    )
 
 
 # W holds one complex number for each eigenvalue, W_k = (γ_k − hJ)⁻¹ h f_k, where f_k is the share of the right-hand

@@ -72,9 +72,11 @@ def library() -> ctypes.CDLL:
         kernel = ctypes.CDLL(str(path))
     except OSError as error:
         raise KernelError(f"{path.name} must be loadable, got: {error}: {helps}") from error
+    kernel.boreprop_sources_digest.restype = ctypes.c_char_p
+    if kernel.boreprop_sources_digest().decode() != sources_digest():
+        raise KernelError(f"{path.name} must be made from the sources beside it, got an older one: {helps}")
     run, reals, whole, text = ctypes.c_void_p, _array(np.float64), ctypes.c_longlong, ctypes.c_char_p
     for name, result, arguments in (
-        ("sources_digest", ctypes.c_char_p, ()),
         ("start", run, (ctypes.POINTER(System), whole, reals, reals, ctypes.POINTER(Inputs), text)),
         ("end", None, (run,)),
         ("follow", whole, (run, whole, reals, reals, ctypes.c_double, _array(np.intc), reals, text)),
@@ -87,8 +89,6 @@ def library() -> ctypes.CDLL:
     ):
         function = getattr(kernel, f"boreprop_{name}")
         function.restype, function.argtypes = result, arguments
-    if kernel.boreprop_sources_digest().decode() != sources_digest():
-        raise KernelError(f"{path.name} must be made from the sources beside it, got an older one: {helps}")
     return kernel
 
 
@@ -191,13 +191,23 @@ class NativeDrilling:
         -------
         str | None
             None, or what the next leg met; then the bit is where the one before ended.
+
+        Raises
+        ------
+        ValueError
+            If the arrays do not fit together.
         """
+        legs, rows = len(lengths), numbers(rows, np.intc)
+        if not len(forces) == len(rows) == legs or (rows >= len(table)).any():
+            raise ValueError(f"forces, rows: must be {legs}, of a table of {len(table)}, got {len(forces)}, {rows}")
+        if len(table) and table.shape != (len(table), len(self._names)):
+            raise ValueError(f"table: must have {len(self._names)} columns, got shape {table.shape}")
         done = self._library.boreprop_follow(
-            self._run, len(lengths), lengths, forces, active_weight_on_bit, numbers(rows, np.intc), table, self._why
+            self._run, legs, lengths, forces, active_weight_on_bit, rows, table, self._why
         )
         if done:
             self.drilled_length = float(lengths[done - 1])
-        return None if done == len(lengths) else self._message()
+        return None if done == legs else self._message()
 
     def outputs(self) -> dict[str, float | int]:
         """Every output where the bit is, as `Drilling.outputs`."""
