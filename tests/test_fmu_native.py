@@ -21,7 +21,9 @@ from boreprop.case import Case, InputError
 from boreprop.core.assembly import BottomHoleAssembly
 from boreprop.core.tables import TableError, read_columns
 from boreprop.core.variables import VARIABLES
+from boreprop.kernel.compiler import host_platform
 from boreprop_fmu.build import build_fmu
+from boreprop_fmu.drive import drive
 from boreprop_fmu.native import FMI_HEADERS
 from conftest import Pack
 from flavours import NATIVE, PYTHON
@@ -534,3 +536,15 @@ def test_a_folder_of_any_name_will_do(borehole: Path, command: Any, tmp_path: Pa
     monkeypatch.setenv("TMPDIR", str(tmp_path / "tü %"))
     done = command("boreprop-fmu", "run", borehole, "--output", "run.csv")
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.skipif(host_platform() != "linux64", reason="renames the binary for linux64")
+def test_on_arm_the_binary_for_arm_is_run(borehole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    moved = tmp_path / "Borehole.fmu"
+    with zipfile.ZipFile(moved, "w") as archive:
+        for name, content in contents(borehole).items():
+            archive.writestr(name.replace("linux64", "aarch64-linux"), content)
+    with pytest.raises(InputError, match="must load here, got: Cannot find shared library"):
+        drive(moved, step=10.0)
+    monkeypatch.setattr("boreprop_fmu.drive.host_platform", lambda: "aarch64-linux")
+    assert len(drive(moved, step=10.0)) == len(drive(borehole, step=10.0))

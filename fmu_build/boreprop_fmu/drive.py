@@ -25,6 +25,7 @@ from fmpy.fmi2 import (
 from boreprop.case import Case, InputError, Schedule, parse_case
 from boreprop.core.assembly import check_number
 from boreprop.core.variables import INPUTS, OUTPUTS
+from boreprop.kernel.compiler import host_platform
 from boreprop.results import Trajectory
 
 from .build import CASE_FILE
@@ -123,6 +124,13 @@ class Run:
             raise InputError(f"{self.fmu}: {name}: must be given, the FMU has no default experiment")
         return float(default if given is None else given)  # type: ignore[arg-type]
 
+    def _library(self, directory: str) -> str | None:
+        """The binary for this machine in the folder that FMI 2.0.4 names: on Arm fmpy looks into that of x86."""
+        platform = host_platform()
+        folder = Path(directory, "binaries", platform or "")
+        library = folder / f"{self._description.coSimulation.modelIdentifier}{fmpy.sharedLibraryExtension}"
+        return str(library) if platform and library.exists() else None
+
     @contextmanager
     def _instance(self, messages: deque[str]) -> Iterator[Any]:
         """The FMU in initialization mode; what it logs goes to `messages`."""
@@ -145,6 +153,7 @@ class Run:
                     guid=self._description.guid,
                     modelIdentifier=self._description.coSimulation.modelIdentifier,
                     unzipDirectory=directory,
+                    libraryPath=self._library(directory),
                 )
                 slave.instantiate(callbacks=callbacks, loggingOn=True)
             except Exception as error:  # fmpy raises just that, where there is no binary for this platform, say
