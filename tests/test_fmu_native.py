@@ -287,6 +287,38 @@ def test_a_ramp_of_the_rate_drills_its_integral(one: Instance) -> None:
     assert one.get("drilled_length") == pytest.approx(5.6 + 0.8, rel=1e-15)
 
 
+def test_the_length_of_a_ramp_is_not_forgotten_when_its_first_rate_comes_back(one: Instance) -> None:
+    one.initialize(rate_of_penetration=1.0)
+    ramp(one, rate_of_penetration=1.0)
+    assert one.step(1.0) == "ok"
+    one.set(rate_of_penetration=1.0)
+    assert one.step(1.0) == "ok"
+    assert one.get("drilled_length") == pytest.approx(1.5 + 1.0, rel=1e-15)
+
+
+def test_no_step_ends_beyond_the_stop_time(one: Instance) -> None:
+    one.slave.setupExperiment(startTime=0.0, stopTime=1.0)
+    one.slave.enterInitializationMode()
+    one.slave.exitInitializationMode()
+    one.time = 0.0
+    with refused(one, "current_time + step_size: must be <= 1, got 1.5"):
+        one.slave.doStep(0.0, 1.5)
+    assert [one.step(0.1) for _ in range(10)] == ["ok"] * 10  # in tenths, which add up to a little less or more
+    one.slave.reset()
+    assert one.initialize().step(1.5) == "ok"
+
+
+def test_standing_still_under_changing_inputs_costs_no_memory(one: Instance) -> None:
+    one.initialize(rate_of_penetration=0.0)
+    sizes = []
+    for force in range(300):
+        one.set(rss_force=float(force))
+        one.get("bit_tilt")
+        assert one.step(0.1) == "ok"
+        sizes.append(len(one.state()))
+    assert sizes[-1] == sizes[0]
+
+
 @pytest.mark.parametrize(("name", "start", "end"), [("rss_force", 1e3, -2e3), ("active_weight_on_bit", 1500.0, 2500.0)])
 def test_a_ramp_is_the_limit_of_many_small_steps(one: Instance, name: str, start: float, end: float) -> None:
     def drill(steps: int) -> dict[str, float]:

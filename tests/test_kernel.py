@@ -1,6 +1,7 @@
 """The kernel in C against the core in Python: the same steps, the same events, the same numbers."""
 
 import ctypes
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from math import pi
@@ -13,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from boreprop.case import Case, Schedule, load_case
+from boreprop.core import propagation
 from boreprop.core.assembly import BitRock, BottomHoleAssembly, ParameterError, Scaled
 from boreprop.core.drilling import Drilling
 from boreprop.core.hole import Survey
@@ -224,6 +226,51 @@ def test_going_on_from_a_state_is_bit_identical(case: Case) -> None:
     assert second.drilled_length == 70.0
     assert second.advance(90.0, -300.0, 5e4) is None
     np.testing.assert_array_equal(first.save(), second.save())
+
+
+def test_going_back_forgets_the_inputs_since(case: Case) -> None:
+    run, same = (
+        NativeDrilling(case.bha, case.bit, case.survey, active_weight_on_bit=case.active_weight_on_bit)
+        for _ in range(2)
+    )
+    for one in (run, same):
+        assert one.advance(20.0, 300.0, 5e4) is None
+    state = run.save()
+    assert run.advance(21.0, -4000.0, 9e4) is None
+    run.restore(state)
+    for one in (run, same):
+        assert one.advance(60.0, 300.0, 5e4) is None
+    np.testing.assert_array_equal(run.save(), same.save())
+
+
+def test_a_failure_after_the_memory_has_grown_moves_nothing(case: Case) -> None:
+    run = NativeDrilling(case.bha, case.bit, case.survey, active_weight_on_bit=case.active_weight_on_bit)
+    weight = case.active_weight_on_bit
+    assert run.advance(7.0, 0.0, weight) is None
+    before = run.save()
+    failure = run.advance(1e5, 0.0, weight)  # it ripples: some 44 steps for each of 27 000 ℓ₁
+    assert failure == "step: must take at most 262144 steps of the integrator, got more"
+    np.testing.assert_array_equal(run.save(), before)
+
+
+def test_changes_of_input_at_one_place_are_one_kink(case: Case) -> None:
+    run = Drilled(Scaled((1.0, 2.0), (1e-3,), 0.2, 2e-3, 0.1, 0.03), Survey((0.0,), (0.5,)), 0.0, 0.05)
+    for force in (0.002, -0.001, 0.004, 0.001):
+        assert run.advance(0.7, force, 0.05) is None
+        run.assert_same()
+    size = len(run.native.save())
+    assert run.advance(0.7, 0.003, 0.05) is None
+    assert len(run.native.save()) == size
+    assert run.advance(5.0, 0.003, 0.05) is None
+    run.assert_same()
+
+
+def test_the_constants_of_the_integrator_are_those_of_python() -> None:
+    header = (Path(binding.__file__).parent / "propagation.h").read_text(encoding="utf-8")
+    constants = dict(re.findall(r"^#define (\w+) +([-+.e\d]+)", header, re.MULTILINE))
+    assert len(constants) == 14
+    for name, value in constants.items():
+        assert float(value) == getattr(propagation, name), name
 
 
 @given(st.data())

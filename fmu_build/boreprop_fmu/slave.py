@@ -24,7 +24,7 @@ from boreprop.core.hole import Survey
 from boreprop.core.tables import TableError, read_columns
 from boreprop.core.variables import BY_NAME, VARIABLES, Variable
 
-STATE_FORMAT = "boreprop-fmu-state-1"
+STATE_FORMAT = "boreprop-fmu-state-2"
 NOTHING: dict[str, Any] = {"Real": nan, "Integer": 0, "Boolean": False, "String": ""}  # the value of what has none
 FMI_NAME = {  # of what the model calls otherwise
     "tilt_limit": "bit_tilt_limit",

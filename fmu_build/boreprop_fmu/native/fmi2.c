@@ -1,6 +1,6 @@
 /* The borehole as an FMI 2.0 co-simulation FMU: the kernel behind the functions of fmi2Functions.h.
 
-   What a call does when it cannot do what it was asked, always with one line to the logger:
+   What a call does when it cannot do what it was asked, with one line to the logger (outputs that are missing: one):
    - fmi2Discard, from fmi2DoStep: an input or the step is bad, or the integrator fails. Nothing has moved, and the next
      step with good values works.
    - fmi2Error: the call itself is wrong; the parameters make no drilling system (then every step, until fmi2Reset or a
@@ -125,7 +125,7 @@ fmi2Component fmi2Instantiate(
 void fmi2FreeInstance(fmi2Component instance) {
     Component *c = instance;
     if (!c) return;
-    free_run(c->run);
+    run_end(c->run);
     free(c->survey_file);
     free(c->name);
     free(c);
@@ -137,17 +137,18 @@ fmi2Status fmi2Reset(fmi2Component instance) {
     return start_over(c) ? fmi2OK : fail(c, fmi2Error, "instance: must fit into the memory");
 }
 
-/* The tolerance is the parameter relative_tolerance, whatever a host suggests; there is no end. */
+/* The tolerance is the parameter relative_tolerance, whatever a host suggests. */
 fmi2Status fmi2SetupExperiment(
     fmi2Component instance, fmi2Boolean tolerance_defined, fmi2Real tolerance, fmi2Real start, fmi2Boolean stop_defined,
     fmi2Real stop
 ) {
     Component *c = called(instance, "fmi2SetupExperiment", INSTANTIATED);
     char why[LINE];
-    (void)tolerance_defined, (void)tolerance, (void)stop_defined, (void)stop;
+    (void)tolerance_defined, (void)tolerance;
     if (!c) return fmi2Error;
     if (!check_finite("startTime", start, why)) return fail(c, fmi2Error, why);
     c->time = start;
+    c->stop = stop_defined ? stop : (double)INFINITY;
     return fmi2OK;
 }
 
@@ -206,7 +207,7 @@ fmi2Status fmi2GetBoolean(fmi2Component instance, const fmi2ValueReference vr[],
     return count ? fmi2Error : fmi2OK;
 }
 
-/* The text is valid until it is set again. */
+/* The text is valid until it is set again, or the instance reset, put into another state or freed. */
 fmi2Status fmi2GetString(fmi2Component instance, const fmi2ValueReference vr[], size_t count, fmi2String value[]) {
     Component *c = called(instance, "fmi2GetString", ANY);
     fmi2Status status = fmi2OK;

@@ -34,7 +34,7 @@ typedef struct {
     char *survey_file;
     Outputs outputs;
     double derivative[INPUTS]; /* of the inputs over the next step, 1/s */
-    double time;               /* where the last step ended */
+    double time, stop;         /* where the last step ended, and where none may end beyond */
     double since, from, rate;  /* since this time, from this drilled length, at this rate of penetration */
     int settled;               /* the run has the present inputs */
     Run *run;                  /* made when it is first needed */
@@ -59,11 +59,6 @@ static fmi2Status fail(const Component *c, fmi2Status status, const char *why) {
 
 /* The drilling system */
 
-static void free_run(Run *run) {
-    if (run) free(run->memory);
-    free(run);
-}
-
 static System system_of(const double value[VARIABLES]) {
     System system = {0};
     system.n = STABILIZERS;
@@ -85,7 +80,7 @@ static Run *new_run(const double value[VARIABLES], char why[LINE]) {
     Run *run = calloc(1, sizeof *run);
     if (!run) explain(why, "run: must fit into the memory");
     else if (run_prepare(run, &system, why) == DONE) return run;
-    free_run(run);
+    run_end(run);
     return NULL;
 }
 
@@ -99,11 +94,11 @@ static char *copy(const char *text) {
 static int start_over(Component *c) {
     char *none = copy("");
     if (!none) return 0;
-    free_run(c->run);
+    run_end(c->run);
     free(c->survey_file);
     c->run = NULL, c->survey_file = none;
     c->phase = INSTANTIATED, c->outputs = STALE, c->settled = 0;
-    c->time = c->since = c->from = 0.0, c->rate = -1.0;
+    c->time = c->since = c->from = 0.0, c->rate = -1.0, c->stop = INFINITY;
     memset(c->derivative, 0, sizeof c->derivative);
     for (int i = 0; i < VARIABLES; i++) c->value[i] = VARIABLE[i].start;
     return 1;
@@ -113,7 +108,7 @@ static int start_over(Component *c) {
 static void changed(Component *c) {
     c->outputs = STALE, c->settled = 0;
     if (c->phase == STEPPING) return;
-    free_run(c->run);
+    run_end(c->run);
     c->run = NULL;
 }
 
@@ -128,7 +123,7 @@ static int ready(Component *c, char why[LINE]) {
         return explain(why, "%.*s (survey_file)", LINE - 32, fault);
     c->run = new_run(c->value, why);
     if (c->run && run_start(c->run, &survey, inputs, why) != DONE) {
-        free_run(c->run);
+        run_end(c->run);
         c->run = NULL;
     }
     free(numbers);
@@ -187,8 +182,8 @@ static int drill_on(Component *c, double to, const double end[INPUTS], char why[
         Inputs inputs = {force + slope * (at - from), slope, weight + rise * (stair + 0.5) / stairs};
         double next = stair + 1 < stairs ? from + (to - from) * (stair + 1) / stairs : to;
         done = run_advance(c->run, next, inputs, why) == DONE;
-        if (done && drilling->propagation.now.accepted - accepted > (double)MOST_PIECES)
-            done = explain(why, "step: must take at most %d steps of the integrator, got more", MOST_PIECES);
+        if (done && drilling->propagation.now.accepted - accepted > (double)MOST_STEPS)
+            done = too_long(why) == DONE;
     }
     if (!done && before) drilling_return(drilling, before);
     free(before);
@@ -204,7 +199,15 @@ static fmi2Status step(Component *c, double time, double size, char why[LINE]) {
     double *end_rate = &end[RATE_OF_PENETRATION];
     if (*end_rate < 0.0 && *end_rate > -1e-12 * start_rate) *end_rate = 0.0; /* rounding */
     if (!check_finite("current_time", time, why) || !check_positive("step_size", size, why)) return fmi2Discard;
-    if (!check_given(value, why) || !check_given(end, why)) return fmi2Discard;
+    if (time + size > c->stop + 1e-9 * size) {
+        check_number("current_time + step_size", time + size, -INFINITY, -INFINITY, c->stop, why);
+        return fmi2Error;
+    }
+    if (!check_given(value, why)) return fmi2Discard;
+    if (!check_given(end, why)) {
+        strcat(why, " at the end of the step");
+        return fmi2Discard;
+    }
     if (!ready(c, why)) return fmi2Error;
     double here = drilling_length(&c->run->drilling);
     double close = larger(1e-12 * larger(fabs(time), fabs(c->time)), 1e-9 * size);
@@ -212,7 +215,8 @@ static fmi2Status step(Component *c, double time, double size, char why[LINE]) {
     double length = from + start_rate * (time + size - since) + (*end_rate - start_rate) * size / 2;
     if (!check_finite("drilled_length", length, why)) return fmi2Discard;
     if (!drill_on(c, larger(length, here), end, why)) return fmi2Discard;
-    c->time = time + size, c->since = since, c->from = from, c->rate = start_rate;
+    c->time = time + size, c->since = since, c->from = from;
+    c->rate = *end_rate == start_rate ? start_rate : -1.0; /* a ramp is no anchor */
     memcpy(value, end, sizeof end);
     memset(c->derivative, 0, sizeof c->derivative);
     c->outputs = STALE;
@@ -270,7 +274,7 @@ static int restore(Component *c, const Saved *saved, char why[LINE]) {
         }
         if (count > 0) run = new_run(value, why);
         if (run && run_restore(run, numbers, count, why) != DONE) {
-            free_run(run);
+            run_end(run);
             run = NULL;
         }
     } else explain(why, "state: must fit into the memory");
@@ -280,7 +284,7 @@ static int restore(Component *c, const Saved *saved, char why[LINE]) {
         free(survey_file);
         return 0;
     }
-    free_run(c->run);
+    run_end(c->run);
     free(c->survey_file);
     c->run = run, c->survey_file = survey_file, c->phase = (Phase)phase, c->outputs = STALE;
     c->time = fixed[1], c->since = fixed[2], c->from = fixed[3], c->rate = fixed[4], c->settled = fixed[5] != 0.0;

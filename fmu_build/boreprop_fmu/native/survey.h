@@ -134,7 +134,7 @@ static double *read_survey(const char *path, Survey *survey, char why[LINE]) {
     width = read_header(path, &from, position, why);
     if (width) {
         numbers = malloc((size_t)lines * COLUMNS * sizeof *numbers);
-        for (int i = 0; i < COLUMNS; i++) columns[i] = numbers + i * lines;
+        for (int i = 0; numbers && i < COLUMNS; i++) columns[i] = numbers + i * lines;
         if (numbers) rows = read_rows(path, from, line, width, position, columns, why);
         else explain(why, "%s: must fit into the memory, got %ld lines", path, lines);
     }

@@ -126,6 +126,7 @@ class Propagation:
         self.origin = 0.0  # of Y
         self.laws: dict[tuple[tuple[int, ...], int], Law] = {}  # by contact and tilt, under the present inputs
         self.kinks: list[Kink] = []  # those ahead, in order
+        self.last_kink: tuple[float, int, float] = (-inf, 0, 0.0)  # at this ξ, in this derivative, of this size
         for kink, jump in self.hole.kinks:
             self._add_images(kink, 2, jump)
         self.step = self._standstill(self.hole.final_inclination, 0.0)
@@ -210,6 +211,7 @@ class Propagation:
             "path": self.path,
             "origin": self.origin,
             "kinks": self.kinks[:],
+            "last_kink": self.last_kink,
             "step": self.step,
             "hole": self.hole.save(),
         }
@@ -220,6 +222,8 @@ class Propagation:
         self.F_rss, self.eta_pi = state["F_rss"], state["eta_pi"]
         self.contact, self.path = tuple(state["contact"]), (state["path"][0], state["path"][1])
         self.kinks = [Kink(*kink) for kink in state["kinks"]]
+        xi, order, jump = state["last_kink"]
+        self.last_kink = xi, order, jump
         xi, h, theta, Y, *rest = state["step"]
         self.step = Step(xi, h, tuple(theta), tuple(Y), *rest)
         self.hole.restore(state["hole"])
@@ -263,10 +267,17 @@ class Propagation:
         self.path = (self.path[0] + x, self.path[1] + z)
 
     def _add_images(self, xi: float, order: int, jump: float) -> None:
-        """Mark where the stabilizers will pass a jump in a derivative of the hole's Y at `xi`."""
-        if order <= SMOOTHEST_KINK:
+        """Mark where the stabilizers will pass a jump in a derivative of the hole's Y at `xi`; there they add up."""
+        if order > SMOOTHEST_KINK:
+            return
+        if (xi, order) == self.last_kink[:2]:  # the inputs change once more where the bit is
+            earlier = self.last_kink[2]
             for i, s_i in enumerate(self.scaled.s):
-                insort(self.kinks, Kink(xi + s_i, order, jump, i))
+                self.kinks.remove(Kink(xi + s_i, order, earlier, i))
+            jump += earlier
+        for i, s_i in enumerate(self.scaled.s):
+            insort(self.kinks, Kink(xi + s_i, order, jump, i))
+        self.last_kink = xi, order, jump
 
     def _kink_here(self, xi: float) -> int | None:
         """Take the kinks up to `xi` off the list; the lowest derivative of Y that those at `xi` make jump, if any."""

@@ -9,7 +9,7 @@
 
 enum { MAX_STABILIZERS = 6, MESSAGE = 512 };
 
-/* FAILED: `why` says in one line what is wrong, and nothing has moved. FULL: the memory is. */
+/* FAILED: `why` says in one line what is wrong, and nothing has moved. FULL: the memory is too small. */
 typedef enum { DONE, FAILED, FULL } Status;
 
 typedef long long Count; /* of stations, and of pieces of hole: 32 bits are not enough for a long life */

@@ -1,6 +1,7 @@
 """The kernel from Python: the same runs as `core.drilling`, in compiled code, through ctypes."""
 
 import ctypes
+import re
 from functools import cache
 from typing import Any
 
@@ -96,6 +97,13 @@ def _array(kind: Any) -> Any:
     return np.ctypeslib.ndpointer(kind, flags="C_CONTIGUOUS")
 
 
+def _number(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
 def available() -> bool:
     """Whether the kernel is there."""
     try:
@@ -106,12 +114,12 @@ def available() -> bool:
 
 
 class NativeDrilling:
-    """A borehole as it is drilled, like `core.drilling.Drilling`: parameters, units, errors and numbers are the same.
+    """A borehole as it is drilled, like `core.drilling.Drilling`: parameters, units and numbers are the same.
 
     Raises
     ------
     ParameterError
-        If an input or the tolerance is out of range.
+        If an input or the tolerance is out of range, or a dimensionless number made of them is not finite.
     KernelError
         If the kernel is not there.
     """
@@ -154,9 +162,11 @@ class NativeDrilling:
             self._why,
         )
         if not self._run:
-            name, _, rest = self._message().partition(": ")
-            constraint, _, value = rest.partition(", got ")
-            raise ParameterError(name, constraint, value)
+            told = re.fullmatch("(.+?): (.+), got (.+)", self._message())
+            if told is None:
+                raise ParameterError("parameters", "must give a finite state", self._message())
+            name, constraint, value = told.groups()
+            raise ParameterError(name, constraint, _number(value))
 
     def __del__(self) -> None:
         if getattr(self, "_run", None):

@@ -24,7 +24,7 @@ static inline int check_inputs(Inputs inputs, char why[MESSAGE]) {
            check_positive("active_weight_on_bit", inputs.active_weight_on_bit, why);
 }
 
-/* The dimensionless inputs; 0 where they are good, but not over F*. */
+/* The dimensionless inputs; 0, with `why`, if they are bad, in N or over F*. */
 static inline int scale_inputs(const System *system, Inputs inputs, ScaledInputs *scaled, char why[MESSAGE]) {
     double F_star = force_scale(system);
     scaled->F_rss = inputs.rss_force / F_star;
@@ -246,7 +246,7 @@ static inline Count drilling_state_capacity(const double *state, Count count) {
 
 /* Go back to a state that this run has saved itself. */
 static inline void drilling_return(Drilling *d, const double *state) {
-    Tape tape = {(double *)state, 1};
+    Tape tape = {(double *)state, 1}; /* which is only read */
     pass_state(&tape, d);
     d->propagation.law_known = d->propagation.under_way = 0;
 }

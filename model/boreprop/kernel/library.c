@@ -17,16 +17,13 @@ EXPORT Run *boreprop_start(
 ) {
     Survey survey = {count, measured_depth, inclination};
     Run *run = calloc(1, sizeof *run);
+    strcpy(why, "memory: must have room for a run, got too little");
     if (run && run_prepare(run, system, why) == DONE && run_start(run, &survey, *inputs, why) == DONE) return run;
-    if (run) free(run->memory);
-    free(run);
+    run_end(run);
     return NULL;
 }
 
-EXPORT void boreprop_end(Run *run) {
-    if (run) free(run->memory);
-    free(run);
-}
+EXPORT void boreprop_end(Run *run) { run_end(run); }
 
 /* Drill leg after leg: to lengths[k] under forces[k]; where rows[k] is not negative the outputs there become that row
    of the table. Returns how many legs are drilled; if not all, `why` says what the next one met. */

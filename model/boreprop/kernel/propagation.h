@@ -61,6 +61,7 @@ typedef struct {
     int law_known; /* once it has been asked for */
     int under_way; /* from `before`, and what the way back there needs: */
     State before;
+    Kink last_kink;
     Count oldest_piece, oldest_kink;
 } Propagation;
 
@@ -139,15 +140,18 @@ static inline void stand_still(State *now, double theta, double Y) {
     now->step = step;
 }
 
-/* Mark where the stabilizers will pass a jump in a derivative of the hole's Y at `xi`. */
+/* Mark where the stabilizers will pass a jump in a derivative of the hole's Y at `xi`; jumps at one place add up. */
 static inline void add_images(Propagation *p, double xi, int order, double jump) {
-    Kink added = {xi, jump, order};
-    if (order <= SMOOTHEST_KINK) *kink(&p->hole, p->now.kinks_end++) = added;
+    Kink added = {xi, jump, order}, *last = kink(&p->hole, p->now.kinks_end - 1);
+    if (order > SMOOTHEST_KINK) return;
+    if (p->now.kinks_end > p->now.ahead[p->scaled.n - 1] && last->xi == xi && last->order == order) last->jump += jump;
+    else *kink(&p->hole, p->now.kinks_end++) = added;
 }
 
 /* The line that says that numbers have run away. */
 static inline Status not_finite(double xi, char why[MESSAGE]) {
-    snprintf(why, MESSAGE, "the state is not finite at xi = %.9g: check inputs and parameters", xi);
+    char at[32];
+    snprintf(why, MESSAGE, "the state is not finite at xi = %s: check inputs and parameters", decimal(xi, 9, at));
     return FAILED;
 }
 
@@ -388,6 +392,7 @@ static inline Status take_step(Propagation *p, char why[MESSAGE]) {
     State *now = &p->now;
     Step last = now->step;
     Trial trial;
+    char at[32], got[32];
     double xi = last.end, theta, Y, growth, h, to_kink;
     if (!has_room(p)) return FULL;
     int kink = leave(p, &last, &theta, &Y), switches = 0;
@@ -403,7 +408,8 @@ static inline Status take_step(Propagation *p, char why[MESSAGE]) {
         if (to_kink < 2 * h) h = to_kink <= smaller(stretch * h, LARGEST_STEP) ? to_kink : to_kink / 2;
         if (h < SMALLEST_STEP * larger(1.0, xi)) {
             snprintf(
-                why, MESSAGE, "step size underflow at xi = %.9g: raise relative_tolerance (now %g)", xi, p->tolerance
+                why, MESSAGE, "step size underflow at xi = %s: raise relative_tolerance (now %s)", decimal(xi, 9, at),
+                decimal(p->tolerance, 6, got)
             );
             return FAILED;
         }
@@ -420,7 +426,8 @@ static inline Status take_step(Propagation *p, char why[MESSAGE]) {
         if (trial.step.event == NONE || trial.step.end - xi >= SMALLEST_STEP * larger(1.0, xi)) break;
         if (switches == 2 * law->bound_count) {
             snprintf(
-                why, MESSAGE, "no contact mode holds at xi = %.9g: change relative_tolerance (now %g)", xi, p->tolerance
+                why, MESSAGE, "no contact mode holds at xi = %s: change relative_tolerance (now %s)",
+                decimal(xi, 9, at), decimal(p->tolerance, 6, got)
             );
             return FAILED;
         }
@@ -435,8 +442,8 @@ static inline Status take_step(Propagation *p, char why[MESSAGE]) {
     step_state(&now->step, now->step.end, &turned, &end_Y);
     if (!(fabs(turned) <= LARGEST_INCLINATION)) {
         snprintf(
-            why, MESSAGE, "the bit turns over (theta = %.3g rad) at xi = %.9g: check rss_force and the parameters",
-            turned, now->step.end
+            why, MESSAGE, "the bit turns over (theta = %s rad) at xi = %s: check rss_force and the parameters",
+            decimal(turned, 3, got), decimal(now->step.end, 9, at)
         );
         return FAILED;
     }
@@ -467,6 +474,7 @@ static inline Status steer(Propagation *p, ScaledInputs inputs, char why[MESSAGE
 static inline void go_back(Propagation *p) {
     if (!p->under_way) return;
     p->now = p->before;
+    *kink(&p->hole, p->now.kinks_end - 1) = p->last_kink;
     p->law_known = p->under_way = 0;
 }
 
@@ -481,6 +489,7 @@ static inline Status drill(Propagation *p, double xi, ScaledInputs inputs, char 
             p->oldest_piece = now->pieces.first, p->oldest_kink = now->ahead[p->scaled.n - 1];
             if (!has_room(p)) return FULL;
             p->before = *now;
+            p->last_kink = *kink(&p->hole, now->kinks_end - 1);
             p->under_way = 1;
         }
         if (changed) status = steer(p, inputs, why);
