@@ -51,7 +51,7 @@ def build(
 def _chosen(platforms: str) -> list[str]:
     from boreprop.kernel.compiler import PLATFORMS
 
-    return {"all": list(PLATFORMS), "none": []}.get(platforms, platforms.split(","))
+    return {"all": list(PLATFORMS), "none": []}.get(platforms, [name.strip() for name in platforms.split(",")])
 
 
 def _contents(fmu: Path) -> list[str]:

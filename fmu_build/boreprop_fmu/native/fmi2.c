@@ -289,6 +289,7 @@ fmi2Status fmi2DoStep(fmi2Component instance, fmi2Real time, fmi2Real size, fmi2
     (void)no_way_back;
     if (!c) return fmi2Error;
     fmi2Status status = step(c, time, size, why);
+    c->discarded = status == fmi2Discard;
     return status == fmi2OK ? fmi2OK : fail(c, status, why);
 }
 
@@ -341,7 +342,8 @@ fmi2Status fmi2CancelStep(fmi2Component instance) {
     return c ? fail(c, fmi2Error, "fmi2CancelStep: must not be called, no step is ever pending") : fmi2Error;
 }
 
-/* What may be asked of a step that is over: where the last good one ended, and that it does not end the simulation */
+/* What may be asked of a step that is over: where the last good one ended, and whether the simulation ends here, as it
+   does for a host that has no better step than one that was discarded. */
 
 static fmi2Status unanswered(fmi2Component instance, const char *function, fmi2StatusKind kind) {
     Component *c = called(instance, function, ANY);
@@ -373,7 +375,7 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component instance, const fmi2StatusKind kin
     Component *c = called(instance, "fmi2GetBooleanStatus", ANY);
     if (!c || !has(c, "fmi2GetBooleanStatus", 1, value, value)) return fmi2Error;
     if (kind != fmi2Terminated) return unanswered(instance, "fmi2GetBooleanStatus", kind);
-    *value = fmi2False;
+    *value = c->discarded; /* else a host may try the same step for ever */
     return fmi2OK;
 }
 

@@ -37,6 +37,7 @@ typedef struct {
     double time, stop;         /* where the last step ended, and where none may end beyond */
     double since, from, rate;  /* since this time, from this drilled length, at this rate of penetration */
     int settled;               /* the run has the present inputs */
+    int discarded;             /* the last step was */
     Run *run;                  /* made when it is first needed */
 } Component;
 
@@ -97,7 +98,7 @@ static int start_over(Component *c) {
     run_end(c->run);
     free(c->survey_file);
     c->run = NULL, c->survey_file = none;
-    c->phase = INSTANTIATED, c->outputs = STALE, c->settled = 0;
+    c->phase = INSTANTIATED, c->outputs = STALE, c->settled = c->discarded = 0;
     c->time = c->since = c->from = 0.0, c->rate = -1.0, c->stop = INFINITY;
     memset(c->derivative, 0, sizeof c->derivative);
     for (int i = 0; i < VARIABLES; i++) c->value[i] = VARIABLE[i].start;
@@ -286,7 +287,7 @@ static int restore(Component *c, const Saved *saved, char why[LINE]) {
     }
     run_end(c->run);
     free(c->survey_file);
-    c->run = run, c->survey_file = survey_file, c->phase = (Phase)phase, c->outputs = STALE;
+    c->run = run, c->survey_file = survey_file, c->phase = (Phase)phase, c->outputs = STALE, c->discarded = 0;
     c->time = fixed[1], c->since = fixed[2], c->from = fixed[3], c->rate = fixed[4], c->settled = fixed[5] != 0.0;
     memcpy(c->derivative, fixed + 6, sizeof c->derivative);
     memcpy(c->value, value, sizeof value);
