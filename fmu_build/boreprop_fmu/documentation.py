@@ -89,8 +89,8 @@ Linux a host that is not Python itself must preload libpython.""",
     },
     "native": {
         "inputs": """; a derivative of an input (fmi2SetRealInputDerivatives, first order) acts over the next step that
-is done, not one that is discarded, after which the input has the value that it came to. The rate of penetration is linear
-in time then, the force and the weight on bit are linear in the drilled length""",
+is done, not one that is discarded, after which the input has the value that it came to. The rate of penetration is
+linear in time then, the force and the weight on bit are linear in the drilled length""",
         "errors": """A bad value is logged (status error, category logStatusError) with variable, constraint and value,
 and the step is discarded (fmi2Discard): nothing has moved, and the next step with good values works. Bad parameters:
 fmi2ExitInitializationMode and every step give fmi2Error until fmi2Reset. Outputs that cannot be computed are NaN, with
