@@ -308,16 +308,29 @@ def test_the_length_of_a_ramp_is_not_forgotten_when_its_first_rate_comes_back(on
     assert one.get("drilled_length") == pytest.approx(1.5 + 1.0, rel=1e-15)
 
 
-def test_no_step_ends_beyond_the_stop_time(one: Instance) -> None:
-    one.slave.setupExperiment(startTime=0.0, stopTime=1.0)
+def start_with_stop(one: Instance, stop: float) -> None:
+    one.slave.reset()
+    one.slave.setupExperiment(startTime=0.0, stopTime=stop)
     one.slave.enterInitializationMode()
     one.slave.exitInitializationMode()
     one.time = 0.0
+
+
+def test_no_step_ends_beyond_the_stop_time(one: Instance) -> None:
+    start_with_stop(one, 1.0)
     with refused(one, "current_time + step_size: must be <= 1, got 1.5"):
         one.slave.doStep(0.0, 1.5)
-    assert [one.step(0.1) for _ in range(10)] == ["ok"] * 10  # in tenths, which add up to a little less or more
+    assert [one.step(0.1) for _ in range(10)] == ["ok"] * 10
+    with refused(one, "current_time + step_size: must be <= 1, got "):
+        one.slave.doStep(one.time, 0.1)
     one.slave.reset()
     assert one.initialize().step(1.5) == "ok"
+
+
+def test_a_host_that_adds_up_its_steps_reaches_the_stop_time(one: Instance) -> None:
+    start_with_stop(one, 1000.0)
+    one.time = 999.9 + 1e-6  # what rounding may come to in a very long run
+    assert one.step(0.1) == "ok"
 
 
 def test_standing_still_under_changing_inputs_costs_no_memory(one: Instance) -> None:

@@ -21,7 +21,7 @@ from boreprop.core.hole import Survey
 from boreprop.core.propagation import Propagation
 from boreprop.kernel import binding
 from boreprop.kernel.binding import KernelError, NativeDrilling
-from boreprop.kernel.compiler import CompilerError, build_library
+from boreprop.kernel.compiler import NoCompilerError, build_library
 from boreprop.results import read_trajectory
 from boreprop.simulation import SimulationError, best_engine, simulate
 from conftest import Command
@@ -38,7 +38,7 @@ def kernel() -> None:
     if not binding.available():
         try:
             build_library()
-        except CompilerError as error:
+        except NoCompilerError as error:
             pytest.skip(str(error))
         binding.library.cache_clear()
 

@@ -200,7 +200,7 @@ static fmi2Status step(Component *c, double time, double size, char why[LINE]) {
     double *end_rate = &end[RATE_OF_PENETRATION];
     if (*end_rate < 0.0 && *end_rate > -1e-12 * start_rate) *end_rate = 0.0; /* rounding */
     if (!check_finite("current_time", time, why) || !check_positive("step_size", size, why)) return fmi2Discard;
-    if (time + size > c->stop + 1e-9 * size) {
+    if (time + size > c->stop + larger(1e-12 * fabs(c->stop), 1e-3 * size)) { /* a host may add up rounding errors */
         check_number("current_time + step_size", time + size, -INFINITY, -INFINITY, c->stop, why);
         return fmi2Error;
     }
