@@ -193,7 +193,7 @@ def test_results_are_the_same_wherever_they_are_computed(tmp_path: Path, thread:
 
 def test_key_figures_are_the_summary_of_a_run() -> None:
     case = replace(paper_case(), length=40.0)
-    summary = summarize(simulate(case), case.bha.length_scale)
+    summary = summarize(simulate(case))
     figures = key_figures(case)
     assert figures["build_rate"] == summary.build_rate
     assert figures["largest_contact_force[1]"] == summary.largest_contact_force[0]

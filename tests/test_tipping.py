@@ -10,13 +10,16 @@ from matplotlib.image import imread
 
 from boreprop.analysis import tipping
 from boreprop.analysis.design import vary
-from boreprop.analysis.rippling import Rippling, find_rippling
+from boreprop.analysis.rippling import Rippling, State, examine_rippling
 from boreprop.analysis.tipping import (
     CriticalDogleg,
+    DoglegMap,
+    Hysteresis,
     critical_dogleg,
     dogleg_map,
     drill_until_settled,
     hysteresis,
+    usual_map,
     with_dogleg,
 )
 from boreprop.case import Case, Schedule
@@ -24,9 +27,12 @@ from boreprop.core.assembly import ParameterError
 from boreprop.core.drilling import Drilling
 from boreprop.core.hole import Survey
 from boreprop.paper import LENGTH_SCALE, paper_case
+from boreprop.results import Trajectory
 from boreprop.simulation import SimulationError, simulate
-from boreprop.tipping_table import loop, rows
+from boreprop.tipping_table import left_out, loop, rows
 from conftest import Command
+
+YES, NO = Rippling(State.LASTING, 5.0, 0.1), Rippling()
 
 
 def at(eta_pi: float, **options: float) -> Case:
@@ -38,7 +44,7 @@ def ripples_for_long(case: Case, relative_tolerance: float = 1e-7) -> bool:
     run = simulate(
         case, length=100 * LENGTH_SCALE, sample_interval=LENGTH_SCALE / 20, relative_tolerance=relative_tolerance
     )
-    return find_rippling(run["drilled_length"], run["borehole_inclination"], LENGTH_SCALE).ripples
+    return examine_rippling(run).ripples
 
 
 # one run
@@ -81,7 +87,7 @@ def test_an_early_verdict_is_that_of_a_long_run(eta_pi: float, turn_deg: float, 
 def test_the_settled_wave_is_that_of_a_long_run() -> None:
     _, early = drill_until_settled(paper_case(tilt_limit=radians(1.0)))
     run = simulate(paper_case(tilt_limit=radians(1.0)), sample_interval=0.05)
-    late = find_rippling(run["drilled_length"], run["borehole_inclination"], LENGTH_SCALE)
+    late = examine_rippling(run)
     assert early.wavelength == pytest.approx(late.wavelength, rel=0.01)
     assert early.amplitude == pytest.approx(late.amplitude, rel=0.03)
 
@@ -98,9 +104,9 @@ def test_an_unstable_straight_hole_ripples_however_small_the_wave_is_at_first() 
 def test_a_wave_that_takes_for_ever_to_die_out_does_not_ripple() -> None:
     case = replace(at(0.12, clearance=5e-5), survey=Survey((0.0,), (radians(2.0),)))
     run, found = drill_until_settled(case)
-    assert run["drilled_length"][-1] == pytest.approx(150 * LENGTH_SCALE, rel=0.01)
     assert np.ptp(run["borehole_inclination"][-100:]) > radians(0.01)
-    assert not found.ripples
+    assert found.state is State.DYING
+    assert run["drilled_length"][-1] == pytest.approx(120 * LENGTH_SCALE, rel=0.01)
 
 
 def test_a_failing_run_says_where() -> None:
@@ -112,7 +118,7 @@ def test_a_failing_run_says_where() -> None:
 # the critical dogleg
 
 
-def test_the_hole_is_straight_at_the_inclination_of_the_case_and_turns_over_the_last_length() -> None:
+def test_the_hole_is_straight_at_the_inclination_of_the_case_and_turns_over_half_the_bha() -> None:
     case = replace(paper_case(), survey=Survey((0.0, 10.0, 10.0 + 2 * LENGTH_SCALE), (0.1, 0.2, 0.4)))
     survey = with_dogleg(case, 0.05).survey
     assert np.diff(survey.measured_depth) == pytest.approx([LENGTH_SCALE])
@@ -163,7 +169,7 @@ def tipping_where(monkeypatch: pytest.MonkeyPatch, tips: "list[tuple[float, floa
 
     def settle(case: Case, **_: float) -> tuple[None, Rippling]:
         turn = degrees(case.survey.inclination[1] - case.survey.inclination[0])
-        return None, Rippling(any(low <= turn <= high for low, high in tips))
+        return None, YES if any(low <= turn <= high for low, high in tips) else NO
 
     monkeypatch.setattr(tipping, "drill_until_settled", settle)
 
@@ -180,6 +186,24 @@ def test_any_threshold_is_found(monkeypatch: pytest.MonkeyPatch, critical_deg: f
     found = critical_dogleg(paper_case(), limit=radians(10.0), tolerance=0.02)
     assert degrees(found.angle) == pytest.approx(critical_deg, rel=0.02, abs=0.001)
     assert len(found.tried) <= 20
+
+
+def test_a_hole_that_ripples_straight_but_not_after_small_turns_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    tipping_where(monkeypatch, [(0.0, 0.0), (1.0, 90.0)])
+    found = critical_dogleg(paper_case())
+    assert (found.angle, found.monotonic) == (0.0, False)
+    [(_, amount)] = rows(paper_case(), {1: found}, radians(10.0))
+    assert amount == "none needed: it ripples from a straight hole, but not after a turn of 0.0098° to 0.62°"
+
+
+def test_an_inclined_hole_that_ripples_by_itself_does_not_after_a_small_turn_down() -> None:
+    inclined = replace(paper_case(), survey=Survey((0.0,), (radians(4.0),)))
+    found = critical_dogleg(inclined, side=-1)
+    straight = [turn for turn, ripples in found.tried if not ripples]
+    assert found.angle == 0.0
+    assert any(turn == pytest.approx(radians(0.3), rel=0.05) for turn in straight)
+    for turn in straight:
+        assert not ripples_for_long(with_dogleg(inclined, -turn), 1e-9)
 
 
 def test_an_answer_that_is_not_monotonic_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -208,7 +232,25 @@ def test_a_map_holds_the_critical_dogleg_of_each_point() -> None:
         case = at(float(eta_pi[column]), clearance=float(clearance[row]) / LENGTH_SCALE)
         assert angle == pytest.approx(critical_dogleg(case, tolerance=0.2).angle)
     assert found.monotonic.all()
+    assert not found.stopped.any()
     assert done[-1] == 6
+
+
+def test_a_run_that_stops_leaves_its_point_out_of_the_map() -> None:
+    pushed = replace(paper_case(), schedule=Schedule((0.0,), (3e6,)))
+    found = dogleg_map(pushed, np.array([0.01, 5.0]), np.array([3.66e-3]), workers=1)
+    assert np.isnan(found.angle).tolist() == [[True, False]]
+    assert "the bit turns over" in found.stopped[0, 0]
+    assert found.stopped[0, 1] == ""
+
+
+@pytest.mark.parametrize("case", [paper_case(), at(0.4), paper_case(clearance=4e-3), paper_case(clearance=0.0)])
+def test_the_case_is_on_its_usual_map(case: Case) -> None:
+    eta_pi, clearance = usual_map(case)
+    own = vary(case, {}).active_weight_on_bit * case.bit.lateral_steering_resistance / case.bha.force_scale
+    assert eta_pi[0] <= own * (1 + 1e-12)
+    assert own < eta_pi[-1]
+    assert clearance[0] <= case.bha.stabilizer_clearances[0] < clearance[-1]
 
 
 # hysteresis
@@ -218,7 +260,8 @@ def test_a_map_holds_the_critical_dogleg_of_each_point() -> None:
 def test_a_ripple_dies_at_the_weight_where_it_dies_in_one_run_and_comes_back_at_the_critical_dogleg() -> None:
     weights = [0.02, 0.03, 0.04, 0.06, 0.08, 0.1, 0.12, 0.135, 0.15]
     cases = [at(eta_pi) for eta_pi in weights]
-    up, down = hysteresis(cases, radians(0.5))
+    found = hysteresis(cases[0], "eta_pi", weights, radians(0.5))
+    up, down = found.up, found.down
     drilling = Drilling(
         cases[0].bha, cases[0].bit, with_dogleg(cases[0], radians(10.0)).survey,
         active_weight_on_bit=cases[0].active_weight_on_bit,
@@ -228,20 +271,54 @@ def test_a_ripple_dies_at_the_weight_where_it_dies_in_one_run_and_comes_back_at_
         for _ in range(60 * 30):
             length = drilling.drilled_length + LENGTH_SCALE / 30
             assert drilling.advance(length, 0.0, case.active_weight_on_bit) is None
-            rows.append((length, drilling.outputs()["borehole_inclination"]))
-        at_bit, inclination = np.array(rows).T
-        in_one_run = find_rippling(at_bit, inclination, LENGTH_SCALE)
+            rows.append(drilling.outputs())
+        columns = {name: np.array([row[name] for row in rows], dtype=float) for name in rows[0]}
+        in_one_run = examine_rippling(Trajectory(columns, case))
+        assert wave is not None
         assert wave.ripples is in_one_run.ripples
-        assert wave.amplitude == pytest.approx(in_one_run.amplitude, rel=0.03, nan_ok=True)
-    assert [wave.ripples for wave in up] == [eta_pi < 0.13 for eta_pi in weights]
-    assert [wave.ripples for wave in down] == [critical_dogleg(case).angle < radians(0.5) for case in cases]
+        if wave.ripples:
+            assert wave.amplitude == pytest.approx(in_one_run.amplitude, rel=0.03)
+    assert rippling(up) == [eta_pi < 0.13 for eta_pi in weights]
+    assert rippling(down) == [critical_dogleg(case).angle < radians(0.5) for case in cases]
+
+
+def rippling(waves: tuple[Rippling | None, ...]) -> list[bool]:
+    return [wave is not None and wave.ripples for wave in waves]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("values", [[0.005, 0.055, 0.15], np.linspace(0.02, 0.14, 7), np.linspace(0.03, 0.13, 13)])
+def test_the_ends_of_the_loop_are_the_cases_not_the_grids(values: list[float]) -> None:
+    vertical = replace(paper_case(), survey=Survey((0.0,), (0.0,)))
+    found = hysteresis(vertical, "eta_pi", list(values), radians(0.5))
+    for bracket, end in ((found.dies, 0.1265), (found.returns, 0.0336)):
+        assert bracket is not None
+        low, high = bracket
+        assert high - low <= 0.01 * high
+        assert end == pytest.approx((low + high) / 2, rel=0.015)
+
+
+def test_the_dogleg_brings_a_ripple_back_where_it_is_the_critical_one() -> None:
+    vertical = replace(paper_case(), survey=Survey((0.0,), (0.0,)))
+    found = hysteresis(vertical, "eta_pi", [0.02, 0.06], radians(0.5))
+    assert found.returns is not None
+    angles = [critical_dogleg(vary(vertical, {"eta_pi": value}), tolerance=0.002).angle for value in found.returns]
+    assert angles[0] <= radians(0.5) * 1.002
+    assert angles[1] >= radians(0.5) * 0.998
+
+
+def test_a_run_that_stops_leaves_its_value_out_of_the_loop() -> None:
+    pushed = replace(paper_case(), schedule=Schedule((0.0,), (3e6,)))
+    found = hysteresis(pushed, "eta_pi", [0.01, 5.0], radians(0.5))
+    assert [wave is None for wave in (*found.up, *found.down)] == [True, False, True, False]
+    assert loop(pushed, found).startswith("it ripples nowhere from ηΠ = 0.01 (1.612 kN)")
 
 
 def test_opening_the_clearance_lets_a_ripple_go_on_that_it_would_not_let_start() -> None:
-    cases = [paper_case(clearance=clearance) for clearance in (1e-3, 1.5e-3, 2e-3)]
-    up, down = hysteresis(cases, radians(0.5))
-    assert [wave.ripples for wave in up] == [True, True, True]
-    assert [wave.ripples for wave in down] == [True, False, False]  # the paper's figure 8
+    clearances = [clearance * LENGTH_SCALE for clearance in (1e-3, 1.5e-3, 2e-3)]
+    found = hysteresis(paper_case(), "stabilizer_clearance[1]", clearances, radians(0.5))
+    assert rippling(found.up) == [True, True, True]
+    assert rippling(found.down) == [True, False, False]  # the paper's figure 8
 
 
 # words and pictures
@@ -262,14 +339,44 @@ def test_the_critical_dogleg_in_words() -> None:
     ]  # fmt: skip
 
 
-def test_the_loop_in_words() -> None:
-    yes, no = Rippling(True, 5.0, 0.1), Rippling(False, nan, nan)
-    x = [0.1, 0.2, 0.3]
-    assert loop(x, "x", [yes, yes, no], [yes, no, no]) == (
-        "on the way up it ripples to x = 0.2; on the way down it comes back at 0.1"
-    )
-    assert loop(x, "x", [yes, yes, no], [no, no, no]).endswith("on the way down it does not come back")
-    assert loop(x, "x", [no, no, no], [no, no, no]) == "it ripples nowhere up to x = 0.3"
+def test_a_stopped_run_in_words() -> None:
+    [(_, amount)] = rows(paper_case(), {1: "after 3 m: the bit turns over"}, radians(10.0))
+    assert amount == "not known: after 3 m: the bit turns over"
+
+
+@pytest.mark.parametrize(
+    ("found", "words"),
+    [
+        (
+            Hysteresis("eta_pi", (0.1, 0.2, 0.3), 0.01, (YES, YES, NO), (YES, NO, NO), (0.2, 0.202), (0.11, 0.111)),
+            "on the way up the ripple dies out between ηΠ = 0.2 (32.25 kN) and ηΠ = 0.202 (32.57 kN); on the way down "
+            "a dogleg of 0.573° over 3.66 m in a straight hole brings it back between ηΠ = 0.11 (17.74 kN) and "
+            "ηΠ = 0.111 (17.9 kN)",
+        ),
+        (
+            Hysteresis("stabilizer_clearance[1]", (1e-3, 2e-3), 0.01, (YES, YES), (NO, NO), None, None),
+            "on the way up the ripple lasts to 2 mm; on the way down a dogleg of 0.573° over 3.66 m in a straight hole "
+            "does not bring it back",
+        ),
+        (
+            Hysteresis("stabilizer_clearance[1]", (1e-3, 2e-3), 0.01, (YES, None), (YES, YES), None, None),
+            "on the way up the ripple lasts to 1 mm; on the way down a dogleg of 0.573° over 3.66 m in a straight hole "
+            "brings it back at once, at 2 mm; 1 of 4 values left out, where a run stopped",
+        ),
+        (
+            Hysteresis("active_weight_on_bit", (1e3, 2e3), 0.01, (NO, NO), (NO, NO), None, None),
+            "it ripples nowhere from 1 kN to 2 kN",
+        ),
+    ],
+)
+def test_the_loop_in_words(found: Hysteresis, words: str) -> None:
+    assert loop(paper_case(), found) == words
+
+
+def test_the_points_that_a_map_lacks_in_words() -> None:
+    nothing, why = np.zeros(2), np.array([["", "after 3 m: the bit turns over"]])
+    found = DoglegMap(nothing, nothing[:1], np.array([[0.1, nan]]), np.ones((1, 2), dtype=bool), why)
+    assert left_out(found) == "; 1 of 2 points left out (the first: after 3 m: the bit turns over)"
 
 
 @pytest.mark.slow
@@ -280,7 +387,8 @@ def test_the_commands_print_and_draw(command: Command, tmp_path: Path, paper_cas
     assert "0.43° over 3.66 m (3.5 °/30 m)" in result.stdout
     result = command("boreprop", "hysteresis", paper_case, "--output", "loop.png", "--eta-pi", "0.03:0.15:3")
     assert (result.returncode, result.stderr) == (0, "")
-    assert result.stdout == "loop.png: on the way up it ripples to ηΠ = 0.09; on the way down it comes back at 0.03\n"
+    assert "dies out between ηΠ = 0.12" in result.stdout
+    assert "brings it back between ηΠ = 0.03352 (5.404 kN) and" in result.stdout
     for name in ("map.png", "loop.png"):
         assert imread(tmp_path / name)[..., :3].std() > 0.05
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from boreprop.analysis.rippling import axis_ripple
+from boreprop.analysis.axis import axis_ripple
 from boreprop.case import Case, InputError, Schedule, load_case
 from boreprop.core.hole import Survey
 from boreprop.results import Trajectory, write_trajectory

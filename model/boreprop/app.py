@@ -7,6 +7,7 @@ from typing import Annotated, NoReturn
 from . import console
 from .case import SAMPLE_INTERVAL
 from .console import typer
+from .core.propagation import RELATIVE_TOLERANCE
 
 MAX_ROWS = 10_000_000
 
@@ -77,9 +78,8 @@ def summary(
         raise InputError(f"{run_file}: must carry its case, or be given one with --case, got neither")
     if len(trajectory) < 2:
         raise InputError(f"{run_file}: must have at least 2 rows, got {len(trajectory)}")
-    length_scale = trajectory.case.bha.length_scale
     table = Table(str(run_file), "")
-    for row in rows(summarize(trajectory, length_scale), length_scale):
+    for row in rows(summarize(trajectory)):
         table.add_row(*row)
     Console().print(table)
 
@@ -199,17 +199,20 @@ def study(
 def dogleg(
     case_file: Annotated[Path, typer.Argument(metavar="CASE.toml", help="The case file.")],
     output: Annotated[Path | None, typer.Option(metavar="MAP.png", help="Draw a map into this file.")] = None,
-    eta_pi: Annotated[str, typer.Option(metavar="A:B:N", help="The map's ηΠ: from, to, how many.")] = "0.01:0.16:16",
+    eta_pi: Annotated[
+        str | None, typer.Option(metavar="A:B:N", help="The map's ηΠ: from, to, how many; if not around the case's.")
+    ] = None,
     clearance_mm: Annotated[
-        str, typer.Option(metavar="A:B:N", help="Its clearances of the first stabilizer, mm.")
-    ] = "0.5:8:8",
+        str | None, typer.Option(metavar="A:B:N", help="Its clearances of the first stabilizer, mm.")
+    ] = None,
     limit_deg: Annotated[
         float, typer.Option(parser=console.positive, metavar="A", help="Largest turn that is tried, degrees.")
     ] = 10.0,
+    tolerance: console.Tolerance = RELATIVE_TOLERANCE,
 ) -> None:
     """Print the smallest dogleg in the existing hole from which a case ripples; map it over weight and clearance.
 
-    The hole is straight and turns over the last ℓ₁, the distance from the bit to the first stabilizer.
+    The hole is straight and turns over half the length of the BHA before the bit.
     """
     from math import radians
 
@@ -217,26 +220,30 @@ def dogleg(
     from rich.table import Table
 
     from .analysis.design import parse_range
-    from .analysis.tipping import critical_dogleg, dogleg_map
+    from .analysis.tipping import critical_dogleg_or_why, dogleg_map, usual_map
     from .case import load_case
-    from .tipping_table import rows
+    from .tipping_table import SIDES, left_out, rows
 
     if output is not None:
         console.check_output(output, (".png",))
-    across, up = parse_range("--eta-pi", eta_pi), parse_range("--clearance-mm", clearance_mm) / 1e3
+    across = parse_range("--eta-pi", eta_pi) if eta_pi else None
+    up = parse_range("--clearance-mm", clearance_mm) / 1e3 if clearance_mm else None
     case, limit = load_case(case_file), radians(limit_deg)
+    found = {side: critical_dogleg_or_why(case, side=side, limit=limit, relative_tolerance=tolerance) for side in SIDES}
     table = Table(str(case_file), "")
-    for row in rows(case, {side: critical_dogleg(case, side=side, limit=limit) for side in (1, -1)}, limit):
+    for row in rows(case, found, limit):
         table.add_row(*row)
     Console().print(table)
     if output is not None:
         from .drawing import save
         from .tipping_figure import draw_map
 
+        usual = usual_map(case)
+        across, up = usual[0] if across is None else across, usual[1] if up is None else up
         with console.progress("doglegs", len(across) * len(up)) as done:
-            found = dogleg_map(case, across, up, limit=limit, progress=done)
-        save(draw_map(case, found, limit), output)
-        print(f"{output}: the smallest dogleg that tips it over, by weight and clearance")
+            found_map = dogleg_map(case, across, up, limit=limit, relative_tolerance=tolerance, progress=done)
+        save(draw_map(case, found_map, limit), output)
+        print(f"{output}: the smallest dogleg that tips it over, by weight and clearance{left_out(found_map)}")
 
 
 @app.command()
@@ -251,14 +258,19 @@ def hysteresis(
     ] = None,
     dogleg_deg: Annotated[
         float,
-        typer.Option(parser=console.positive, metavar="A", help="Turn over ℓ₁ that straight holes have, degrees."),
+        typer.Option(
+            parser=console.positive,
+            metavar="A",
+            help="Turn of straight holes over half the BHA before the bit, degrees.",
+        ),
     ] = 0.5,
+    tolerance: console.Tolerance = RELATIVE_TOLERANCE,
 ) -> None:
     """Draw where an ongoing ripple dies out as weight or clearance goes up, and where it comes back on the way down."""
     from math import radians
 
     from .analysis import tipping
-    from .analysis.design import parse_range, vary
+    from .analysis.design import parse_range
     from .case import InputError, load_case
     from .drawing import save
     from .tipping_figure import draw_loop
@@ -269,15 +281,13 @@ def hysteresis(
         raise InputError(f"must be given one of --eta-pi and --clearance-mm, got {'both' if eta_pi else 'neither'}")
     case = load_case(case_file)
     if eta_pi is not None:
-        x, label = parse_range("--eta-pi", eta_pi).tolist(), "ηΠ"
-        cases = [vary(case, {"eta_pi": value}) for value in x]
+        name, values = "eta_pi", parse_range("--eta-pi", eta_pi).tolist()
     else:
-        x, label = parse_range("--clearance-mm", clearance_mm or "").tolist(), "clearance of the first stabilizer (mm)"
-        cases = [vary(case, {"stabilizer_clearance[1]": value / 1e3}) for value in x]
-    with console.progress("runs", 2 * len(cases)) as done:
-        up, down = tipping.hysteresis(cases, radians(dogleg_deg), done)
-    save(draw_loop(x, label, up, down, radians(dogleg_deg)), output)
-    print(f"{output}: {loop(x, label, up, down)}")
+        name, values = "stabilizer_clearance[1]", (parse_range("--clearance-mm", clearance_mm or "") / 1e3).tolist()
+    with console.progress("values", 2 * len(values)) as done:
+        found = tipping.hysteresis(case, name, values, radians(dogleg_deg), relative_tolerance=tolerance, progress=done)
+    save(draw_loop(case, found), output)
+    print(f"{output}: {loop(case, found)}")
 
 
 @app.command()

@@ -15,6 +15,7 @@ from typing import Annotated, Any, NoReturn
 from .case import InputError
 from .core.assembly import ParameterError
 from .core.tables import TableError
+from .core.variables import BY_NAME
 
 EXTRAS = {  # the extra that brings a package
     "typer": "cli",
@@ -85,6 +86,29 @@ def positive(text: str) -> float:
     if not 0.0 < value < inf:
         raise typer.BadParameter(f"must be a number > 0, got {text!r}")
     return value
+
+
+def _tolerance(text: str) -> float:
+    allowed = BY_NAME["relative_tolerance"]
+    try:
+        value = float(text)
+    except ValueError:
+        value = nan
+    if not allowed.min <= value <= allowed.max:
+        raise typer.BadParameter(f"must be a number from {allowed.min:g} to {allowed.max:g}, got {text!r}")
+    return value
+
+
+Tolerance = Annotated[
+    float,
+    typer.Option(
+        "--tolerance",
+        parser=_tolerance,
+        metavar="X",
+        help="Local error allowed in one step of the integrator, relative to 1 rad and to ℓ₁.",
+    ),
+]
+"""The option --tolerance of a command that drills: ``def command(tolerance: Tolerance = RELATIVE_TOLERANCE)``."""
 
 
 def new_app(description: str) -> typer.Typer:

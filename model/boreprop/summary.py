@@ -1,24 +1,31 @@
 """A run in a dozen numbers."""
 
 from dataclasses import dataclass
+from math import ceil, degrees
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .analysis.rippling import Rippling, Stretch, examine_rippling
+from .analysis.rippling import Rippling, State, Stretch, examine_rippling
+from .completion import case_of
+from .core.assembly import BottomHoleAssembly
+from .core.hole import Survey
 from .results import Trajectory
 
 BUILD_LENGTH = 30.0  # m: build rates are told in degrees per 30 m
+CHORD_POINTS = 200  # of the existing hole under a chord
 
 
 @dataclass(frozen=True)
 class Summary:
-    """What an engineer asks of a run first. Inclinations are averages over the ℓ₁ behind the bit.
+    """What an engineer asks of a run first. Inclinations are means over the `averaging_length` behind the bit.
 
     Parameters
     ----------
     drilled_length
         m.
+    averaging_length
+        Length of hole that inclinations are means over, m.
     start_inclination, end_inclination
         rad.
     build_rate, largest_build_rate
@@ -34,6 +41,7 @@ class Summary:
     """
 
     drilled_length: float
+    averaging_length: float
     start_inclination: float
     end_inclination: float
     build_rate: float
@@ -44,10 +52,24 @@ class Summary:
     rippling: Rippling
 
 
-def summarize(trajectory: Trajectory, length_scale: float) -> Summary:
-    """Sum up a run of at least two rows; `length_scale` is ℓ₁, m."""
+def summarize(trajectory: Trajectory) -> Summary:
+    """Sum up a run.
+
+    Parameters
+    ----------
+    trajectory
+        With its case, of at least two rows.
+
+    Raises
+    ------
+    InputError
+        If the run lacks its case or a column.
+    """
+    case = case_of(trajectory)
     length = trajectory["drilled_length"]
-    inclination = trajectory["average_inclination[1]"]
+    rippling = examine_rippling(trajectory)
+    over = averaging_length(case.bha, rippling)
+    inclination = mean_inclination(trajectory, case.survey, over)
     weights = np.gradient(length)
     weights[[0, -1]] /= 2
     later = np.interp(length + BUILD_LENGTH, length, inclination, right=np.nan)
@@ -55,6 +77,7 @@ def summarize(trajectory: Trajectory, length_scale: float) -> Summary:
     drilled = float(length[-1] - length[0])
     return Summary(
         drilled_length=drilled,
+        averaging_length=over,
         start_inclination=float(inclination[0]),
         end_inclination=float(inclination[-1]),
         build_rate=float(inclination[-1] - inclination[0]) / drilled,
@@ -62,17 +85,44 @@ def summarize(trajectory: Trajectory, length_scale: float) -> Summary:
         largest_contact_force=np.abs(trajectory.stack("stabilizer_force")).max(axis=0),
         contact_share=np.average(trajectory.stack("stabilizer_contact") != 0, axis=0, weights=weights),
         saturation_share=float(np.average(trajectory["bit_tilt_saturation"] != 0, weights=weights)),
-        rippling=examine_rippling(trajectory, length_scale),
+        rippling=rippling,
     )
 
 
-def rows(summary: Summary, length_scale: float) -> list[tuple[str, str]]:
+def averaging_length(bha: BottomHoleAssembly, wave: Rippling) -> float:
+    """The length of hole that a summary averages inclinations over, m.
+
+    Half the BHA, whichever of its blades touch; where a wave lasts, the next whole number of wavelengths.
+    """
+    if wave.state in (State.NONE, State.DYING):
+        return bha.half_length
+    return wave.wavelength * ceil(bha.half_length / wave.wavelength)
+
+
+def mean_inclination(run: Trajectory, survey: Survey, over: float) -> NDArray[np.float64]:
+    """The inclination of the chord over the last `over`, m, of the hole at each row of a run, rad, shape (rows,).
+
+    The run starts at the end of the survey, above which the hole goes on straight.
+    """
+    before = np.linspace(-over, 0.0, CHORD_POINTS)
+    stations = np.array(survey.measured_depth) - survey.measured_depth[-1]
+    direction = np.exp(1j * np.interp((before[1:] + before[:-1]) / 2, stations, survey.inclination))
+    existing = np.cumsum(direction * np.diff(before))  # down + i sideways
+    length, drilled = run["drilled_length"], run["true_vertical_depth"] + 1j * run["displacement"]
+    at = np.concatenate((before, length))
+    axis = np.concatenate(([0.0], existing, existing[-1] + drilled))
+    chord = axis[-len(length) :] - np.interp(length - over, at, axis)
+    return np.unwrap(np.angle(chord))
+
+
+def rows(summary: Summary) -> list[tuple[str, str]]:
     """The lines of a table: what, and how much in the units people use."""
+    mean = f"mean over {summary.averaging_length:.3g} m"
     stabilizers = enumerate(zip(summary.largest_contact_force, summary.contact_share, strict=True), 1)
     return [
         ("drilled length", f"{summary.drilled_length:.1f} m"),
-        ("inclination at the start", f"{np.degrees(summary.start_inclination):.2f} °"),
-        ("inclination at the end", f"{np.degrees(summary.end_inclination):.2f} °"),
+        (f"inclination at the start, {mean}", f"{np.degrees(summary.start_inclination):.2f} °"),
+        (f"inclination at the end, {mean}", f"{np.degrees(summary.end_inclination):.2f} °"),
         ("build rate, mean", _rate(summary.build_rate)),
         (f"build rate, largest over {BUILD_LENGTH:g} m", _rate(summary.largest_build_rate)),
         *(
@@ -84,7 +134,7 @@ def rows(summary: Summary, length_scale: float) -> list[tuple[str, str]]:
             )
         ),
         ("bit tilt saturated", f"{summary.saturation_share:.0%} of the length"),
-        *_wave_rows(summary.rippling, length_scale),
+        *_wave_rows(summary.rippling),
     ]
 
 
@@ -92,16 +142,30 @@ def _rate(change: float) -> str:
     return f"{np.degrees(change) * BUILD_LENGTH:+.2f} °/{BUILD_LENGTH:g} m"
 
 
-def _wave_rows(wave: Rippling, length_scale: float) -> list[tuple[str, str]]:
-    if not wave.ripples:
+def _wave_rows(wave: Rippling) -> list[tuple[str, str]]:
+    if wave.state is State.NONE:
         return [("rippling", "no")]
     return [
-        ("rippling", f"yes: {wave.wavelength:.2f} m long ({wave.wavelength / length_scale:.2f} ℓ₁)"),
-        ("ripple of the inclination", f"±{np.degrees(wave.amplitude):.2f} °"),
-        ("ripple of the hole axis", f"±{1e3 * wave.axis_amplitude:.1f} mm"),
-        ("ripple, from wave to wave", f"length ±{wave.spread:.2f} m, amplitude {_rate(wave.amplitude_drift)}"),
+        ("rippling", verdict(wave)),
+        ("ripple of the inclination", f"±{degrees(wave.amplitude):.3g} °"),
+        ("ripple of the hole axis", f"±{1e3 * wave.axis_amplitude:.3g} mm"),
+        ("ripple, from wave to wave", f"length ±{wave.spread:.2f} m"),
+        ("ripple, from stand to stand", f"amplitude {100 * wave.growth_over(BUILD_LENGTH):+.1f} %/{BUILD_LENGTH:g} m"),
+        ("ripple, at least half as large since", f"{wave.since:.0f} m"),
         ("modes of a wave", "\n".join(map(_words, wave.modes))),
     ]
+
+
+def verdict(wave: Rippling) -> str:
+    """Whether a run ends rippling, and with what wave."""
+    length = f"{wave.wavelength:.2f} m long"
+    return {
+        State.NONE: "no",
+        State.DYING: f"no, dying out over {wave.fading_length:.3g} m: waves {length}",
+        State.LASTING: f"yes: {length}",
+        State.GROWING: f"yes, growing: {length}",
+        State.STEERED: f"no: waves {length}, but force or weight change too often to tell whether they would last",
+    }[wave.state]
 
 
 def _words(stretch: Stretch) -> str:

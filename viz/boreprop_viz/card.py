@@ -5,7 +5,7 @@ from math import degrees
 
 import rerun as rr
 
-from boreprop.analysis.rippling import Rippling
+from boreprop.analysis.rippling import Rippling, State
 from boreprop.analysis.stability import critical_eta_pi
 from boreprop.case import Case
 from boreprop.core.assembly import eta_pi
@@ -45,9 +45,13 @@ def case_facts(case: Case) -> dict[str, str]:
     }
 
 
-def verdict(rippling: Rippling, case: Case) -> str:
+def in_words(wave: Rippling) -> str:
     """Whether a run ripples, in a line."""
-    if not rippling.ripples:
-        return "does not ripple"
-    waves = rippling.wavelength / case.bha.length_scale
-    return f"ripples: waves of {rippling.wavelength:.2f} m ({waves:.2f} ℓ₁), ±{degrees(rippling.amplitude):.2g}°"
+    waves = f"waves of {wave.wavelength:.2f} m, ±{degrees(wave.amplitude):.2g}°"
+    return {
+        State.NONE: "does not ripple",
+        State.DYING: f"does not ripple: {waves}, are dying out over {wave.fading_length:.3g} m",
+        State.LASTING: f"ripples: {waves}",
+        State.GROWING: f"ripples: {waves}, growing",
+        State.STEERED: f"does not ripple as far as can be told: {waves}, but force or weight change too often",
+    }[wave.state]

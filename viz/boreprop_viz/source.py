@@ -7,7 +7,7 @@ from time import monotonic
 
 import numpy as np
 
-from boreprop.analysis.rippling import AXIS_REACH
+from boreprop.analysis.axis import AXIS_REACH
 from boreprop.case import Case, InputError
 from boreprop.completion import case_of, complete
 from boreprop.core.hole import Survey
@@ -104,9 +104,9 @@ def _table(run: Run, rows: list[list[float]]) -> Trajectory:
 
 def stretches(runs: Iterable[Trajectory], case: Case, plan: Survey | None) -> Iterator[Stretch]:
     """Consecutive rows with the hole behind them; no more of it is kept than what is drawn of the next rows needs."""
-    l1 = case.bha.length_scale
-    reach = max(REACH_ABOVE_BHA * case.bha.stabilizer_positions[-1], BUILD_LENGTH + l1, 2 * AXIS_REACH * l1) + l1
-    hole = existing_hole(case.survey, reach, spacing=l1 / 25)
+    half = case.bha.half_length
+    reach = max(2 * REACH_ABOVE_BHA * half, BUILD_LENGTH + half, 2 * AXIS_REACH * half) + half
+    hole = existing_hole(case.survey, reach, spacing=half / 25)
     for rows in runs:
         length = rows["drilled_length"]
         hole = hole.followed_by(length, bit_positions(rows))
@@ -116,10 +116,10 @@ def stretches(runs: Iterable[Trajectory], case: Case, plan: Survey | None) -> It
 
 def hole_columns(length: Array, hole: Hole, case: Case, plan: Survey | None) -> dict[str, Array]:
     """What the hole behind the bit says: its build rate, its dogleg severity, rad/m, and what is planned, rad."""
-    l1 = case.bha.length_scale
+    half = case.bha.half_length
     columns = {
-        "build_rate": turning(hole, length, over=BUILD_LENGTH, chord=l1),
-        "dogleg_severity": np.abs(turning(hole, length, over=l1, chord=l1)),
+        "build_rate": turning(hole, length, over=BUILD_LENGTH, chord=half),
+        "dogleg_severity": np.abs(turning(hole, length, over=half, chord=half)),
     }
     if plan is not None:
         depth = case.survey.measured_depth[-1] + length

@@ -11,11 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 import rerun as rr
 
-from boreprop.analysis.rippling import AXIS_REACH, axis_ripple, find_rippling
+from boreprop.analysis.axis import AXIS_REACH, axis_ripple
+from boreprop.analysis.rippling import examine_rippling
 from boreprop.case import Case
 from boreprop.core.variables import BY_NAME
+from boreprop.results import Trajectory
 
-from .card import verdict
+from .card import in_words
 from .scene import AHEAD, Array, BitFrame, Hole, Shapes, bit_positions
 from .source import Source, Stretch
 from .style import (
@@ -39,7 +41,7 @@ from .style import (
 
 TIMELINE = "drilled_length_mm"
 RIPPLE = "plots/ripple/ripple"
-RECENT = 25.0  # ℓ₁ that show whether a hole ripples
+RECENT = 32.0  # half lengths of the BHA that show whether a hole ripples: ten of the longest waves
 BIT_LENGTH = 0.04  # of the drawn bit, over the length of the BHA
 
 
@@ -96,7 +98,7 @@ class RunStream:
         self.drilled: float | None = None  # how far the hole has been drawn, m
         self.rippled = -np.inf  # how far its ripple has, m
         self.modes: dict[str, float] = {}  # what each lane shows last
-        self.recent = np.empty((0, 2))  # drilled length and inclination of as much hole as the verdict is about
+        self.recent: Trajectory | None = None  # the rows that the verdict is about
         log_styles(track)
 
     def send(self, stretch: Stretch) -> None:
@@ -122,14 +124,22 @@ class RunStream:
             log(self.track, shapes)
         self.rippled = log_ripple(self.track, stretch, self.rippled)
         self.modes = log_modes(self.track, stretch, self.modes)
-        new = np.column_stack((stretch.rows["drilled_length"], stretch.rows["borehole_inclination"]))
-        recent = np.concatenate((self.recent, new))
-        self.recent = recent[recent[:, 0] >= self.drilled - RECENT * self.track.case.bha.length_scale]
+        self.recent = _latest(self.recent, stretch.rows, RECENT * self.track.case.bha.half_length)
 
     def verdict(self) -> str:
         """Whether the hole ripples where the bit is."""
-        length, inclination = self.recent.T
-        return verdict(find_rippling(length, inclination, self.track.case.bha.length_scale), self.track.case)
+        return in_words(examine_rippling(self.recent)) if self.recent else ""
+
+
+def _latest(before: Trajectory | None, new: Trajectory, length: float) -> Trajectory:
+    """The last rows of a run, over `length` m."""
+    columns = {
+        name: np.concatenate((before.columns[name], values)) if before else values
+        for name, values in new.columns.items()
+    }
+    drilled = columns["drilled_length"]
+    first = int(np.searchsorted(drilled, drilled[-1] - length))
+    return Trajectory({name: values[first:] for name, values in columns.items()}, new.case)
 
 
 # How it looks
@@ -433,9 +443,9 @@ def log_tilt_limits(track: Track, shapes: Shapes) -> None:
 
 def log_ripple(track: Track, stretch: Stretch, rippled: float) -> float:
     """The ripple of the hole, mm, in the drilled hole as far as its trend is known; returns how far that is."""
-    l1 = track.case.bha.length_scale
-    hole = stretch.hole.since(max(rippled, 0.0) - (AXIS_REACH + 1.0) * l1)
-    length, ripple = axis_ripple(hole.length, hole.position, l1)
+    width = track.case.bha.half_length
+    hole = stretch.hole.since(max(rippled, 0.0) - (AXIS_REACH + 1.0) * width)
+    length, ripple = axis_ripple(hole.length, hole.position, width)
     new = (length > rippled) & (length >= 0.0)
     send_curve(track, RIPPLE, length[new], 1000 * ripple[new])
     return float(length[-1]) if len(length) else rippled

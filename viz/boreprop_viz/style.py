@@ -104,7 +104,7 @@ PLOTS = {
         (ORANGE, SKY_BLUE, WHITE),
     ),
     "build_rate": Plot(
-        f"Build rate over {BUILD_LENGTH:g} m, dogleg severity over ℓ₁",
+        f"Build rate over {BUILD_LENGTH:g} m, dogleg severity over half the BHA",
         DEGREES_PER_BUILD_LENGTH,
         ("dogleg_severity", "build_rate"),
         (GREY, GREEN),
@@ -158,8 +158,8 @@ class Look:
         return replace(self, section=section_bounds(shown, around=float(np.ptp(shown, axis=0).max()) / 2))
 
 
-WAVES_LENGTH = 16.0  # ℓ₁ of hole in view at once: some eleven waves
-FULL_RIPPLE = 0.35  # ψ* ℓ₁, a little more than a hole has that ripples from limit to limit
+WAVES_LENGTH = 16.0  # half lengths of the BHA in view at once: some ten waves
+FULL_RIPPLE = 0.35  # ψ* times half the BHA, a little more than a hole has that ripples from limit to limit
 
 
 def look(runs: Sequence[Trajectory], *, whole: bool, section: Array) -> Look:
@@ -189,8 +189,8 @@ def look(runs: Sequence[Trajectory], *, whole: bool, section: Array) -> Look:
         frame=frame_bounds(reach),
         lateral=max(1.0, round_down(0.6 * reach / max(case.bit_diameter for case in cases))),
         newtons_per_metre=max(largest, 1.0) / (reach / 7),
-        window=WAVES_LENGTH * max(case.bha.length_scale for case in cases),
-        ripple=1000 * FULL_RIPPLE * max(case.bit.tilt_limit * case.bha.length_scale for case in cases),
+        window=WAVES_LENGTH * max(case.bha.half_length for case in cases),
+        ripple=1000 * FULL_RIPPLE * max(case.bit.tilt_limit * case.bha.half_length for case in cases),
         start=starts.pop() if len(starts) == 1 else None,
         ranges=ranges | {"bit_tilt": (-limit, limit)},
     )
@@ -206,8 +206,9 @@ def largest_force(run: Trajectory) -> float:
 
 
 def likely_force(case: Case) -> float:
-    """A force of the size that comes up in a case, N: half of F* ψ*, or the largest of the pads if that is more."""
-    return max(case.bha.force_scale * case.bit.tilt_limit / 2, *map(abs, case.schedule.rss_force))
+    """A force of the size that comes up in a case, N: what bends half the BHA by ψ*/2, or the largest of the pads."""
+    stiffness = 3 * case.bha.flexural_stiffness / case.bha.half_length**2
+    return max(stiffness * case.bit.tilt_limit / 2, *map(abs, case.schedule.rss_force))
 
 
 ROOM_FOR_LEGEND = 0.35  # for each curve, over the span of them all

@@ -1,31 +1,55 @@
-"""Is a hole rippling, and with what wave: from the inclination or the position of its axis over the drilled length."""
+"""Is a hole rippling, and with what wave: from the inclination over the drilled length.
 
+A hole ripples if, at the end of the run and while force and weight are steady, its inclination swings in waves that
+keep themselves up: at least five wavelengths of them, none longer than the BHA (to be exact, 0.9 times as long as the
+distance from the bit to the last stabilizer), of ±0.001° or more, that lose no more than 3 % of their size from wave to
+wave. The waves need not be equal: chaotic ripples count.
+
+While no contact and no saturation changes, the equations are linear, and a wave grows or dies but cannot last. So a
+wave that lasts changes the mode of the BHA each time; one that does not, and falls however slowly, is dying out.
+
+It is a statement about the inclination that the run ends with: gravity moves and ends ripples as that changes.
+"""
+
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from itertools import groupby
-from math import nan
+from math import exp, inf, log, nan
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
+from ..core.assembly import BottomHoleAssembly
 from ..results import Trajectory
+from .waves import (
+    FEWEST_ROWS,
+    FEWEST_WAVES,
+    Floats,
+    LastWaves,
+    large_since,
+    likeness,
+    mean_over,
+    wavelength_in_rows,
+    without_trend,
+)
 
-POINTS = 64  # samples per ℓ₁ that the signal is resampled to
-PHASES = 64  # samples of a wave
-TREND = 1.0  # ℓ₁: width of the Gaussian mean that is the trend; of a wave of 1.4 ℓ₁ it keeps e⁻¹⁰
-REACH = 3.0  # widths: what the mean sees to each side
-WINDOW = 12.0  # ℓ₁ at the end of the run that are looked at: some nine waves
-SHORTEST, LONGEST = 0.25, 3.0  # ℓ₁: waves that are looked for
-SAME_PEAK = 0.9  # of the highest peak of the autocorrelation: a peak as high, at a shorter lag, is the wavelength
-FUNDAMENTAL = 0.25  # wavelengths: Gaussian that leaves a wave two zeros; of its third harmonic it keeps e⁻¹¹
-FEWEST_WAVES = 4
-SMALLEST_AMPLITUDE = np.radians(0.01)
-LARGEST_SPREAD = 0.1  # of the wavelengths, over their mean
-LEAST_ALIKE = 0.7  # share of the mean square that is the mean wave, as large as it is each time
-LEAST_KEPT = 0.9  # of its size, from one wave to the next
-AXIS_POINTS = 40  # samples per ℓ₁ of the axis
-AXIS_REACH = 4.0  # ℓ₁ of hole that the trend of the axis needs to each side
+LONGEST = 3.0  # half lengths of the BHA: the longest wave that is looked for
+SHORTER = 4.0  # each window is so much shorter than the one before: small short waves are seen on long ones
+SMALLEST_AMPLITUDE = np.radians(0.001)  # far above what the integrator leaves of a straight hole, 1e-10°
+ALIKE = 0.5  # autocorrelation from which a signal is a wave
+ALIKE_SWITCHING = 0.2  # the same where each wave changes the mode, as no noise does: chaotic ripples have 0.25 to 0.6
+NOISE = 4.5  # standard deviations, 1/√rows: white noise does not reach it at any of the lags that are tried
+STILL_ALIKE = 0.8  # of ALIKE: what the last four waves must have, or the wave is over
+AT_THE_END = 4  # waves that tell whether a wave is still there, how large it is and whether it changes modes
+MOST_WAVES = 10  # at the end whose size is followed, …
+MOST_OF_LONGEST = 2.0  # … or as many as this many longest waves hold, if that is more: ripples beat
+FALLING = 0.03  # of the size, per wave: what falls faster dies out, half of it within 23 waves
+FALLING_IN_ONE_MODE = 1e-4  # the same for a wave that changes no mode: it follows an exponential this well
+HALF = 0.5  # of the size it has at the end: since when a wave has been there
+INPUTS = ("rss_force", "active_weight_on_bit")  # while these are steady, a wave keeps itself up
+PHASES = 64  # of a wave, for its modes
 
 
 class Stretch(NamedTuple):
@@ -36,156 +60,271 @@ class Stretch(NamedTuple):
     share: float
 
 
+class State(StrEnum):
+    """What becomes of a wave at the end of a run."""
+
+    NONE = "none"  # there is no wave
+    DYING = "dying"
+    LASTING = "lasting"
+    GROWING = "growing"
+    STEERED = "steered"  # a wave, but force or weight change too often to tell whether it would last
+
+
 @dataclass(frozen=True)
 class Rippling:
-    """Whether a run ends rippling, and its wave; nan and empty if it does not ripple or nobody looked.
+    """The wave that a run ends with; nan and empty if there is none, or nobody looked.
 
     Parameters
     ----------
-    ripples
-        True if the inclination ends in waves of equal length and shape that do not die out.
+    state
+        What becomes of it.
     wavelength
-        Mean of the last waves, m.
+        m.
     amplitude
-        Half the difference between highest and lowest inclination of the last waves, their trend removed, rad.
+        Half the height of the mean of the last waves of the inclination, rad.
+    growth
+        Change of the logarithm of the amplitude along the hole, 1/m.
+    since
+        The drilled length from which on the wave has had at least half its present size, m.
     spread
         Standard deviation of the last wavelengths, m.
-    amplitude_drift, inclination_drift
-        Change of the amplitude and of the trend of the inclination along the last waves, rad/m.
+    inclination_drift
+        Change of the inclination that the waves are about, rad/m.
+    switching
+        Whether contact or saturation change in each of the last waves; None if the modes are not known.
     axis_amplitude
-        Half the width of the wave of the hole axis, its trend removed, m.
+        Half the height of the mean of the last waves of the hole axis, m.
     modes
         The modes of one wave in turn, from where the inclination rises through its trend: which stabilizer touches
         which wall (1 lower, −1 upper, 0 free), and at which limit the tilt is. What most of the last waves agree on.
     """
 
-    ripples: bool
+    state: State = State.NONE
     wavelength: float = nan
     amplitude: float = nan
+    growth: float = nan
+    since: float = nan
     spread: float = nan
-    amplitude_drift: float = nan
     inclination_drift: float = nan
+    switching: bool | None = None
     axis_amplitude: float = nan
     modes: tuple[Stretch, ...] = ()
 
+    @property
+    def ripples(self) -> bool:
+        """Whether the wave lasts or grows."""
+        return self.state in (State.LASTING, State.GROWING)
+
+    @property
+    def fading_length(self) -> float:
+        """The drilled length over which a dying wave falls to a tenth, m."""
+        return log(10.0) / -self.growth if self.growth < 0 else inf
+
+    def growth_over(self, length: float) -> float:
+        """By what part the amplitude grows over a drilled length, m; falling is negative."""
+        return exp(min(self.growth * length, 700.0)) - 1.0
+
+
+@dataclass(frozen=True)
+class _Rows:
+    """Of a run: drilled length, m, inclination, rad, and modes, whole numbers, (rows, k), if they are known."""
+
+    length: Floats
+    inclination: Floats
+    modes: NDArray[np.int_] | None
+
+    def after(self, first: int) -> "_Rows":
+        """Those from `first` on."""
+        return _Rows(self.length[first:], self.inclination[first:], None if self.modes is None else self.modes[first:])
+
+
+_Found = tuple[Rippling, LastWaves | None]
+_NOTHING: _Found = Rippling(), None
+
+
+def longest_wave(bha: BottomHoleAssembly) -> float:
+    """The longest wave that is looked for in the hole of a BHA, m."""
+    return LONGEST * bha.half_length
+
 
 def find_rippling(
-    drilled_length: NDArray[np.float64], inclination: NDArray[np.float64], length_scale: float
+    drilled_length: Floats,
+    inclination: Floats,
+    longest: float = inf,
+    *,
+    modes: NDArray[np.int_] | None = None,
+    inputs: Sequence[Floats] = (),
 ) -> Rippling:
-    """Look for a self-sustained wave at the end of a run.
+    """The wave that a run ends with; of several that last, the one with the largest amplitude.
 
-    The inclination less its trend is cut into waves as long as its autocorrelation says. They must be of equal length
-    and of one shape, and keep their size. Of that shape nothing is asked: it may cross its trend more than twice.
+    Waves are found that are at least eight rows long and repeat five times.
 
     Parameters
     ----------
     drilled_length
-        m, increasing, shape (rows,).
+        m, not decreasing, shape (rows,).
     inclination
         Of the borehole, rad, shape (rows,).
-    length_scale
-        ℓ₁, m; rippling has a wavelength of that order.
+    longest
+        Longest wave that is looked for, m, see `longest_wave`.
+    modes
+        Contact of each stabilizer and saturation of the tilt, whole numbers, shape (rows, k). Without them a wave that
+        dies out very slowly is called lasting.
+    inputs
+        Steering force and weight on bit, shape (rows,) each. Without them they are taken to be steady.
     """
-    return _find(drilled_length, inclination, length_scale)[0]
+    return _find(drilled_length, inclination, longest, modes, inputs)[0]
 
 
-def examine_rippling(run: Trajectory, length_scale: float) -> Rippling:
-    """`find_rippling` of a whole run, with the wave of its axis and the modes of a wave; `length_scale` is ℓ₁, m.
+def examine_rippling(run: Trajectory, longest: float | None = None) -> Rippling:
+    """`find_rippling` of a whole run, with the wave of its axis and the modes of a wave.
+
+    Parameters
+    ----------
+    run
+        Its force and weight are taken to be steady where it has no columns of them.
+    longest
+        Longest wave that is looked for, m; without it, the `longest_wave` of the run's case.
 
     Raises
     ------
     InputError
         If the run lacks a column of inclination, position, contact or saturation.
     """
+    if longest is None:
+        longest = longest_wave(run.case.bha) if run.case else inf
     length = run["drilled_length"]
-    found, starts = _find(length, run["borehole_inclination"], length_scale)
-    if not found.ripples:
-        return found
+    modes = modes_of(run)
     position = np.column_stack((run["displacement"], run["true_vertical_depth"]))
-    at, axis = axis_ripple(length, position, length_scale)
-    whole = starts[(starts >= at[0]) & (starts <= at[-1])]
-    modes = np.column_stack((run.stack("stabilizer_contact"), run["bit_tilt_saturation"])).astype(int)
+    inputs = [run[name] for name in INPUTS if name in run.columns]
+    found, waves = _find(length, run["borehole_inclination"], longest, modes, inputs)
+    if waves is None:
+        return found
+    starts = waves.starts()
     return replace(
         found,
-        axis_amplitude=_height(at, axis, whole) / 2,
-        modes=_modes(length, modes, starts),
+        spread=float(np.std(np.diff(starts))) if len(starts) > 1 else nan,
+        axis_amplitude=_axis_amplitude(length, position, waves),
+        modes=_modes(length, modes, starts) if len(starts) > 1 else (),
     )
+
+
+def modes_of(run: Trajectory) -> NDArray[np.int_]:
+    """Contact of each non-ideal stabilizer and saturation of the tilt, shape (rows, n)."""
+    return np.column_stack((run.stack("stabilizer_contact"), run["bit_tilt_saturation"])).astype(int)
 
 
 def _find(
-    drilled_length: NDArray[np.float64], inclination: NDArray[np.float64], length_scale: float
-) -> tuple[Rippling, NDArray[np.float64]]:
-    """See `find_rippling`; also where the last waves start and the last one ends, m."""
-    nothing = Rippling(False), np.empty(0)
-    xi = drilled_length / length_scale
-    one_sided = int(REACH * TREND * POINTS)  # at the ends the mean sees one side only
-    samples = int(min(xi[-1] - xi[0], WINDOW + 2 * REACH * TREND) * POINTS)
-    if samples < 3 * one_sided:
-        return nothing
-    grid = xi[-1] - np.arange(samples)[::-1] / POINTS
-    signal = np.interp(grid, xi, inclination)
-    trend = gaussian_filter1d(signal, TREND * POINTS, truncate=REACH)
-    within = slice(one_sided, samples - one_sided)
-    wave = (signal - trend)[within]
-    if np.ptp(wave) / 2 < SMALLEST_AMPLITUDE:
-        return nothing
-    fundamental = gaussian_filter1d(signal - trend, FUNDAMENTAL * _period(wave))[within]
-    grid, trend = grid[within], trend[within]
-    upward = np.flatnonzero((fundamental[:-1] < 0) & (fundamental[1:] >= 0))
-    starts = grid[upward] - fundamental[upward] / (fundamental[upward + 1] - fundamental[upward]) / POINTS
-    lengths = np.diff(starts)
-    if len(lengths) < FEWEST_WAVES or np.std(lengths) > LARGEST_SPREAD * np.mean(lengths):
-        return nothing
-    waves = _cut(grid, wave, starts)
-    mean = waves.mean(axis=0)
-    sizes = waves @ mean / (mean @ mean)  # of each wave, one on average
-    early, late = (np.mean(half) for half in np.array_split(sizes, 2))
-    alike = 1 - np.sum((waves - np.outer(sizes, mean)) ** 2) / np.sum(waves**2)
-    amplitude = _height(xi, inclination - np.interp(xi, grid, trend), starts) / 2
-    if amplitude < SMALLEST_AMPLITUDE or alike < LEAST_ALIKE or late < LEAST_KEPT ** (len(sizes) / 2) * early:
-        return nothing
-    middles = (starts[:-1] + starts[1:]) / 2
-    found = Rippling(
-        True,
-        wavelength=float(np.mean(lengths)) * length_scale,
-        amplitude=float(amplitude),
-        spread=float(np.std(lengths)) * length_scale,
-        amplitude_drift=_slope(middles, np.ptp(mean) / 2 * sizes) / length_scale,
-        inclination_drift=_slope(grid, trend) / length_scale,
+    length: Floats,
+    inclination: Floats,
+    longest: float,
+    modes: NDArray[np.int_] | None,
+    inputs: Sequence[Floats],
+) -> _Found:
+    """See `find_rippling`; also the waves themselves."""
+    changed = np.zeros(max(len(length) - 1, 0), dtype=bool)
+    for values in inputs:
+        changed |= np.diff(values) != 0
+    moved = np.append(np.diff(length) > 0, True)[: len(length)]  # while the bit stands still, the last row counts
+    steady = int(np.count_nonzero(moved[: int(np.flatnonzero(changed)[-1]) + 1])) if changed.any() else 0
+    rows = _Rows(length[moved], inclination[moved], None if modes is None else modes[moved])
+    found = _search(rows.after(steady), longest)
+    if found[0].state is not State.NONE or not steady:
+        return found
+    rippling, waves = _search(rows, longest)
+    return (replace(rippling, state=State.STEERED), waves) if rippling.ripples else _NOTHING
+
+
+def _search(rows: _Rows, longest: float) -> _Found:
+    """The wave in windows at the end of some rows, from one that holds the longest waves down to one of a few rows."""
+    best, fewest = _NOTHING, int(FEWEST_WAVES * FEWEST_ROWS)
+    if len(rows.length) < fewest:
+        return best
+    spacing = (rows.length[-1] - rows.length[0]) / (len(rows.length) - 1)
+    count = int(min(len(rows.length), FEWEST_WAVES * longest / spacing + 1))
+    followed = MOST_OF_LONGEST * count * spacing / FEWEST_WAVES
+    while count >= fewest:
+        found = _wave(rows, spacing, count, followed)
+        best = max(best, found, key=_weight)
+        count = int(count / SHORTER)
+    rippling, waves = best
+    if waves is None:
+        return best
+    least = HALF * float(waves.sizes[-AT_THE_END:].min())
+    return replace(rippling, since=large_since(rows.length, rows.inclination, waves.wavelength, least)), waves
+
+
+def _weight(found: _Found) -> tuple[bool, bool, float]:
+    """Which wave counts: one that lasts rather than one that dies, a large rather than a small one."""
+    rippling, _ = found
+    there = rippling.state is not State.NONE
+    return rippling.ripples, there, rippling.amplitude if there else 0.0
+
+
+def _wave(rows: _Rows, spacing: float, count: int, followed: float) -> _Found:
+    """The wave in the last `count` rows, followed back over `followed` m, or over ten waves if that is more."""
+    length, inclination = rows.length, rows.inclination
+    grid = length[-1] - spacing * np.arange(count)[::-1]
+    signal = without_trend(grid, np.interp(grid, length, inclination))
+    if np.abs(signal).max() < SMALLEST_AMPLITUDE:
+        return _NOTHING
+    period, alike = wavelength_in_rows(signal)
+    enough = max(ALIKE, NOISE / np.sqrt(count - period)) if alike else inf
+    if alike < enough and (rows.modes is None or alike < ALIKE_SWITCHING):
+        return _NOTHING
+    wavelength = float(period * spacing)
+    waves = LastWaves.of(length, inclination, wavelength, max(MOST_WAVES, int(followed / wavelength)))
+    if waves.count < FEWEST_WAVES - 1 or waves.sizes[-1] <= 0:
+        return _NOTHING
+    irregular = max(likeness(waves.deviation, period), ALIKE_SWITCHING)
+    amplitude = waves.height() / 2 / irregular**0.5  # waves that differ average out
+    if amplitude < SMALLEST_AMPLITUDE:
+        return _NOTHING
+    switching = _switching(rows, waves)
+    if not switching and (alike < enough or not _still_there(waves, period)):
+        return _NOTHING
+    growth, error = waves.growth()
+    limit = FALLING_IN_ONE_MODE if switching is False else FALLING
+    rippling = Rippling(
+        State.DYING if growth + error < -limit else State.GROWING if growth - error > limit else State.LASTING,
+        wavelength,
+        amplitude,
+        growth / wavelength,
+        inclination_drift=float(np.polyfit(waves.x - waves.x[-1], waves.trend, 1)[0]),
+        switching=switching,
     )
-    return found, starts * length_scale
+    return rippling, waves
 
 
-def _period(wave: NDArray[np.float64]) -> float:
-    """Samples between the repeats of `wave`: the first high peak of its autocorrelation."""
-    lags = np.arange(int(SHORTEST * POINTS), int(LONGEST * POINTS) + 1)
-    alike = np.array([np.mean(wave[lag:] * wave[:-lag]) for lag in lags])
-    peaks = np.flatnonzero((alike[1:-1] >= alike[:-2]) & (alike[1:-1] > alike[2:])) + 1
-    high = peaks[alike[peaks] >= SAME_PEAK * alike[peaks].max(initial=0.0)]
-    return float(lags[high[0] if len(high) else -1])
+def _switching(rows: _Rows, waves: LastWaves) -> bool | None:
+    """Whether contact or saturation change in each of the last waves; None if the modes are not known."""
+    if rows.modes is None:
+        return None
+    modes = rows.modes[np.searchsorted(rows.length, waves.x)]
+    changes = np.bincount(waves.wave[1:], (np.diff(modes, axis=0) != 0).any(axis=1), waves.count)
+    return bool(np.median(changes[-AT_THE_END:]) >= 1)
 
 
-def _cut(at: NDArray[np.float64], values: NDArray[np.float64], starts: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The waves of `values` between `starts`, shape (len(starts) − 1, PHASES)."""
-    phases = np.arange(PHASES) / PHASES
-    return np.interp(starts[:-1, None] + np.diff(starts)[:, None] * phases, at, values)
+def _still_there(waves: LastWaves, period: float) -> bool:
+    """Whether the last four waves alone are a wave."""
+    late = waves.deviation[waves.place >= waves.count - AT_THE_END]
+    enough = STILL_ALIKE * max(ALIKE, NOISE / max(len(late) - period, 1.0) ** 0.5)
+    return bool(likeness(late, period) >= enough)
 
 
-def _height(at: NDArray[np.float64], values: NDArray[np.float64], starts: NDArray[np.float64]) -> float:
-    """Between the highest and the lowest of the rows of the waves; nan without any.
-
-    Rows as they are: a wave may have steps, whose edges resampling would round.
-    """
-    within = values[(at >= starts[0]) & (at <= starts[-1])] if len(starts) else starts
-    return float(np.ptp(within)) if len(within) else nan
-
-
-def _slope(x: NDArray[np.float64], y: NDArray[np.float64]) -> float:
-    """Of the straight line that fits best."""
-    return float(np.polynomial.Polynomial.fit(x, y, 1).deriv()(x[0]))
+def _axis_amplitude(length: Floats, position: Floats, waves: LastWaves) -> float:
+    """Half the height of the wave of the axis, across its mean over one wavelength, m."""
+    moved = np.append(np.diff(length) > 0, True)
+    x, (sideways, down) = length[moved], position[moved].T
+    inside, trend = mean_over(x, sideways + 1j * down, waves.wavelength)
+    if len(trend) < 2:
+        return nan
+    away, forward = (sideways + 1j * down)[inside] - trend, np.gradient(trend)
+    across = np.imag(forward * np.conj(away)) / np.abs(forward)
+    return waves.height(np.interp(waves.x, x[inside], across)) / 2
 
 
-def _modes(length: NDArray[np.float64], modes: NDArray[np.int_], starts: NDArray[np.float64]) -> tuple[Stretch, ...]:
+def _modes(length: Floats, modes: NDArray[np.int_], starts: Floats) -> tuple[Stretch, ...]:
     """The modes of a wave in turn: at each phase the one that most of the rows nearest in phase, one a wave, are in."""
     rows = (length >= starts[0]) & (length < starts[-1])
     phase = np.interp(length[rows], starts, np.arange(len(starts))) % 1.0
@@ -198,44 +337,3 @@ def _modes(length: NDArray[np.float64], modes: NDArray[np.int_], starts: NDArray
         k, rest = stretches.pop()
         stretches[0] = k, stretches[0][1] + rest
     return tuple(Stretch((*map(int, kinds[k][:-1]),), int(kinds[k][-1]), count / PHASES) for k, count in stretches)
-
-
-def axis_ripple(
-    length: NDArray[np.float64], position: NDArray[np.float64], length_scale: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """How far the axis of a hole lies from its smooth trend, to the high side.
-
-    The trend is a mean over the neighbourhood whose weights, a Gaussian of ℓ₁ times a parabola, leave straight and
-    evenly curved holes as they are; of a wave of 1.4 ℓ₁ it keeps less than 10⁻³.
-
-    Parameters
-    ----------
-    length
-        m, increasing, shape (N,).
-    position
-        Of the axis in the vertical plane, horizontal and down, m, shape (N, 2).
-    length_scale
-        ℓ₁, m.
-
-    Returns
-    -------
-    length, ripple
-        At whole multiples of a fortieth of ℓ₁, as far as the hole goes on for `AXIS_REACH` ℓ₁ to both sides, m, shape
-        (k,), perhaps empty.
-    """
-    spacing = length_scale / AXIS_POINTS
-    first, last = np.ceil(length[0] / spacing), np.floor(length[-1] / spacing)
-    at = spacing * np.arange(first, last + 1)
-    u = np.arange(-AXIS_REACH * AXIS_POINTS, AXIS_REACH * AXIS_POINTS + 1) / AXIS_POINTS
-    if len(at) < len(u):
-        return np.empty(0), np.empty(0)
-    gaussian = np.exp(-(u**2) / 2)
-    weights = gaussian * (np.sum(gaussian * u**4) - np.sum(gaussian * u**2) * u**2)  # so the sum of u² weights is zero
-    weights /= weights.sum()
-    axis = np.column_stack([np.interp(at, length, coordinate) for coordinate in position.T])
-    trend = np.column_stack([np.convolve(coordinate, weights, mode="valid") for coordinate in axis.T])
-    within = slice(len(u) // 2, len(at) - len(u) // 2)
-    away = axis[within] - trend
-    forward = np.gradient(trend, axis=0) if len(trend) > 1 else axis[[-1]] - axis[[0]]
-    forward /= np.linalg.norm(forward, axis=1)[:, None]
-    return at[within], away[:, 0] * forward[:, 1] - away[:, 1] * forward[:, 0]

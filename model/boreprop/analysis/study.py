@@ -44,6 +44,7 @@ from .design import Study as Study
 from .design import grid as grid
 from .design import sample as sample
 from .design import vary as vary
+from .rippling import State
 from .workers import WorkerLost, work
 
 if TYPE_CHECKING:
@@ -58,7 +59,7 @@ WRITING = 0.02  # share of the time that goes into writing the file
 
 def key_figures(case: Case) -> dict[str, float]:
     """A simulation in a dozen numbers, SI units: the `boreprop.summary.Summary` of a run, one name for each number."""
-    summary = summarize(simulate(case, engine=best_engine()), case.bha.length_scale)
+    summary = summarize(simulate(case, engine=best_engine()))
     wave = summary.rippling
     stabilizers = list(enumerate(zip(summary.largest_contact_force, summary.contact_share, strict=True), 1))
     return {
@@ -69,8 +70,10 @@ def key_figures(case: Case) -> dict[str, float]:
         **{f"contact_share[{i}]": share for i, (_, share) in stabilizers},
         "saturation_share": summary.saturation_share,
         "ripples": wave.ripples,
-        "wavelength": wave.wavelength,
-        "amplitude": wave.amplitude,
+        "wavelength": wave.wavelength if wave.ripples else nan,
+        "amplitude": wave.amplitude if wave.ripples else nan,
+        "growth": wave.growth,
+        "state": list(State).index(wave.state),
     }
 
 
@@ -84,6 +87,8 @@ FIGURES = {  # unit and meaning
     "ripples": ("", "1 if it ends rippling, else 0"),
     "wavelength": ("m", "ripple: wavelength"),
     "amplitude": ("rad", "ripple: amplitude of the inclination"),
+    "growth": ("1/m", "ripple: change of the logarithm of the amplitude"),
+    "state": ("", "ripple: " + ", ".join(f"{number} {state}" for number, state in enumerate(State))),
 }
 
 

@@ -3,52 +3,68 @@
 Straight drilling and rippling coexist: which of the two it comes to depends on the hole there is. `critical_dogleg`
 asks that of a family of holes,
 
-    straight at the inclination of the case's hole ℓ₁ behind the bit, then turning evenly by an angle, its dogleg, over
-    the last ℓ₁ before the bit,
+    straight at the inclination of the case's hole half a BHA behind the bit, then turning evenly by an angle, its
+    dogleg, over that half of the BHA before the bit,
 
-and `hysteresis` of the holes that a system leaves to itself while a parameter changes.
+and `hysteresis` of a system whose weight or clearance changes slowly. Half the BHA, whichever of its blades touch, is
+the length that everything here is measured in.
 """
 
 from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import count, product
-from math import inf, pi, radians
-from typing import Literal
+from itertools import product
+from math import inf, nan, pi, radians
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..case import Case
-from ..core.assembly import check_number
+from ..core.assembly import check_number, eta_pi
 from ..core.hole import Survey
 from ..core.propagation import RELATIVE_TOLERANCE
 from ..core.variables import OUTPUTS, scalar_names
 from ..results import Trajectory
 from ..simulation import SimulationError, best_engine, follow, start
 from .design import vary
-from .rippling import REACH, SMALLEST_AMPLITUDE, TREND, WINDOW, Rippling, examine_rippling, find_rippling
+from .rippling import Rippling, State, examine_rippling, find_rippling, longest_wave, modes_of
+from .stability import critical_eta_pi
+from .waves import without_trend
 from .workers import WorkerLost, work
 
-ROWS = 40  # per ℓ₁
-LOOK = 3.0  # ℓ₁ between two looks at whether it has settled
-EARLIEST = WINDOW + 2 * REACH * TREND + 6.0  # ℓ₁ before a ripple is believed: what `find_rippling` sees, and the start
-LONGEST = 150.0  # ℓ₁ before the end is taken for settled
-LARGEST_CHANGE = 0.01  # of the amplitude over the waves looked at: what falls faster may yet die out
+ROWS = 50  # per half BHA, …
+LARGEST_INTERVAL = 0.1  # … but no further apart than this, m: a wave of near-bit stabilizers is a metre long
+FIRST_LOOK = 8.0  # half BHAs
+LATER = 1.25  # each look at whether a run has settled comes after so many times the length of the one before
+EARLIEST = 30.0  # half BHAs before a ripple is believed: of those at 20, one in ten is an echo of the start
+LONGEST = 120.0  # half BHAs before it is taken for settled
+FALLING, RISING = (
+    -0.002,
+    0.01,
+)  # change of the size per wave: what falls faster may yet die out, what rises is the start
+STRAIGHT = radians(0.003)  # what a straight hole keeps of the start …
+STRAIGHT_OVER = 4.0  # … over so many half BHAs
 LARGEST_DOGLEG = radians(10.0)
 SCAN = 6  # doglegs tried first, each half of the one before
+SMALL = 11  # the same where the straight hole ripples by itself: does it after the smallest turns, too?
 TOLERANCE = 0.02
 FINEST = radians(0.001)  # what tips at less is tipped by any dogleg
+END = 0.01  # to which part of the parameter the ends of a hysteresis loop are found
+
+Bracket = tuple[float, float]
 
 
 def drill_until_settled(case: Case, *, relative_tolerance: float = RELATIVE_TOLERANCE) -> tuple[Trajectory, Rippling]:
     """Drill a case under its first steering force until it plainly ripples or plainly does not.
 
-    It does not when what is left of a wave, over more than the length of the BHA, is smaller than 0.01° and falls. It
-    does when the size of the waves in the last 12 ℓ₁ changes by less than 1 %; so near the edge of what can last, a
-    wave that takes hundreds of ℓ₁ to die out counts as a ripple. A run of 150 ℓ₁ is cut off: it ripples if its waves
-    still grow.
+    It does not when over two BHAs less than 0.003° is left of the start, or when its wave dies out and changes no
+    contact and no saturation any more, so nothing can keep it up. It does when its waves last, lose less than 0.2 %
+    from one to the next, and at least 15 lengths of the BHA are drilled. After 60 lengths it does unless
+    its waves still fall by more.
+
+    In an inclined hole gravity changes the inclination on the way: the answer is for where it starts.
 
     Returns
     -------
@@ -60,39 +76,40 @@ def drill_until_settled(case: Case, *, relative_tolerance: float = RELATIVE_TOLE
     SimulationError
         If the integrator cannot go on.
     """
-    bha, l1 = case.bha, case.bha.length_scale
+    half = case.bha.half_length
+    interval = min(half / ROWS, LARGEST_INTERVAL)
     drilling = start(case, best_engine(), relative_tolerance)
-    names = scalar_names(OUTPUTS, len(bha.stabilizer_positions))
-    rows = np.empty((0, len(names)))
+    names = scalar_names(OUTPUTS, len(case.bha.stabilizer_positions))
+    rows, target = np.empty((0, len(names))), FIRST_LOOK * half
     while True:
-        more = np.empty((int(LOOK * ROWS), len(names)))
-        lengths = np.arange(len(rows), len(rows) + len(more)) * l1 / ROWS
+        more = np.empty((int(target / interval) + 1 - len(rows), len(names)))
+        lengths = interval * np.arange(len(rows), len(rows) + len(more), dtype=np.float64)
         force = np.full(len(more), case.schedule.rss_force[0])
         failure = follow(drilling, lengths, force, case.active_weight_on_bit, np.arange(len(more), dtype=np.intc), more)
         if failure:
             raise SimulationError(f"after {drilling.drilled_length:g} m: {failure}")
         rows = np.concatenate((rows, more))
         run = Trajectory(dict(zip(names, rows.T, strict=True)), case)
-        if _at_rest(run, bha.stabilizer_positions[-1] + LOOK * l1):
-            return run, Rippling(False)
-        if len(rows) >= EARLIEST * ROWS:
-            found = find_rippling(run["drilled_length"], run["borehole_inclination"], l1)
-            change = found.amplitude_drift * WINDOW * l1 / found.amplitude  # nan, neither large nor small, without one
-            if abs(change) < LARGEST_CHANGE:
-                return run, examine_rippling(run, l1)
-            if len(rows) >= LONGEST * ROWS:
-                return run, examine_rippling(run, l1) if change > 0 else Rippling(False)
+        length, inclination = run["drilled_length"], run["borehole_inclination"]
+        wave = find_rippling(length, inclination, longest_wave(case.bha), modes=modes_of(run))
+        if _has_settled(run, wave, half):
+            return run, examine_rippling(run) if wave.ripples else wave
+        if target >= LONGEST * half:
+            falls = wave.growth * wave.wavelength < FALLING
+            return run, replace(wave, state=State.DYING) if falls else examine_rippling(run)
+        target = min(LATER * target, LONGEST * half)
 
 
-def _at_rest(run: Trajectory, length: float) -> bool:
-    """Whether over the last `length`, m, waves have been small and falling."""
-    recent = run["drilled_length"] > run["drilled_length"][-1] - length
-    if recent.all():
-        return False
-    at, inclination = run["drilled_length"][recent], run["borehole_inclination"][recent]
-    wave = inclination - np.polynomial.Polynomial.fit(at, inclination, 2)(at)
-    early, late = (float(np.std(half)) for half in np.array_split(wave, 2))
-    return late <= early and late < SMALLEST_AMPLITUDE
+def _has_settled(run: Trajectory, wave: Rippling, half: float) -> bool:
+    """Whether more of a run would not tell more of it."""
+    drilled = run["drilled_length"][-1]
+    if wave.ripples:
+        return drilled >= EARLIEST * half and FALLING < wave.growth * wave.wavelength < RISING
+    if wave.state is State.NONE:
+        recent = run["drilled_length"] >= drilled - STRAIGHT_OVER * half
+        left = without_trend(run["drilled_length"][recent], run["borehole_inclination"][recent])
+        return float(np.ptp(left)) / 2 < STRAIGHT
+    return wave.switching is False
 
 
 # From straight holes with a dogleg
@@ -105,9 +122,9 @@ class CriticalDogleg:
     Parameters
     ----------
     angle
-        The turn of the hole over the last ℓ₁, rad: half-way between the smallest that tips, of those tried, and the
-        next smaller one. 0 if the straight hole ripples by itself or as soon as it turns by 0.001°, inf if no turn up
-        to the limit tips it.
+        The turn of the hole over the last half of the BHA, rad: half-way between the smallest that tips, of those
+        tried, and the next smaller one. 0 if the straight hole ripples by itself or as soon as it turns by 0.001°, inf
+        if no turn up to the limit tips it.
     curvature
         The same as a dogleg severity, rad/m.
     monotonic
@@ -123,8 +140,13 @@ class CriticalDogleg:
 
 
 def with_dogleg(case: Case, turn: float) -> Case:
-    """`case` with a straight hole that turns by `turn`, rad, over the last ℓ₁; positive builds."""
-    return replace(case, survey=_bent(_inclination_behind(case), turn, case.bha.length_scale))
+    """`case` with a straight hole that turns by `turn`, rad, over the last half of the BHA; positive builds.
+
+    The inclination of the straight hole is that of the case's hole half a BHA behind the bit.
+    """
+    half, depth = case.bha.half_length, case.survey.measured_depth
+    behind = float(np.interp(depth[-1] - half, depth, case.survey.inclination))
+    return replace(case, survey=Survey((0.0, half), (behind, behind + float(turn))))  # numpy's own slow the core down
 
 
 def critical_dogleg(
@@ -137,14 +159,15 @@ def critical_dogleg(
 ) -> CriticalDogleg:
     """The smallest dogleg in the existing hole from which a system ripples.
 
-    The straight hole and turns of `limit`, a half of it, … to 1/32 are tried first; the interval below the smallest
-    that tips is then halved (in proportion). In an inclined hole gravity disturbs even the straight one, and the
-    inclination changes while it settles; the answer is for where it starts.
+    The straight hole and turns of `limit`, a half of it, … to 1/32 are tried first, and down to 1/1024 where the
+    straight hole ripples by itself; the interval below the smallest that tips is then halved (in proportion). In an
+    inclined hole gravity disturbs even the straight one, and the inclination changes while it settles; the answer is
+    for where it starts.
 
     Parameters
     ----------
     case
-        The system, its weight on bit, its first steering force, and the inclination of its hole ℓ₁ behind the bit.
+        The system, its weight on bit, its first steering force, and the inclination of its hole behind the bit.
     side
         1: the hole turns up (builds), −1: down (drops).
     limit
@@ -161,8 +184,7 @@ def critical_dogleg(
     SimulationError
         If the integrator cannot go on.
     """
-    check_number("limit", limit, above=0.0, at_most=pi / 2)
-    check_number("tolerance", tolerance, above=0.0, at_most=1.0)
+    check_limits(limit, tolerance)
     tried: dict[float, bool] = {}
 
     def tips(turn: float) -> bool:
@@ -170,8 +192,8 @@ def critical_dogleg(
         tried[turn] = drill_until_settled(bent, relative_tolerance=relative_tolerance)[1].ripples
         return tried[turn]
 
-    for turn in (0.0, *(limit / 2**k for k in reversed(range(SCAN)))):
-        tips(turn)
+    for k in range(SMALL if tips(0.0) else SCAN):
+        tips(limit / 2**k)
     high = min((turn for turn, ripples in tried.items() if ripples), default=inf)
     low = max((turn for turn in tried if turn < high), default=0.0)
     angle = high
@@ -182,7 +204,13 @@ def critical_dogleg(
         angle = (low + high) / 2 if high > FINEST else 0.0
     ordered = tuple(sorted(tried.items()))
     monotonic = all(ripples for turn, ripples in ordered if turn >= high)
-    return CriticalDogleg(angle, angle / case.bha.length_scale, monotonic, ordered)
+    return CriticalDogleg(angle, angle / case.bha.half_length, monotonic, ordered)
+
+
+def check_limits(limit: float, tolerance: float) -> None:
+    """Raise `ParameterError` unless the largest turn and the tolerance of a critical dogleg make sense."""
+    check_number("limit", limit, above=0.0, at_most=pi / 2)
+    check_number("tolerance", tolerance, above=0.0, at_most=1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,15 +222,33 @@ class DoglegMap:
     eta_pi, clearance
         ηΠ, shape (m,), and the clearance of the first stabilizer, m, shape (k,).
     angle
-        rad, shape (k, m).
+        rad, shape (k, m); nan where a run could not go on.
     monotonic
         Shape (k, m).
+    stopped
+        Why that run stopped, "" elsewhere, shape (k, m).
     """
 
     eta_pi: NDArray[np.float64]
     clearance: NDArray[np.float64]
     angle: NDArray[np.float64]
     monotonic: NDArray[np.bool_]
+    stopped: NDArray[np.str_]
+
+
+def usual_map(case: Case) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """ηΠ and clearances of the first stabilizer, m, for a map that shows where a system ripples, and the case on it.
+
+    The ηΠ go from the case's, or less, up to where the BHA in contact no longer oscillates, or beyond the case's.
+    """
+    own = eta_pi(case.bha, case.bit, case.active_weight_on_bit)
+    critical = critical_eta_pi(case.bha, case.bit, inclination=case.survey.inclination[-1])
+    highest = max(1.1 * critical.eta_pi if critical else 0.0, 1.5 * own)
+    clearance = case.bha.stabilizer_clearances[0] if case.bha.stabilizer_clearances else 0.0
+    return (
+        np.linspace(min(own, highest / 16), highest, 16),
+        np.linspace(min(0.5e-3, clearance), max(8e-3, 1.5 * clearance), 8),
+    )
 
 
 def dogleg_map(
@@ -213,78 +259,204 @@ def dogleg_map(
     side: Literal[1, -1] = 1,
     limit: float = LARGEST_DOGLEG,
     tolerance: float = TOLERANCE,
+    relative_tolerance: float = RELATIVE_TOLERANCE,
     workers: int | None = None,
     progress: Callable[[float], None] = lambda _: None,
 ) -> DoglegMap:
     """`critical_dogleg` over ηΠ, reached by the weight on bit, and the clearance of the first stabilizer, m.
 
     It works on `workers` processes, one for each core unless told otherwise; `boreprop.analysis.study` says what a
-    script must do for them. `progress` is called with the number of points done.
+    script must do for them. `progress` is called with the number of points done. A point of which a run cannot go on
+    is left out.
 
     Raises
     ------
     InputError, ParameterError
         If the case has no stabilizer with clearance, or a value is out of range.
-    SimulationError
-        If the integrator cannot go on.
     """
+    check_limits(limit, tolerance)
     axes = clearance.tolist(), eta_pi.tolist()
     cases = [vary(case, {"eta_pi": x, "stabilizer_clearance[1]": y}) for y, x in product(*axes)]
-    compute = partial(critical_dogleg, side=side, limit=limit, tolerance=tolerance)
-    found: dict[int, CriticalDogleg] = {}
+    compute = partial(
+        critical_dogleg_or_why, side=side, limit=limit, tolerance=tolerance, relative_tolerance=relative_tolerance
+    )
+    found: dict[int, CriticalDogleg | str] = {}
     with closing(work(compute, dict(enumerate(cases)), workers=workers)) as finished:
         for batch in finished:
-            for key, one in batch:
-                if isinstance(one, WorkerLost):
-                    raise one
-                found[key] = one
+            found |= {key: str(one) if isinstance(one, WorkerLost) else one for key, one in batch}
             progress(len(found))
-    shape = len(clearance), len(eta_pi)
     ordered = [found[key] for key in range(len(cases))]
-    angle = np.array([one.angle for one in ordered]).reshape(shape)
-    return DoglegMap(eta_pi, clearance, angle, np.array([one.monotonic for one in ordered]).reshape(shape))
+    shape = len(clearance), len(eta_pi)
+    return DoglegMap(
+        eta_pi,
+        clearance,
+        angle=np.array([nan if isinstance(one, str) else one.angle for one in ordered]).reshape(shape),
+        monotonic=np.array([isinstance(one, str) or one.monotonic for one in ordered]).reshape(shape),
+        stopped=np.array([one if isinstance(one, str) else "" for one in ordered]).reshape(shape),
+    )
 
 
-# From the holes that it leaves to itself
+def critical_dogleg_or_why(case: Case, **options: Any) -> CriticalDogleg | str:
+    """A `critical_dogleg`, or why a run could not go on."""
+    try:
+        return critical_dogleg(case, **options)
+    except SimulationError as error:
+        return str(error)
 
 
-def hysteresis(
-    cases: Sequence[Case], dogleg: float, progress: Callable[[float], None] = lambda _: None
-) -> tuple[list[Rippling], list[Rippling]]:
-    """How a system ripples while a parameter goes up and down again, slowly.
+# As a parameter changes
 
-    Each case is drilled until it settles, in the hole that the case before it left. A hole that was left straight would
-    stay straight for ever: it gets a dogleg, as the next survey, connection or formation would give it one. Going up
-    starts from one that makes the first case ripple, if any does; going down starts from the dogleg.
+
+@dataclass(frozen=True)
+class Hysteresis:
+    """How a system ripples while a parameter goes slowly up and down again.
 
     Parameters
     ----------
-    cases
-        The same system with a parameter in rising order.
+    name, values
+        The parameter, see `design.vary`, and its values in rising order.
     dogleg
-        What turn, over ℓ₁, a straight hole always has, rad.
-    progress
-        Called with the number of runs done, of twice the number of cases.
-
-    Returns
-    -------
+        What turn, over half the BHA, straight holes have, rad.
     up, down
-        The rippling of each case, in the order of `cases` both.
+        The rippling at each value on the way up and on the way down; None where a run could not go on.
+    dies
+        Between which two values the ripple dies out on the way up, to a hundredth; None if it does not, or never was.
+    returns
+        Between which two values the dogleg brings the ripple back on the way down, the larger one without ripple;
+        None if it does not, or if it ripples from the largest value on.
     """
-    done = count(1)
 
-    def branch(cases: Sequence[Case], turn: float) -> list[Rippling]:
-        found = []
-        survey = with_dogleg(cases[0], turn).survey
-        for case in cases:
-            run, rippling = drill_until_settled(replace(case, survey=survey))
-            survey = _left_behind(run, case) if rippling.ripples else _straight_behind(run, case, dogleg)
-            found.append(rippling)
-            progress(next(done))
-        return found
+    name: str
+    values: tuple[float, ...]
+    dogleg: float
+    up: tuple[Rippling | None, ...]
+    down: tuple[Rippling | None, ...]
+    dies: Bracket | None
+    returns: Bracket | None
 
-    tipping = (turn for turn, ripples in critical_dogleg(cases[0], tolerance=0.5).tried if ripples)
-    return branch(cases, next(tipping, dogleg)), branch(cases[::-1], dogleg)[::-1]
+
+def hysteresis(
+    case: Case,
+    name: str,
+    values: Sequence[float],
+    dogleg: float,
+    *,
+    relative_tolerance: float = RELATIVE_TOLERANCE,
+    progress: Callable[[float], None] = lambda _: None,
+) -> Hysteresis:
+    """How a system ripples while a parameter goes up and down again, slowly.
+
+    Going up starts from a ripple: from a dogleg that makes the case with the first value ripple, if any does. Each case
+    then drills on in the hole that the one before it left, until it settles. A straight hole would stay straight for
+    ever, though the next survey, connection or formation makes it turn: so each case that no ripple goes before starts
+    in the hole of `with_dogleg`, straight at the inclination of the case, with the dogleg. So do all cases going down,
+    until one ripples.
+
+    Parameters
+    ----------
+    case, name, values
+        What is drilled, the parameter that changes, see `design.vary`, and its values in rising order.
+    dogleg
+        What turn, over half the BHA, straight holes have, rad.
+    relative_tolerance
+        Of the integrator.
+    progress
+        Called with the number of values done, of twice as many as there are.
+
+    Raises
+    ------
+    InputError, ParameterError
+        If a value is out of range.
+    """
+    ramp = _Ramp(case, name, dogleg, relative_tolerance)
+    for value in values:
+        ramp.at(value)  # what is out of range is refused before the work
+    up: list[Rippling | None] = []
+    dies: Bracket | None = None
+    hole = ramp.rippling_hole(values[0])
+    for k, value in enumerate(values):
+        end = ramp.drill(value, hole)
+        if hole and k and not end.hole:
+            between, end = ramp.follow(values[k - 1], value, hole, end)
+            dies = dies or between
+        hole = end.hole
+        up.append(end.wave)
+        progress(k + 1)
+    down: list[Rippling | None] = []
+    returns: Bracket | None = None
+    hole = None
+    for k, value in enumerate(reversed(values)):
+        end = ramp.drill(value, hole)
+        if end.hole and not hole and k and not returns:
+            returns = ramp.bisect(value, values[-k])
+        hole = end.hole
+        down.append(end.wave)
+        progress(len(values) + k + 1)
+    return Hysteresis(name, tuple(values), dogleg, tuple(up), tuple(reversed(down)), dies, returns)
+
+
+class _End(NamedTuple):
+    """What a run came to: its rippling, None if it could not go on; and the hole it leaves, if it ripples."""
+
+    wave: Rippling | None
+    hole: Survey | None
+
+
+@dataclass(frozen=True)
+class _Ramp:
+    """Runs of a case at different values of a parameter."""
+
+    case: Case
+    name: str
+    dogleg: float
+    relative_tolerance: float
+
+    def at(self, value: float) -> Case:
+        """The case at a value of the parameter."""
+        return vary(self.case, {self.name: value})
+
+    def drill(self, value: float, hole: Survey | None) -> _End:
+        """Drill at a value of the parameter in a hole; None: the straight one with the dogleg."""
+        case = self.at(value)
+        case = replace(case, survey=hole) if hole else with_dogleg(case, self.dogleg)
+        try:
+            run, wave = drill_until_settled(case, relative_tolerance=self.relative_tolerance)
+        except SimulationError:
+            return _End(None, None)
+        return _End(wave, _left_behind(run, case) if wave.ripples else None)
+
+    def rippling_hole(self, value: float) -> Survey | None:
+        """A hole with as small a dogleg as makes the system ripple at a value of the parameter; None if none does."""
+        case = self.at(value)
+        holes = (with_dogleg(case, LARGEST_DOGLEG / 2**k).survey for k in reversed(range(SCAN)))
+        return next((hole for hole in holes if self.drill(value, hole).hole), None)
+
+    def follow(self, low: float, high: float, hole: Survey, end: _End) -> tuple[Bracket | None, _End]:
+        """Follow the ripple that left `hole` at `low` in shorter steps towards `high`, where at once it came to `end`.
+
+        A ripple may survive a slow change that is too much for it at once. So wherever it does not survive a step, the
+        step is halved, down to a hundredth of the parameter: between which two values it dies, None if it does not, and
+        what it comes to at `high`.
+        """
+        step, here = high - low, high
+        while step > END * here:
+            step /= 2
+            while low < high:
+                here = min(low + step, high)
+                found = self.drill(here, hole)
+                if not found.hole:
+                    break
+                low, hole, end = here, found.hole, found if here == high else end
+            else:
+                return None, end
+        return (low, here), end
+
+    def bisect(self, low: float, high: float) -> Bracket:
+        """Between which two values the dogleg starts a ripple, given one where it does and a larger one where not."""
+        while high - low > END * high:
+            middle = (low + high) / 2
+            low, high = (middle, high) if self.drill(middle, None).hole else (low, middle)
+        return low, high
 
 
 def _left_behind(run: Trajectory, case: Case) -> Survey:
@@ -292,24 +464,11 @@ def _left_behind(run: Trajectory, case: Case) -> Survey:
 
     It ends where the tilt was least: a run starts with the bit along the hole.
     """
-    length, l1 = run["drilled_length"], case.bha.length_scale
-    recent = length >= length[-1] - 2 * l1
+    length, half = run["drilled_length"], case.bha.half_length
+    recent = length >= length[-1] - 2 * half
     end = int(np.flatnonzero(recent)[np.argmin(np.abs(run["bit_tilt"][recent]))])
-    first = int(np.searchsorted(length, length[end] - case.bha.stabilizer_positions[-1] - l1))
+    first = int(np.searchsorted(length, length[end] - 3 * half))
     kept = slice(max(first, 0), end + 1)
     along = np.diff(run["displacement"][kept]), np.diff(run["true_vertical_depth"][kept])
     middles = (length[kept][1:] + length[kept][:-1]) / 2
     return Survey(tuple(middles.tolist()), tuple(np.arctan2(*along).tolist()))
-
-
-def _straight_behind(run: Trajectory, case: Case, turn: float) -> Survey:
-    return _bent(float(run["average_inclination[1]"][-1]), turn, case.bha.length_scale)
-
-
-def _bent(inclination: float, turn: float, length: float) -> Survey:
-    return Survey((0.0, length), (inclination, inclination + float(turn)))  # numpy's own slow the core down
-
-
-def _inclination_behind(case: Case) -> float:
-    depth = case.survey.measured_depth
-    return float(np.interp(depth[-1] - case.bha.length_scale, depth, case.survey.inclination))

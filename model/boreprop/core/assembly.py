@@ -95,6 +95,14 @@ class BottomHoleAssembly:
         return self.stabilizer_positions[0]
 
     @property
+    def half_length(self) -> float:
+        """Half the distance from the bit to the last stabilizer, m.
+
+        The length of hole that what is said of a hole is about: unlike ℓ₁, no blade that never touches changes it.
+        """
+        return self.stabilizer_positions[-1] / 2
+
+    @property
     def force_scale(self) -> float:
         """F* = 3EI/ℓ₁², N."""
         return 3.0 * self.flexural_stiffness / (self.length_scale * self.length_scale)

@@ -1,0 +1,48 @@
+"""The ripple of a hole's axis: how far it lies from its own smooth trend."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+AXIS_POINTS = 40  # samples of the axis in a width of its trend
+AXIS_REACH = 4.0  # widths of hole that the trend of the axis needs to each side
+
+
+def axis_ripple(
+    length: NDArray[np.float64], position: NDArray[np.float64], width: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """How far the axis of a hole lies from its smooth trend, to the high side.
+
+    The trend is a mean over the neighbourhood whose weights, a Gaussian times a parabola, leave straight and evenly
+    curved holes as they are; of a wave of 1.4 widths it keeps less than 10⁻³, of one of 1.8 less than 2 %.
+
+    Parameters
+    ----------
+    length
+        m, increasing, shape (N,).
+    position
+        Of the axis in the vertical plane, horizontal and down, m, shape (N, 2).
+    width
+        Standard deviation of the Gaussian, m: `BottomHoleAssembly.half_length` suits all ripples of a BHA.
+
+    Returns
+    -------
+    length, ripple
+        At whole multiples of a fortieth of the width, as far as the hole goes on for `AXIS_REACH` widths to both sides,
+        m, shape (k,), perhaps empty.
+    """
+    spacing = width / AXIS_POINTS
+    first, last = np.ceil(length[0] / spacing), np.floor(length[-1] / spacing)
+    at = spacing * np.arange(first, last + 1)
+    u = np.arange(-AXIS_REACH * AXIS_POINTS, AXIS_REACH * AXIS_POINTS + 1) / AXIS_POINTS
+    if len(at) < len(u):
+        return np.empty(0), np.empty(0)
+    gaussian = np.exp(-(u**2) / 2)
+    weights = gaussian * (np.sum(gaussian * u**4) - np.sum(gaussian * u**2) * u**2)  # so the sum of u² weights is zero
+    weights /= weights.sum()
+    axis = np.column_stack([np.interp(at, length, coordinate) for coordinate in position.T])
+    trend = np.column_stack([np.convolve(coordinate, weights, mode="valid") for coordinate in axis.T])
+    within = slice(len(u) // 2, len(at) - len(u) // 2)
+    away = axis[within] - trend
+    forward = np.gradient(trend, axis=0) if len(trend) > 1 else axis[[-1]] - axis[[0]]
+    forward /= np.linalg.norm(forward, axis=1)[:, None]
+    return at[within], away[:, 0] * forward[:, 1] - away[:, 1] * forward[:, 0]

@@ -1,0 +1,203 @@
+"""Waves at the end of a signal: how long they are, how alike, how large, and how their size changes.
+
+Nothing here knows what the signal is. Signals come as rows; where a function takes `x`, it may have any spacing.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import irfft, next_fast_len, rfft
+
+FEWEST_ROWS = 8  # of a wave
+FEWEST_WAVES = (
+    5.0  # of a stretch in which waves are looked for: four whole ones, and a half at each end for their trend
+)
+DEGREE = 3  # of the polynomial that is the trend while the wavelength is not known: it leaves five waves as they are
+SHALLOW = 0.8  # of a peak: an autocorrelation that has not fallen below it on the way there is a trend with noise
+AS_HIGH = (
+    0.8  # of the highest peak: a peak at a shorter lag that is as high is the wavelength, the others its multiples
+)
+FLANK = 0.15  # of a lag: how far from the top of a peak noise may make another one
+DRIFT = 0.1  # of a wavelength: how far a peak may lie from the multiple of the wavelength at which it is looked for
+LAST_LAG = 0.6  # of the rows: beyond it too few overlap
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.intp]
+
+
+def without_trend(x: Floats, signal: Floats) -> Floats:
+    """A signal less the polynomial of degree `DEGREE` in x that fits best, shape (rows,)."""
+    scaled = 2 * (x - x[0]) / (x[-1] - x[0]) - 1
+    basis, _ = np.linalg.qr(np.polynomial.legendre.legvander(scaled, DEGREE))
+    trend: Floats = basis @ (basis.T @ signal)
+    return signal - trend
+
+
+def autocorrelation(signal: Floats, lags: int) -> Floats:
+    """Correlation of a signal with itself `lag` rows ago, for lag = 0, 1, …, `lags` − 1, fewer than the rows.
+
+    The signal is evenly spaced, shape (rows,). Each lag is taken over the rows that overlap: a wave that grows or dies
+    has 1 at its wavelength, like one that lasts.
+    """
+    rows = len(signal)
+    spectrum = rfft(signal, next_fast_len(rows + lags, real=True))
+    products = irfft(spectrum.real**2 + spectrum.imag**2, next_fast_len(rows + lags, real=True))[:lags]
+    energy = np.concatenate(([0.0], np.cumsum(signal**2)))
+    lag = np.arange(lags)
+    scale = np.sqrt((energy[rows] - energy[lag]) * energy[rows - lag])
+    alike: Floats = np.divide(products, scale, out=np.zeros(lags), where=scale > 0)
+    return alike
+
+
+def likeness(signal: Floats, lag: float) -> float:
+    """How alike a signal and itself `lag` rows ago are: the autocorrelation there, 1 for a wave of that length."""
+    near = round(lag)
+    if len(signal) <= near + 2:
+        return 0.0
+    return float(autocorrelation(signal, near + 2)[near - 1 :].max())
+
+
+def wavelength_in_rows(signal: Floats) -> tuple[float, float]:
+    """The wavelength of a signal without trend, in rows, and the autocorrelation there; (nan, 0) if nothing comes back.
+
+    It is the shortest lag of a high peak of the autocorrelation, of at least `FEWEST_ROWS` and at most a
+    `FEWEST_WAVES`-th of the rows; the peaks at two, four, … times that lag tell it ever better.
+    """
+    rows = len(signal)
+    longest = int(rows / FEWEST_WAVES)
+    alike = autocorrelation(signal, min(int((LAST_LAG + DRIFT) * rows) + 3, rows))
+    lags = np.arange(FEWEST_ROWS - 1, longest + 1)
+    peaks = lags[(alike[lags] > 0) & (alike[lags] >= alike[lags - 1]) & (alike[lags] > alike[lags + 1])]
+    peaks = peaks[np.minimum.accumulate(alike)[peaks] < SHALLOW * alike[peaks]]
+    if not len(peaks):
+        return np.nan, 0.0
+    first = int(peaks[alike[peaks] >= AS_HIGH * alike[peaks].max()][0])
+    low, high = int((1 - FLANK) * first), min(int((1 + FLANK) * first), longest) + 1
+    top = low + int(np.argmax(alike[low : high + 1]))
+    length, times = _summit(alike, top), 2
+    while times * length < LAST_LAG * rows:
+        at, reach = round(times * length), max(int(DRIFT * length), 1)
+        nearby = alike[at - reach : at + reach + 1]
+        highest = int(np.argmax(nearby))
+        if highest in (0, len(nearby) - 1) or nearby[highest] < alike[top] / 2:
+            break
+        length = _summit(alike, at - reach + highest) / times
+        times *= 2
+    return length, float(alike[top])
+
+
+def _summit(values: Floats, top: int) -> float:
+    """Where the parabola through the highest of some values and its neighbours is highest."""
+    before, here, after = values[top - 1 : top + 2]
+    bend = before - 2 * here + after
+    return top + (float(np.clip((before - after) / (2 * bend), -0.5, 0.5)) if bend < 0 else 0.0)
+
+
+def mean_over(x: Floats, y: NDArray[Any], width: float) -> tuple[NDArray[np.bool_], NDArray[Any]]:
+    """The mean of `y`, real or complex, over `width` around each x: which x have as much on both sides, and the means.
+
+    Over one wavelength it keeps nothing of a wave and of its harmonics. x increases, shape (rows,).
+    """
+    if not len(x):
+        return np.zeros(0, dtype=bool), y
+    integral = np.concatenate((np.zeros(1, y.dtype), np.cumsum((y[1:] + y[:-1]) / 2 * np.diff(x))))
+    inside = (x >= x[0] + width / 2) & (x <= x[-1] - width / 2)
+    before, after = x[inside] - width / 2, x[inside] + width / 2
+    return inside, (np.interp(after, x, integral) - np.interp(before, x, integral)) / width
+
+
+def large_since(x: Floats, y: Floats, wavelength: float, least: float) -> float:
+    """The x from which on the root mean square of a wave, over each wavelength, has been at least `least`."""
+    inside, trend = mean_over(x, y, wavelength)
+    at = x[inside]
+    inside, square = mean_over(at, (y[inside] - trend) ** 2, wavelength)
+    small = np.flatnonzero(square < least**2)
+    return float(at[inside][small[-1]] + wavelength / 2 if len(small) else x[0])
+
+
+@dataclass(frozen=True)
+class LastWaves:
+    """The last whole waves of a signal, less its mean over one wavelength.
+
+    Parameters
+    ----------
+    wavelength
+        In the unit of x.
+    x, deviation, trend
+        The rows of these waves: their place, the signal less its trend, and the trend, shape (rows,) each.
+    count
+        How many waves there are.
+    """
+
+    wavelength: float
+    x: Floats
+    deviation: Floats
+    trend: Floats
+    count: int
+
+    @classmethod
+    def of(cls, x: Floats, y: Floats, wavelength: float, most: int) -> "LastWaves":
+        """Of a signal that increases in x; at most `most` of them, and perhaps none."""
+        first = int(np.searchsorted(x, x[-1] - (most + 1.01) * wavelength)) - 1
+        x, y = x[max(first, 0) :], y[max(first, 0) :]
+        inside, trend = mean_over(x, y, wavelength)
+        if not inside.any():
+            return cls(wavelength, trend, trend, trend, 0)
+        at, deviation = x[inside], y[inside] - trend
+        count = int((at[-1] - at[0]) / wavelength + 0.02)
+        whole = at >= at[-1] - count * wavelength
+        return cls(wavelength, at[whole], deviation[whole], trend[whole], count)
+
+    @cached_property
+    def place(self) -> Floats:
+        """Of each row, in waves from the start of the first one."""
+        place: Floats = self.count - (self.x[-1] - self.x) / self.wavelength
+        return place
+
+    @cached_property
+    def wave(self) -> Integers:
+        """The wave that each row is of, from 0."""
+        return np.clip(self.place.astype(np.intp), 0, self.count - 1)
+
+    @cached_property
+    def sizes(self) -> Floats:
+        """The root mean square of each wave, shape (count,)."""
+        rows = np.maximum(np.bincount(self.wave, minlength=self.count), 1)
+        return np.sqrt(np.bincount(self.wave, self.deviation**2, self.count) / rows)
+
+    def growth(self) -> tuple[float, float]:
+        """Change of the logarithm of the size from wave to wave, by least squares, and twice its standard error."""
+        middle = np.arange(self.count) - (self.count - 1) / 2
+        square = float(middle @ middle)
+        logarithm = np.log(np.maximum(self.sizes, 1e-6 * self.sizes.max()))
+        rate = float(middle @ logarithm) / square
+        residual = float(np.std(logarithm - rate * middle))
+        return rate, 2 * residual / (square * (1 - 2 / self.count)) ** 0.5
+
+    def height(self, deviation: Floats | None = None) -> float:
+        """Between the highest and the lowest of the mean wave, of the deviation or of other values at the same rows.
+
+        The rows of all waves in order of phase, each the mean of as many neighbours as half the waves: a wave may have
+        steps, whose edges a mean over more of it would round.
+        """
+        values = self.deviation if deviation is None else deviation
+        folded = values[np.argsort(self.place % 1.0, kind="stable")]
+        neighbours = max(self.count // 2, 1)
+        total = np.concatenate(([0.0], np.cumsum(np.concatenate((folded, folded[:neighbours])))))
+        return float(np.ptp(total[neighbours:] - total[:-neighbours])) / neighbours
+
+    def starts(self) -> Floats:
+        """Where the waves rise through zero without their harmonics, in the unit of x: one more than there are lengths.
+
+        A mean over half a wavelength keeps nothing of the even harmonics, one over a third of it nothing of each third.
+        """
+        x, smooth = self.x, without_trend(self.x, self.trend + self.deviation)
+        for part in (2, 3):
+            inside, smooth = mean_over(x, smooth, self.wavelength / part)
+            x = x[inside]
+        up = np.flatnonzero((smooth[:-1] < 0) & (smooth[1:] >= 0))
+        starts: Floats = x[up] - smooth[up] / (smooth[up + 1] - smooth[up]) * (x[up + 1] - x[up])
+        return starts
