@@ -100,26 +100,34 @@ class Modes:
 
         Least-index pivoting: change the first stabilizer whose condition fails, until none does. K is positive
         definite, so no set of contacts comes back and the search ends (Murty 1974; Júdice & Pires 1992 for two walls).
+        Where one does come back, by rounding under huge loads or of stabilizers close together, conditions may fail by
+        more and more until a mode satisfies them: at last by any amount.
         """
         contact = tuple(c if y else 1 for c, y in zip(contact, self.y_star, strict=True))
+        slack, pivots = ROUNDING, 0
         while True:
             mode = self[contact]
             for i in range(len(contact)):
                 row, lower, upper = self.bounds(mode, i)
-                side = left(row(loads), lower, upper)
+                side = left(row(loads), lower, upper, slack)
                 if side:
                     contact = (*contact[:i], change(contact[i], side), *contact[i + 1 :])
                     break
             else:
                 return mode
+            pivots += 1
+            if pivots % MOST_PIVOTS == 0:
+                slack *= LOOSER
 
 
 ROUNDING = 1e-13  # how far a force or deflection of order one may lie beyond its bound by rounding alone
+MOST_PIVOTS = 243  # there are no more modes: three contacts at each of five stabilizers
+LOOSER = 8.0  # how much farther it may lie there in the next search
 
 
-def left(value: float, lower: float, upper: float) -> int:
-    """1 if `value` is above its bounds, −1 if below, 0 between."""
-    return 1 if value > upper + ROUNDING else -1 if value < lower - ROUNDING else 0
+def left(value: float, lower: float, upper: float, slack: float = ROUNDING) -> int:
+    """1 if `value` is above its bounds by more than `slack`, −1 if below, else 0."""
+    return 1 if value > upper + slack else -1 if value < lower - slack else 0
 
 
 def change(contact: int, side: int) -> int:

@@ -6,10 +6,10 @@ saturation comes or goes), and where a stabilizer passes the kink that either le
 integrator's own: the bit may stop anywhere.
 """
 
-from bisect import bisect_right, insort
+from bisect import insort
 from collections.abc import Callable
+from itertools import takewhile
 from math import cos, factorial, inf, isfinite, perm, pi, sin
-from operator import itemgetter
 from typing import Any, NamedTuple
 
 from . import radau
@@ -31,9 +31,15 @@ ITERATIONS = 10  # on that rest; each gains two digits or more
 LAYERS = 16.0  # first step after a kink, in relaxation lengths of θ
 STRETCH = 1.3  # how much longer than planned a step may be if it then ends on the next kink
 SMOOTHEST_KINK = 3  # jumps in higher derivatives of the hole are left to the error estimate
-LARGEST_INCLINATION = 2 * pi  # beyond a full turn the inputs make no sense
+LARGEST_INCLINATION = 2 * pi
+TURNS_OVER = (
+    "its inclination grows beyond a full turn; use a smaller or shorter rss_force, a larger active_weight_on_bit, "
+    "or check the parameters"
+)
 NEAR = 0.3  # how far beyond its values at the points of a step a value may lie between them, over their range
 MERGE = 1e-9  # kinks closer than this are one
+CLOSER = 8.0  # how much shorter a step is tried where each mode meets a bound before its first point,
+MOST_SLACK = 1e-6  # while a value may lie so much farther beyond its bound at the points, at last by this
 ORIGIN_LIMIT = 8.0  # |Y| beyond which the origin of Y is moved to the bit
 GAUSS = [(0.5 - 0.15**0.5, 5 / 18), (0.5, 8 / 18), (0.5 + 0.15**0.5, 5 / 18)]  # nodes and weights on [0, 1]
 
@@ -116,7 +122,7 @@ class Propagation:
         self.scaled = scaled
         self.beam = Beam(scaled)
         self.modes = Modes(self.beam, scaled.y_star)
-        self.tolerance = relative_tolerance
+        self.length_scale, self.tolerance = length_scale, relative_tolerance
         self.hole = Hole(survey, length_scale, scaled.s[-1])
         self.xi = 0.0
         self.F_rss, self.eta_pi = F_rss, eta_pi
@@ -281,12 +287,10 @@ class Propagation:
 
     def _kink_here(self, xi: float) -> int | None:
         """Take the kinks up to `xi` off the list; the lowest derivative of Y that those at `xi` make jump, if any."""
-        if not self.kinks or self.kinks[0].xi > xi + MERGE:
-            return None
-        passed = bisect_right(self.kinks, xi + MERGE, key=itemgetter(0))
-        orders = [kink.order + 1 for kink in self.kinks[:passed] if kink.xi >= xi - MERGE]
-        del self.kinks[:passed]
-        return min(orders, default=None)
+        near = max(MERGE, 2 * shortest_step(xi))  # half the way to a kink is no shorter than a step may be
+        passed = list(takewhile(lambda kink: kink.xi - xi <= near, self.kinks))
+        del self.kinks[: len(passed)]
+        return min((kink.order + 1 for kink in passed if xi - kink.xi <= near), default=None)
 
     def _next_kink(self, law: Law, xi: float, h: float) -> float:
         """Where the next kink lies over which a step of length `h` must not pass; it may pass over slighter ones."""
@@ -313,8 +317,14 @@ class Propagation:
         return theta, Y, kink
 
     def _take_step(self) -> str | None:
-        """Append one step at the end of the last one; None, or why that failed and what helps."""
-        last, xi = self.step, self.step.end
+        """Append one step at the end of the last one; None, or why that failed and what helps.
+
+        A bound that is met where the step starts switches the mode there. By the rates exactly one mode holds, but
+        perhaps for a touch that is over before the first point of the step: then each mode finds itself beyond a bound
+        there, and the step is tried shorter. At h → 0 the mode that holds shows. Where rounding hides it, a value may
+        lie beyond its bound by a slack that grows as h falls: their product, what a wrong mode adds to the state, stays.
+        """
+        last, xi, shortest = self.step, self.step.end, shortest_step(self.step.end)
         theta, Y, kink = self._leave(last)
         law = self._law()
         planned = resumed = last.next_h
@@ -322,38 +332,46 @@ class Propagation:
             planned = min(planned, LAYERS * law.relaxation)
             if last.event is not None:
                 resumed = planned
-        stretch, switches = STRETCH, 0
+        stretch, switches, slack = STRETCH, 0, ROUNDING
         while True:
             h = min(planned, LARGEST_STEP)
             to_kink = self._next_kink(law, xi, 2 * h) - xi
             if to_kink < 2 * h:
                 h = to_kink if to_kink <= min(stretch * h, LARGEST_STEP) else to_kink / 2
-            if h < SMALLEST_STEP * max(1.0, xi):
-                return f"step size underflow at xi = {xi:.9g}: raise relative_tolerance (now {self.tolerance:g})"
+            if h < shortest:
+                return (
+                    f"the steps of the integrator become too short at {self._place(xi)}: "
+                    f"raise relative_tolerance (--tolerance), now {self.tolerance:g}"
+                )
             trial = self._try(law, xi, h, theta, Y)
             if not isfinite(trial.error):
-                return f"the state is not finite at xi = {xi:.9g}: check inputs and parameters"
+                return self._not_finite(xi)
             growth = SAFETY * max(trial.error, 1e-12) ** (-1 / (radau.S + 1))
             if trial.error > 1.0:
                 planned = resumed = h * max(growth, 0.1)
                 stretch = 1.0
                 continue
-            end, event, side = self._first_event(law, trial)
-            if event is None or end - xi >= SMALLEST_STEP * max(1.0, xi):
+            end, event, side = self._first_event(law, trial, slack)
+            if event is None or end - xi >= shortest:
                 break
-            if switches == 2 * len(law.bounds):
-                return f"no contact mode holds at xi = {xi:.9g}: change relative_tolerance (now {self.tolerance:g})"
-            self._switch(event, side)  # met where the step starts
-            law = self._law()
-            switches += 1
+            if switches < 2 * len(law.bounds):
+                self._switch(event, side)
+                law = self._law()
+                switches += 1
+                continue
+            planned = max(h / CLOSER, shortest)
+            stretch, switches, slack = 1.0, 0, slack * CLOSER
+            if slack >= MOST_SLACK:
+                return (
+                    f"no contact mode holds at {self._place(xi)}: "
+                    f"change relative_tolerance (--tolerance), now {self.tolerance:g}"
+                )
         if h == to_kink and event is None:
             end = xi + to_kink
         next_h = max(resumed if h < resumed else 0.0, h * min(growth, LARGEST_GROWTH))
         turned, _ = trial.step.state(end)
         if not abs(turned) <= LARGEST_INCLINATION:
-            return (
-                f"the bit turns over (theta = {turned:.3g} rad) at xi = {end:.9g}: check rss_force and the parameters"
-            )
+            return f"the bit turns over at {self._place(end)}: {TURNS_OVER}"
         self.step = Step(xi, h, trial.step.theta, trial.step.Y, end, event, side, next_h)
         self.hole.append(xi, h, self.step.Y)
         if kink is not None:
@@ -399,8 +417,11 @@ class Propagation:
         error = max(THETA_WEIGHT * abs(error_theta), abs(error_Y)) / self.tolerance
         return Trial(step, thetas, Ys, delayed, sines, error)
 
-    def _first_event(self, law: Law, trial: Trial) -> tuple[float, int | None, int]:
-        """Where a trial step first meets a bound of its mode, whose, and on which side; its end if it meets none."""
+    def _first_event(self, law: Law, trial: Trial, slack: float) -> tuple[float, int | None, int]:
+        """Where a trial step first meets a bound of its mode, whose, and on which side; its end if it meets none.
+
+        It meets those beyond which its points lie by more than `slack`.
+        """
         step = trial.step
         first, event, first_side = step.xi + step.h, None, 0
         for bound in law.bounds:
@@ -409,12 +430,12 @@ class Propagation:
             near = NEAR * (high - low)
             if low - near >= bound.lower and high + near <= bound.upper:
                 continue
-            met = self._meet(bound, step, values)
+            met = self._meet(bound, step, values, slack)
             if met and met[0] < first:
                 first, event, first_side = met[0], bound.part, met[1]
         return first, event, first_side
 
-    def _meet(self, bound: Bound, step: Step, values: list[float]) -> tuple[float, int] | None:
+    def _meet(self, bound: Bound, step: Step, values: list[float], slack: float) -> tuple[float, int] | None:
         """Where a step first meets one bound, and on which side, given the bound's value at the points."""
 
         def value(xi: float) -> float:
@@ -429,11 +450,19 @@ class Propagation:
         known.sort()
         before = step.xi  # where by rounding the value may lie beyond the bound that it has just come from
         for after, beyond in known:
-            side = left(beyond, bound.lower, bound.upper)
+            side = left(beyond, bound.lower, bound.upper, slack)
             if side:
                 return self._crossing(value, bound, side, before, after, beyond), side
             before = after
         return None
+
+    def _place(self, xi: float) -> str:
+        """A position for a message: how far the bit has drilled."""
+        return f"{xi * self.length_scale:.9g} m"
+
+    def _not_finite(self, xi: float) -> str:
+        """The line that says that numbers have run away."""
+        return f"the state is not finite at {self._place(xi)}: check inputs and parameters"
 
     @staticmethod
     def _crossing(
@@ -442,6 +471,11 @@ class Propagation:
         """Where `value` leaves its bounds on `side` between two positions, the second with a value `beyond`."""
         limit = bound.upper if side > 0 else bound.lower
         return crossing(lambda xi: side * (value(xi) - limit), before, after, side * (beyond - limit))
+
+
+def shortest_step(xi: float) -> float:
+    """The shortest step at `xi`: the next position must differ."""
+    return SMALLEST_STEP * max(1.0, xi)
 
 
 def extremes(points: list[tuple[float, float]]) -> list[float]:

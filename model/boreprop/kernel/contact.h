@@ -82,7 +82,7 @@ static inline Mode make_mode(const Beam *beam, const double *y_star, Contact con
     return mode;
 }
 
-enum { MODES = 4, MOST_PIVOTS = 1000 };
+enum { MODES = 4 };
 
 /* The last few modes of one beam that were asked for. */
 typedef struct {
@@ -102,11 +102,13 @@ static inline const Mode *mode_of(Modes *modes, Contact contact) {
     return mode;
 }
 
-#define ROUNDING 1e-13 /* how far a force or deflection of order one may lie beyond its bound by rounding alone */
+#define ROUNDING 1e-13  /* how far a force or deflection of order one may lie beyond its bound by rounding alone */
+#define MOST_PIVOTS 243 /* there are no more modes: three contacts at each of five stabilizers */
+#define LOOSER 8.0      /* how much farther it may lie there in the next search */
 
-/* 1 if `value` is above its bounds, −1 if below, 0 between. */
-static inline int left(double value, double lower, double upper) {
-    return value > upper + ROUNDING ? 1 : value < lower - ROUNDING ? -1 : 0;
+/* 1 if `value` is above its bounds by more than `slack`, −1 if below, else 0. */
+static inline int left(double value, double lower, double upper, double slack) {
+    return value > upper + slack ? 1 : value < lower - slack ? -1 : 0;
 }
 
 /* The contact after leaving the bounds on `side`: a touching stabilizer comes free, a free one touches δ = ±y*. */
@@ -140,22 +142,25 @@ static inline const Row *mode_bounds(const Modes *modes, const Mode *mode, int i
 /* The mode that satisfies (7) under `loads`, starting the search from `contact`.
 
    Least-index pivoting: change the first stabilizer whose condition fails, until none does. K is positive definite, so
-   no set of contacts comes back and the search ends (Murty 1974; Júdice & Pires 1992 for two walls). */
+   no set of contacts comes back and the search ends (Murty 1974; Júdice & Pires 1992 for two walls). Where one does
+   come back, by rounding under huge loads or of stabilizers close together, conditions may fail by more and more until
+   a mode satisfies them: at last by any amount. */
 static inline const Mode *settle(Modes *modes, const Loads *loads, Contact contact) {
     int n = modes->beam.n;
-    const Mode *mode;
+    double slack = ROUNDING;
     for (int i = 0; i < n - 1; i++)
         if (modes->y_star[i] == 0.0) contact.of[i] = 1;
-    for (int pivots = 0;; pivots++) {
-        int i, side = 0;
-        mode = mode_of(modes, contact);
-        for (i = 0; i < n - 1 && !side; i++) {
+    for (int pivots = 1;; pivots++) {
+        int side = 0;
+        const Mode *mode = mode_of(modes, contact);
+        for (int i = 0; i < n - 1 && !side; i++) {
             double lower, upper;
             const Row *row = mode_bounds(modes, mode, i, &lower, &upper);
-            side = left(row_value(row, loads, n), lower, upper);
+            side = left(row_value(row, loads, n), lower, upper, slack);
             if (side) contact.of[i] = change(contact.of[i], side);
         }
-        if (!side || pivots == MOST_PIVOTS) return mode; /* more pivots than modes: K is singular but for rounding */
+        if (!side) return mode;
+        if (pivots % MOST_PIVOTS == 0) slack *= LOOSER;
     }
 }
 

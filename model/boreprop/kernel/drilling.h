@@ -62,7 +62,7 @@ static inline Status drilling_prepare(
         return FAILED;
     d->system = *system;
     d->drilled_length = 0.0;
-    prepare(&d->propagation, &scaled, system->relative_tolerance, lay_out(memory, capacity));
+    prepare(&d->propagation, &scaled, length_scale(system), system->relative_tolerance, lay_out(memory, capacity));
     return DONE;
 }
 
@@ -72,7 +72,7 @@ static inline Status drilling_start(Drilling *d, const Survey *survey, Inputs in
     if (!check_survey(survey, why)) return FAILED;
     if (!scale_inputs(&d->system, inputs, &scaled_inputs, why)) return FAILED;
     if (d->propagation.hole.capacity < drilling_capacity(&d->system, survey)) return FULL;
-    return begin(&d->propagation, survey, length_scale(&d->system), scaled_inputs, why);
+    return begin(&d->propagation, survey, scaled_inputs, why);
 }
 
 /* Drill on to a length, m from the start, under inputs from here; where the bit is, only they are taken over.
@@ -112,7 +112,7 @@ static inline int drilling_outputs(Drilling *d, double out[MOST_OUTPUTS]) {
     for (int i = 0; i < n - 1; i++) *next++ = row_value(&mode->delta[i], &loads, n) * l1;
     for (int i = 0; i < n - 1; i++) *next++ = F[i] * F_star;
     for (int i = 0; i < n - 1; i++) *next++ = wall(F[i]);
-    *next++ = left(F_0 / now->inputs.eta_pi, -psi_star, psi_star);
+    *next++ = left(F_0 / now->inputs.eta_pi, -psi_star, psi_star, ROUNDING);
     *next++ = F_0 * F_star;
     *next++ = -row_value(&mode->M, &loads, n) * F_star * l1;
     /* where Θ jumped: after the jump */

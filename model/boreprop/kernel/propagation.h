@@ -20,9 +20,14 @@
 #define LAYERS 16.0      /* first step after a kink, in relaxation lengths of θ */
 #define STRETCH 1.3      /* how much longer than planned a step may be if it then ends on the next kink */
 #define SMOOTHEST_KINK 3 /* jumps in higher derivatives of the hole are left to the error estimate */
-#define LARGEST_INCLINATION 6.283185307179586 /* beyond a full turn the inputs make no sense */
+#define LARGEST_INCLINATION 6.283185307179586
+#define TURNS_OVER                                                                                                     \
+    "its inclination grows beyond a full turn; use a smaller or shorter rss_force, a larger active_weight_on_bit, "    \
+    "or check the parameters"
 #define NEAR 0.3         /* how far beyond its values at the points of a step a value may lie between them */
 #define MERGE 1e-9       /* kinks closer than this are one */
+#define CLOSER 8.0       /* how much shorter a step is tried where each mode meets a bound before its first point, */
+#define MOST_SLACK 1e-6  /* while a value may lie so much farther beyond its bound at the points, at last by this */
 #define ORIGIN_LIMIT 8.0 /* |Y| beyond which the origin of Y is moved to the bit */
 
 enum { NONE = -1, SMOOTH = 100 }; /* no event; no kink: of an order higher than any */
@@ -54,7 +59,7 @@ typedef struct {
     Scaled scaled;
     Modes modes;
     Radau radau;
-    double tolerance;
+    double length_scale, tolerance;
     Hole hole;
     State now;
     Law law;       /* of the present contact, tilt and inputs, */
@@ -148,12 +153,29 @@ static inline void add_images(Propagation *p, double xi, int order, double jump)
     else *kink(&p->hole, p->now.kinks_end++) = added;
 }
 
-/* The line that says that numbers have run away. */
-static inline Status not_finite(double xi, char why[MESSAGE]) {
+/* The line that says what the integrator has met at `xi`, and what helps. */
+static inline Status failed(const Propagation *p, const char *what, double xi, const char *helps, char why[MESSAGE]) {
     char at[32];
-    snprintf(why, MESSAGE, "the state is not finite at xi = %s: check inputs and parameters", decimal(xi, 9, at));
+    snprintf(why, MESSAGE, "%s at %s m: %s", what, decimal(xi * p->length_scale, 9, at), helps);
     return FAILED;
 }
+
+/* The same where another tolerance helps. */
+static inline Status failed_at_tolerance(
+    const Propagation *p, const char *what, double xi, const char *helps, char why[MESSAGE]
+) {
+    char now[32], line[128];
+    snprintf(line, sizeof line, "%s relative_tolerance (--tolerance), now %s", helps, decimal(p->tolerance, 6, now));
+    return failed(p, what, xi, line, why);
+}
+
+/* The line that says that numbers have run away. */
+static inline Status not_finite(const Propagation *p, double xi, char why[MESSAGE]) {
+    return failed(p, "the state is not finite", xi, "check inputs and parameters", why);
+}
+
+/* The shortest step at `xi`: the next position must differ. */
+static inline double shortest_step(double xi) { return SMALLEST_STEP * larger(1.0, xi); }
 
 /* Find the mode under new inputs and mark the jump of the inclination, which was Θ, that they make. */
 static inline Status restart(Propagation *p, double Theta, char why[MESSAGE]) {
@@ -162,10 +184,10 @@ static inline Status restart(Propagation *p, double Theta, char why[MESSAGE]) {
     const Mode *mode = settle(&p->modes, &loads, now->contact);
     double F_0 = row_value(&mode->F_0, &loads, p->scaled.n), psi_star = p->scaled.psi_star;
     double jump = fabs(now->step.theta[0] - bit_tilt(F_0, now->inputs.eta_pi, psi_star) - Theta);
-    if (!isfinite(jump) || !isfinite(F_0)) return not_finite(now->xi, why);
+    if (!isfinite(jump) || !isfinite(F_0)) return not_finite(p, now->xi, why);
     p->law_known = 0;
     now->contact = mode->contact;
-    now->tilt = left(F_0 / now->inputs.eta_pi, -psi_star, psi_star);
+    now->tilt = left(F_0 / now->inputs.eta_pi, -psi_star, psi_star, ROUNDING);
     add_images(p, now->xi, 1, jump);
     return DONE;
 }
@@ -190,12 +212,13 @@ static inline void switch_over(Propagation *p, int part, int side) {
 /* Take the kinks up to `xi` off the lists; the lowest derivative of Y that those at `xi` make jump. */
 static inline int kink_here(Propagation *p, double xi) {
     int lowest = SMOOTH;
+    double near = larger(MERGE, 2 * shortest_step(xi)); /* half the way to a kink is no shorter than a step may be */
     for (int i = 0; i < p->scaled.n; i++)
         for (Count *k = &p->now.ahead[i]; *k < p->now.kinks_end; ++*k) {
             const Kink *next = kink(&p->hole, *k);
             double at = next->xi + p->scaled.s[i];
-            if (at > xi + MERGE) break;
-            if (at >= xi - MERGE && next->order + 1 < lowest) lowest = (int)next->order + 1;
+            if (at - xi > near) break;
+            if (xi - at <= near && next->order + 1 < lowest) lowest = (int)next->order + 1;
         }
     return lowest;
 }
@@ -334,7 +357,7 @@ static inline int extremes(const Sample *samples, int count, double *found) {
 
 /* Where a step first meets one bound, given its values at the points; on which side, 0 if it does not. */
 static inline int meet(
-    const Propagation *p, const Bound *bound, const Step *step, const double *values, double *where
+    const Propagation *p, const Bound *bound, double slack, const Step *step, const double *values, double *where
 ) {
     Sample known[2 * POINTS];
     double found[POINTS];
@@ -350,7 +373,7 @@ static inline int meet(
         count++;
     }
     for (int k = 1; k < count; k++) { /* by rounding the start may lie beyond the bound that it has just come from */
-        int side = left(known[k].value, bound->lower, bound->upper);
+        int side = left(known[k].value, bound->lower, bound->upper, slack);
         double limit = side > 0 ? bound->upper : bound->lower;
         if (!side) continue;
         *where = crossing(p, bound, step, side, known[k - 1].xi, known[k].xi, side * (known[k].value - limit));
@@ -359,8 +382,8 @@ static inline int meet(
     return 0;
 }
 
-/* End a trial step where it first meets a bound of its mode, if it does. */
-static inline void cut_at_event(const Propagation *p, const Law *law, Trial *trial) {
+/* End a trial step where it first meets a bound of its mode, if its points lie beyond one by more than `slack`. */
+static inline void cut_at_event(const Propagation *p, const Law *law, double slack, Trial *trial) {
     for (int b = 0; b < law->bound_count; b++) {
         const Bound *bound = &law->bounds[b];
         double values[POINTS], low, high, where = 0.0;
@@ -371,7 +394,7 @@ static inline void cut_at_event(const Propagation *p, const Law *law, Trial *tri
         for (int k = 1; k < POINTS; k++) low = smaller(low, values[k]), high = larger(high, values[k]);
         double near = NEAR * (high - low);
         if (low - near >= bound->lower && high + near <= bound->upper) continue;
-        int side = meet(p, bound, &trial->step, values, &where);
+        int side = meet(p, bound, slack, &trial->step, values, &where);
         if (side && where < trial->step.end) {
             trial->step.end = where;
             trial->step.event = bound->part, trial->step.side = side;
@@ -387,17 +410,21 @@ static inline int has_room(const Propagation *p) {
            now->kinks_end - p->oldest_kink + 2 <= p->hole.capacity;
 }
 
-/* Append one step at the end of the last one; `why` says what failed and what helps. */
+/* Append one step at the end of the last one; `why` says what failed and what helps.
+
+   A bound that is met where the step starts switches the mode there. By the rates exactly one mode holds, but perhaps
+   for a touch that is over before the first point of the step: then each mode finds itself beyond a bound there, and
+   the step is tried shorter. At h → 0 the mode that holds shows. Where rounding hides it, a value may lie beyond its
+   bound by a slack that grows as h falls: their product, what a wrong mode adds to the state, stays. */
 static inline Status take_step(Propagation *p, char why[MESSAGE]) {
     State *now = &p->now;
     Step last = now->step;
     Trial trial;
-    char at[32], got[32];
-    double xi = last.end, theta, Y, growth, h, to_kink;
+    double xi = last.end, shortest = shortest_step(xi), theta, Y, growth, h, to_kink;
     if (!has_room(p)) return FULL;
     int kink = leave(p, &last, &theta, &Y), switches = 0;
     const Law *law = present_law(p);
-    double planned = last.next_h, resumed = last.next_h, stretch = STRETCH;
+    double planned = last.next_h, resumed = last.next_h, stretch = STRETCH, slack = ROUNDING;
     if (kink <= SMOOTHEST_KINK || last.end == last.xi) {
         planned = smaller(planned, LAYERS * law->relaxation);
         if (last.event != NONE) resumed = planned;
@@ -406,15 +433,10 @@ static inline Status take_step(Propagation *p, char why[MESSAGE]) {
         h = smaller(planned, LARGEST_STEP);
         to_kink = next_kink(p, law, xi, 2 * h) - xi;
         if (to_kink < 2 * h) h = to_kink <= smaller(stretch * h, LARGEST_STEP) ? to_kink : to_kink / 2;
-        if (h < SMALLEST_STEP * larger(1.0, xi)) {
-            snprintf(
-                why, MESSAGE, "step size underflow at xi = %s: raise relative_tolerance (now %s)", decimal(xi, 9, at),
-                decimal(p->tolerance, 6, got)
-            );
-            return FAILED;
-        }
+        if (h < shortest)
+            return failed_at_tolerance(p, "the steps of the integrator become too short", xi, "raise", why);
         try_step(p, law, xi, h, theta, Y, &trial);
-        if (!isfinite(trial.error) || !isfinite(trial.step.Y[S])) return not_finite(xi, why);
+        if (!isfinite(trial.error) || !isfinite(trial.step.Y[S])) return not_finite(p, xi, why);
         growth = SAFETY * pow(larger(trial.error, 1e-12), -1.0 / (S + 1));
         if (trial.error > 1.0) {
             planned = resumed = h * larger(growth, 0.1);
@@ -422,31 +444,25 @@ static inline Status take_step(Propagation *p, char why[MESSAGE]) {
             now->rejected++;
             continue;
         }
-        cut_at_event(p, law, &trial);
-        if (trial.step.event == NONE || trial.step.end - xi >= SMALLEST_STEP * larger(1.0, xi)) break;
-        if (switches == 2 * law->bound_count) {
-            snprintf(
-                why, MESSAGE, "no contact mode holds at xi = %s: change relative_tolerance (now %s)",
-                decimal(xi, 9, at), decimal(p->tolerance, 6, got)
-            );
-            return FAILED;
+        cut_at_event(p, law, slack, &trial);
+        if (trial.step.event == NONE || trial.step.end - xi >= shortest) break;
+        if (switches < 2 * law->bound_count) {
+            switch_over(p, trial.step.event, trial.step.side);
+            law = present_law(p);
+            switches++;
+            continue;
         }
-        switch_over(p, trial.step.event, trial.step.side); /* met where the step starts */
-        law = present_law(p);
-        switches++;
+        planned = larger(h / CLOSER, shortest);
+        stretch = 1.0, switches = 0, slack *= CLOSER;
+        if (slack >= MOST_SLACK) return failed_at_tolerance(p, "no contact mode holds", xi, "change", why);
     }
     now->step = trial.step;
     if (h == to_kink && now->step.event == NONE) now->step.end = xi + to_kink;
     now->step.next_h = larger(h < resumed ? resumed : 0.0, h * smaller(growth, LARGEST_GROWTH));
     double turned, end_Y;
     step_state(&now->step, now->step.end, &turned, &end_Y);
-    if (!(fabs(turned) <= LARGEST_INCLINATION)) {
-        snprintf(
-            why, MESSAGE, "the bit turns over (theta = %s rad) at xi = %s: check rss_force and the parameters",
-            decimal(turned, 3, got), decimal(now->step.end, 9, at)
-        );
-        return FAILED;
-    }
+    if (!(fabs(turned) <= LARGEST_INCLINATION))
+        return failed(p, "the bit turns over", now->step.end, TURNS_OVER, why);
     append(&p->hole, &now->pieces, xi, h, now->step.Y);
     if (kink <= SMOOTHEST_KINK)
         add_images(p, xi, kink, fabs(step_derivative(&now->step, kink, xi) - step_derivative(&last, kink, xi)));
@@ -503,23 +519,23 @@ static inline Status drill(Propagation *p, double xi, ScaledInputs inputs, char 
 }
 
 /* What does not evolve; before `begin`, or before a state is restored. */
-static inline void prepare(Propagation *p, const Scaled *scaled, double relative_tolerance, Hole hole) {
+static inline void prepare(
+    Propagation *p, const Scaled *scaled, double length_scale, double relative_tolerance, Hole hole
+) {
     memset(p, 0, sizeof *p);
     p->hole = hole;
     p->scaled = *scaled;
     p->modes.beam = make_beam(scaled);
     memcpy(p->modes.y_star, scaled->y_star, sizeof p->modes.y_star);
     p->radau = make_radau();
-    p->tolerance = relative_tolerance;
+    p->length_scale = length_scale, p->tolerance = relative_tolerance;
 }
 
 /* Start at the end of a survey; the rings must have room for it. */
-static inline Status begin(
-    Propagation *p, const Survey *survey, double length_scale, ScaledInputs inputs, char why[MESSAGE]
-) {
+static inline Status begin(Propagation *p, const Survey *survey, ScaledInputs inputs, char why[MESSAGE]) {
     State *now = &p->now;
     double reach = p->scaled.s[p->scaled.n - 1];
-    double final_inclination = take_survey(&p->hole, survey, length_scale, reach, &now->pieces, &now->kinks_end);
+    double final_inclination = take_survey(&p->hole, survey, p->length_scale, reach, &now->pieces, &now->kinks_end);
     for (Count k = 0; k < now->pieces.end; k++)
         if (!check_finite("l_1 / distance of stations", piece(&p->hole, k)->rate, why)) return FAILED;
     now->inputs = inputs;
