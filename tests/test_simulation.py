@@ -184,6 +184,20 @@ def test_summary_of_a_steered_run() -> None:
     assert summary.largest_build_rate == pytest.approx(turns[np.argmax(np.abs(turns))] / 30.0, rel=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("interval", "length", "hidden"),
+    [
+        (0.1, 219.6, ""),
+        (1.0, 219.0, "under 8 m: take rows closer together"),
+        (0.1, 12.0, "over 2.4 m: drill further"),
+    ],
+)
+def test_a_summary_says_which_waves_the_rows_cannot_show(interval: float, length: float, hidden: str) -> None:
+    summary = summarize(simulate(paper_case(), sample_interval=interval, length=length))
+    assert summary.hidden_waves == hidden
+    assert ("waves that would not show" in dict(rows(summary))) is bool(hidden)
+
+
 def test_a_case_of_numpy_numbers_runs_like_one_of_floats(case: Case) -> None:
     survey = replace(case.survey, inclination=tuple(np.array(case.survey.inclination)))
     bha = replace(case.bha, flexural_stiffness=np.float64(case.bha.flexural_stiffness))

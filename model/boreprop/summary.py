@@ -6,13 +6,14 @@ from math import ceil, degrees
 import numpy as np
 from numpy.typing import NDArray
 
-from .analysis.rippling import Rippling, State, Stretch, examine_rippling
+from .analysis.rippling import Rippling, State, Stretch, examine_rippling, visible_waves
 from .completion import case_of
 from .core.assembly import BottomHoleAssembly
 from .core.hole import Survey
 from .results import Trajectory
 
 BUILD_LENGTH = 30.0  # m: build rates are told in degrees per 30 m
+SHORT_WAVE, LONG_WAVE = 0.25, 1.8  # half BHAs: what ripples are between
 CHORD_POINTS = 200  # of the existing hole under a chord
 
 
@@ -38,6 +39,8 @@ class Summary:
         Share of the length the bit tilt is at its limit.
     rippling
         Whether it ends rippling, with what wave.
+    hidden_waves
+        Why waves that this BHA may make would not show, "" if they would.
     """
 
     drilled_length: float
@@ -50,6 +53,7 @@ class Summary:
     contact_share: NDArray[np.float64]
     saturation_share: float
     rippling: Rippling
+    hidden_waves: str
 
 
 def summarize(trajectory: Trajectory) -> Summary:
@@ -86,6 +90,7 @@ def summarize(trajectory: Trajectory) -> Summary:
         contact_share=np.average(trajectory.stack("stabilizer_contact") != 0, axis=0, weights=weights),
         saturation_share=float(np.average(trajectory["bit_tilt_saturation"] != 0, weights=weights)),
         rippling=rippling,
+        hidden_waves=hidden_waves(length, case.bha),
     )
 
 
@@ -97,6 +102,14 @@ def averaging_length(bha: BottomHoleAssembly, wave: Rippling) -> float:
     if wave.state in (State.NONE, State.DYING):
         return bha.half_length
     return wave.wavelength * ceil(bha.half_length / wave.wavelength)
+
+
+def hidden_waves(length: NDArray[np.float64], bha: BottomHoleAssembly) -> str:
+    """Which waves the rows of a run are too far apart, or the run is too short, to show; "" if none that matter."""
+    shortest, longest = visible_waves(length)
+    hidden = [f"under {shortest:.2g} m: take rows closer together"] * (shortest > SHORT_WAVE * bha.half_length)
+    hidden += [f"over {longest:.3g} m: drill further"] * (longest < LONG_WAVE * bha.half_length)
+    return ", ".join(hidden)
 
 
 def mean_inclination(run: Trajectory, survey: Survey, over: float) -> NDArray[np.float64]:
@@ -135,6 +148,7 @@ def rows(summary: Summary) -> list[tuple[str, str]]:
         ),
         ("bit tilt saturated", f"{summary.saturation_share:.0%} of the length"),
         *_wave_rows(summary.rippling),
+        *([("waves that would not show", summary.hidden_waves)] if summary.hidden_waves else []),
     ]
 
 

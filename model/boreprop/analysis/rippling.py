@@ -147,6 +147,13 @@ def longest_wave(bha: BottomHoleAssembly) -> float:
     return LONGEST * bha.half_length
 
 
+def visible_waves(drilled_length: Floats) -> tuple[float, float]:
+    """The shortest and the longest wave that the rows of a run can show, m."""
+    span = float(drilled_length[-1] - drilled_length[0])
+    moves = int(np.count_nonzero(np.diff(drilled_length)))
+    return FEWEST_ROWS * span / max(moves, 1), span / FEWEST_WAVES
+
+
 def find_rippling(
     drilled_length: Floats,
     inclination: Floats,
