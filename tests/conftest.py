@@ -12,6 +12,8 @@ import hypothesis
 import pytest
 
 from boreprop.case import Case, InputError, load_case
+from boreprop.kernel import binding
+from boreprop.kernel.compiler import NoCompilerError, build_library
 from boreprop_fmu.build import build_fmu
 from flavours import PYTHON, Flavour
 
@@ -43,6 +45,25 @@ def paper_text(paper_case: Path) -> str:
 def case(paper_case: Path) -> Case:
     """The paper's case, from its file."""
     return load_case(paper_case)
+
+
+@pytest.fixture(scope="session")
+def kernel() -> None:
+    """The native engine, built from the sources as they are now. Without a compiler tests of it are skipped."""
+    if not binding.available():
+        try:
+            build_library()
+        except NoCompilerError as error:
+            pytest.skip(str(error))
+        binding.library.cache_clear()
+
+
+@pytest.fixture(scope="session", params=["python", "native"])
+def engine(request: pytest.FixtureRequest) -> str:
+    """Either engine, one after the other."""
+    if request.param == "native":
+        request.getfixturevalue("kernel")
+    return str(request.param)
 
 
 @pytest.fixture(scope="session")
