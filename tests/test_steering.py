@@ -473,7 +473,7 @@ def test_where_gravity_leaves_nothing_out_the_table_prints_no_rounding(
 def test_a_blade_that_never_touches_changes_no_build_rate(
     scaled: Scaled, exponent: float, inclination: float, place: float
 ) -> None:
-    """Before the first stabilizer it takes its place as ℓ₁, and (9) gives the bit a moment of χ W ℓ₁² θ': χ goes along."""
+    """Where it comes first it makes ℓ₁ shorter; so that the bit's moment, χ W ℓ₁² dθ/ds by (9), stays, χ changes."""
     bha, bit = system(replace(scaled, Delta=0.01))
     at = place * bha.stabilizer_positions[-1]
     assume(len(bha.stabilizer_positions) < MAX_STABILIZERS)
