@@ -10,6 +10,7 @@ from pathlib import Path
 
 import hypothesis
 import pytest
+from hypothesis.internal.conjecture import providers
 
 from boreprop.case import Case, InputError, load_case
 from boreprop.kernel import binding
@@ -17,10 +18,15 @@ from boreprop.kernel.compiler import NoCompilerError, build_library
 from boreprop_fmu.build import build_fmu
 from flavours import PYTHON, Flavour
 
-# a landing tries the same examples as the last one, a developer's run new ones
-hypothesis.settings.register_profile("ci", derandomize=True)
-if os.environ.get("CI"):
-    hypothesis.settings.load_profile("ci")
+# The suite tries the same examples everywhere, on machines slow and fast; `make soak` tries new ones. Hypothesis would
+# also draw numbers that it finds in the modules that happen to be loaded.
+SUITE = hypothesis.settings(
+    database=None, deadline=None, derandomize=True, suppress_health_check=[hypothesis.HealthCheck.too_slow]
+)
+hypothesis.settings.register_profile("suite", SUITE)
+hypothesis.settings.register_profile("soak", SUITE, derandomize=False)
+hypothesis.settings.load_profile("suite")
+providers._get_local_constants = lambda: providers._local_constants
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 
