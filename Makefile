@@ -1,8 +1,9 @@
 # Everything happens in .venv, which the first target that needs it makes. Without make: see the README.
 PYTHON ?= python3
+MINUTES ?= 40
 BIN = .venv/bin
 
-.PHONY: demo test lint bench clean
+.PHONY: demo test soak lint bench clean
 
 demo: .venv/all.installed  # the main job: case file, FMU, run, viewer recording, figures, summary; results in out/
 	mkdir -p out
@@ -20,6 +21,9 @@ demo: .venv/all.installed  # the main job: case file, FMU, run, viewer recording
 
 test: .venv/dev.installed  # the whole suite
 	$(BIN)/python -m pytest -n auto
+
+soak: .venv/dev.installed  # new examples of the property tests, then the fuzzers: make soak MINUTES=40 [SEED=…]
+	$(BIN)/python tests/soak.py --minutes $(MINUTES) $(if $(SEED),--seed $(SEED))
 
 lint: .venv/dev.installed  # style, types and the import contract
 	$(BIN)/ruff check .

@@ -10,15 +10,23 @@ from pathlib import Path
 
 import hypothesis
 import pytest
+from hypothesis.internal.conjecture import providers
 
 from boreprop.case import Case, InputError, load_case
+from boreprop.kernel import binding
+from boreprop.kernel.compiler import NoCompilerError, build_library
 from boreprop_fmu.build import build_fmu
 from flavours import PYTHON, Flavour
 
-# a landing tries the same examples as the last one, a developer's run new ones
-hypothesis.settings.register_profile("ci", derandomize=True)
-if os.environ.get("CI"):
-    hypothesis.settings.load_profile("ci")
+# The suite tries the same examples everywhere, on machines slow and fast; `make soak` tries new ones. Hypothesis would
+# also draw numbers that it finds in the modules that happen to be loaded.
+SUITE = hypothesis.settings(
+    database=None, deadline=None, derandomize=True, suppress_health_check=[hypothesis.HealthCheck.too_slow]
+)
+hypothesis.settings.register_profile("suite", SUITE)
+hypothesis.settings.register_profile("soak", SUITE, derandomize=False)
+hypothesis.settings.load_profile("suite")
+providers._get_local_constants = lambda: providers._local_constants
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 
@@ -43,6 +51,25 @@ def paper_text(paper_case: Path) -> str:
 def case(paper_case: Path) -> Case:
     """The paper's case, from its file."""
     return load_case(paper_case)
+
+
+@pytest.fixture(scope="session")
+def kernel() -> None:
+    """The native engine, built from the sources as they are now. Without a compiler tests of it are skipped."""
+    if not binding.available():
+        try:
+            build_library()
+        except NoCompilerError as error:
+            pytest.skip(str(error))
+        binding.library.cache_clear()
+
+
+@pytest.fixture(scope="session", params=["python", "native"])
+def engine(request: pytest.FixtureRequest) -> str:
+    """Either engine, one after the other."""
+    if request.param == "native":
+        request.getfixturevalue("kernel")
+    return str(request.param)
 
 
 @pytest.fixture(scope="session")

@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from boreprop.core.assembly import Scaled
 from boreprop.core.beam import Beam
-from boreprop.core.contact import Loads, Modes, bit_tilt, lcp, lemke, residual
+from boreprop.core.contact import Loads, Modes, bit_tilt, lcp, residual
+from lemke import lemke
 from systems import loads, scaled_systems
 
 System = tuple[Scaled, Loads, float, list[int]]
@@ -52,7 +53,11 @@ def test_fast_path_solves_the_lcp_by_its_definition(system: System) -> None:
     assert residual(M, q, z) <= 1e-10
 
 
+NO_CLEARANCE = Scaled((1.0, 2.0, 2.5, 2.875, 3.1875, 4.6875), (0.0,) * 5, 0.0, 0.0078125, 0.125, 0.03125)
+
+
 @settings(max_examples=200, deadline=None)
+@example((NO_CLEARANCE, Loads([0.0, 0.0, 0.015625, 0.0, 0.0, 0.0], 0.0, 1.0), 1.0, [0] * 5))
 @given(systems())
 def test_lemke_solves_the_lcp_by_its_definition(system: System) -> None:
     scaled, at, eta_pi, _ = system

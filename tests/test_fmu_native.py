@@ -425,7 +425,7 @@ def spoilt(state: bytes) -> dict[str, bytes]:
         "nothing": b"",
         "cut": state[:-1],
         "longer": state + b"\0",
-        "version": state.replace(format_, format_[:-1] + b"2"),
+        "version": state.replace(format_, format_[:-1] + b"1"),
         "guid": state.replace(guid, guid[::-1]),
         "size": state.replace(size, b"%d" % (int(size) + 1), 1),
         "checksum": state.replace(checksum, checksum[::-1]),
@@ -437,9 +437,9 @@ def test_a_state_that_is_not_whole_and_its_own_is_refused_and_changes_nothing(on
     one.initialize(rss_force=1e3)
     one.steps(5, 0.9)
     state = one.state()
-    assert state.startswith(b"boreprop-native-fmu-state-1 " + one.description.guid.encode())
+    assert state.startswith(b"boreprop-native-fmu-state-2 " + one.description.guid.encode())
     for content in spoilt(state).values():
-        with refused(one, "state: must be one of this FMU, boreprop-native-fmu-state-1 "):
+        with refused(one, "state: must be one of this FMU, boreprop-native-fmu-state-2 "):
             one.set_state(content)
         assert one.state() == state
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from boreprop.core.assembly import ParameterError
-from boreprop.core.hole import Hole, Survey
+from boreprop.core.hole import Drilled, Hole, Survey
 
 REACH = 4.0
 
@@ -57,7 +57,7 @@ def drilled(parts: list[tuple[float, tuple[float, ...]]]) -> tuple[Hole, float]:
     """A hole with continuous Y made of random pieces, and where it ends."""
     hole, xi, Y = Hole(Survey((0.0,), (0.0,)), 1.0, REACH), 0.0, 0.0
     for width, rest in parts:
-        hole.append(xi, width, (Y, *rest))
+        hole.append(xi, width, (Y, *rest), Drilled((0.0,) * 6, 0.0, 1.0))
         xi, Y = xi + width, Y + sum(rest)
     return hole, xi
 

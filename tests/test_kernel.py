@@ -21,7 +21,6 @@ from boreprop.core.hole import Survey
 from boreprop.core.propagation import Propagation
 from boreprop.kernel import binding
 from boreprop.kernel.binding import KernelError, NativeDrilling
-from boreprop.kernel.compiler import NoCompilerError, build_library
 from boreprop.results import read_trajectory
 from boreprop.simulation import SimulationError, best_engine, simulate
 from conftest import Command
@@ -32,15 +31,7 @@ AGREEMENT = 1e-9  # relative
 Legs = list[tuple[float, float, float]]  # to this ξ, under this F_RSS and this ηΠ
 
 
-@pytest.fixture(scope="module", autouse=True)
-def kernel() -> None:
-    """Built from the sources as they are now."""
-    if not binding.available():
-        try:
-            build_library()
-        except NoCompilerError as error:
-            pytest.skip(str(error))
-        binding.library.cache_clear()
+pytestmark = pytest.mark.usefixtures("kernel")
 
 
 class Drilled:
@@ -268,7 +259,7 @@ def test_changes_of_input_at_one_place_are_one_kink(case: Case) -> None:
 def test_the_constants_of_the_integrator_are_those_of_python() -> None:
     header = (Path(binding.__file__).parent / "propagation.h").read_text(encoding="utf-8")
     constants = dict(re.findall(r"^#define (\w+) +([-+.e\d]+)", header, re.MULTILINE))
-    assert len(constants) == 16
+    assert len(constants) == 17
     for name, value in constants.items():
         assert float(value) == getattr(propagation, name), name
 

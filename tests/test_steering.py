@@ -1,5 +1,7 @@
 """Steering at constant curvature: long simulations, the LCP (15), beams solved by hand, the command."""
 
+import re
+from bisect import bisect
 from dataclasses import replace
 from itertools import pairwise, product
 from math import degrees, inf, pi, radians, sin
@@ -8,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from matplotlib.image import imread
 
@@ -23,7 +25,7 @@ from boreprop.analysis.steering import (
     steady_response,
 )
 from boreprop.case import Case, Schedule, load_case
-from boreprop.core.assembly import BitRock, BottomHoleAssembly, ParameterError, Scaled, eta_pi, scale
+from boreprop.core.assembly import MAX_STABILIZERS, BitRock, BottomHoleAssembly, ParameterError, Scaled, eta_pi, scale
 from boreprop.core.beam import Beam
 from boreprop.core.contact import Loads, lcp, residual
 from boreprop.core.hole import Survey
@@ -413,9 +415,10 @@ def test_values_out_of_range_are_named(case: Case, values: tuple[float, float, f
 def test_the_table_warns_near_and_beyond_the_reversal_and_where_the_tilt_is_at_its_limit(case: Case) -> None:
     zero = reversal_eta_pi(case.bha, case.bit, (0,))
     weight = zero * case.bha.force_scale / case.bit.lateral_steering_resistance
-    for part, word in ((0.7, ""), (0.9, "close to 3.18"), (1.1, "above 3.18")):
+    for part, where in ((0.7, ""), (0.9, "close to"), (1.1, "above")):
         curve = build_rate_curve(case.bha, case.bit, part * weight, radians(60.0), 5e3)
-        assert [word in text for text in warnings(curve, part * zero)] == ([True] if word else [])
+        told = f"ηΠ is {where} {zero:.3g} ({weight / 1e3:.2f} kN of active weight on bit)"
+        assert [told in text for text in warnings(curve, part * zero)] == ([True] if where else [])
     case = saturating(case)
     curve = build_rate_curve(case.bha, case.bit, case.active_weight_on_bit, radians(60.0), 16e3)
     assert [text.partition(" kN")[0] for text in warnings(curve, 0.558)] == ["-16.00…+0.98", "+5.57…+16.00"]
@@ -430,14 +433,67 @@ def test_the_table_has_the_numbers_in_kilonewtons_and_degrees(build_section: Cas
     lines = piece_rows(summary.curve)
     assert lines[1][0] == "+15.20…+18.29"
     assert [line[4] for line in lines] == ["1 low, 2 low", "2 low", "1 high, 2 low"]
+    weight_per_eta_pi = build_section.active_weight_on_bit / summary.eta_pi
+    for line, piece in zip(lines, summary.curve, strict=True):
+        weight = piece.reversal_eta_pi * weight_per_eta_pi
+        assert line[5] == f"{weight / 1e3:.4g} ({piece.reversal_eta_pi:.3g})"
 
 
-def test_unless_told_the_table_is_for_the_end_of_the_hole_and_one_percent_of_the_force_scale(case: Case) -> None:
-    summary = summarize(case)
-    assert summary.inclination == case.survey.inclination[-1]
-    assert summary.curve[-1].end.rss_force == pytest.approx(0.01 * case.bha.force_scale)
-    harder = replace(case, schedule=Schedule((0.0,), (-50e3,)))
-    assert summarize(harder).curve[-1].end.rss_force == pytest.approx(50e3)
+def test_unless_told_the_table_is_for_the_end_of_the_hole(case: Case) -> None:
+    curved = replace(case, survey=Survey((0.0, 30.0), (0.2, 0.6)))
+    assert dict(rows(summarize(curved)))["inclination at which the weight acts"] == f"{degrees(0.6):.2f} °"
+    assert dict(rows(summarize(curved, 0.4)))["inclination at which the weight acts"] == f"{degrees(0.4):.2f} °"
+
+
+@pytest.mark.parametrize(
+    ("forces", "limit"), [((0.0,), 30e3), ((0.0, -4e3, 3e3), 4e3), ((-50e3,), 50e3)], ids=["none", "small", "large"]
+)
+def test_unless_told_the_forces_are_those_of_the_schedule_or_thirty_kilonewtons(
+    case: Case, forces: tuple[float, ...], limit: float
+) -> None:
+    near_bit = replace(case.bha, stabilizer_positions=(1.2, 7.32))
+    schedule = Schedule(tuple(10.0 * k for k in range(len(forces))), forces)
+    for bha in (case.bha, near_bit):
+        curve = summarize(replace(case, bha=bha, schedule=schedule)).curve
+        assert (curve[0].start.rss_force, curve[-1].end.rss_force) == pytest.approx((-limit, limit))
+
+
+@pytest.mark.parametrize("inclination_deg", [0.0, 90.0, 180.0])
+def test_where_gravity_leaves_nothing_out_the_table_prints_no_rounding(
+    build_section: Case, inclination_deg: float
+) -> None:
+    told = dict(rows(summarize(build_section, radians(inclination_deg))))
+    left_out = told["left out: gravity changes along the arc"]
+    assert re.fullmatch(r"(less than 0\.01|up to \d+\.\d\d) °/30 m", left_out)
+    assert "-0.00" not in " ".join(told.values())
+
+
+@settings(max_examples=100, deadline=None)
+@given(scaled_systems(min_n=2), st.floats(-2.5, 1.0), st.floats(-pi, pi), st.floats(0.02, 0.98))
+def test_a_blade_that_never_touches_changes_no_build_rate(
+    scaled: Scaled, exponent: float, inclination: float, place: float
+) -> None:
+    """Where it comes first it makes ℓ₁ shorter; so that the bit's moment, χ W ℓ₁² dθ/ds by (9), stays, χ changes."""
+    bha, bit = system(replace(scaled, Delta=0.01))
+    at = place * bha.stabilizer_positions[-1]
+    assume(len(bha.stabilizer_positions) < MAX_STABILIZERS)
+    assume(min(abs(at - position) for position in bha.stabilizer_positions) > 0.02)
+    i = bisect(bha.stabilizer_positions, at)
+    idle = replace(
+        bha,
+        stabilizer_positions=(*bha.stabilizer_positions[:i], at, *bha.stabilizer_positions[i:]),
+        stabilizer_clearances=(*bha.stabilizer_clearances[:i], 1e3, *bha.stabilizer_clearances[i:]),
+    )
+    resistance = bit.angular_steering_resistance * (bha.length_scale / idle.length_scale) ** 2
+    same_bit = replace(bit, angular_steering_resistance=resistance)
+    weight = 10.0**exponent * bha.force_scale / bit.lateral_steering_resistance
+    systems = (bha, bit), (idle, same_bit)
+    curves = [build_rate_curve(*each, weight, inclination, 30e3) for each in systems]
+    for own, same in zip(*curves, strict=True):
+        assert same.start.build_rate == pytest.approx(own.start.build_rate, rel=1e-6, abs=1e-10)
+        assert same.end.build_rate == pytest.approx(own.end.build_rate, rel=1e-6, abs=1e-10)
+        assert same.end.rss_force == pytest.approx(own.end.rss_force, abs=1e-3)
+        assert same.reversal_weight == pytest.approx(own.reversal_weight, rel=1e-6)
 
 
 def test_the_picture_is_of_the_curve_in_kilonewtons_and_degrees(build_section: Case) -> None:

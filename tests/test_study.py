@@ -11,7 +11,7 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from functools import partial
 from io import BytesIO
-from math import radians
+from math import nan, radians
 from pathlib import Path
 from pickle import PicklingError
 from typing import Any
@@ -42,6 +42,7 @@ from boreprop.core.assembly import eta_pi
 from boreprop.paper import paper_case
 from boreprop.results import write_trajectory
 from boreprop.simulation import simulate
+from boreprop.study_table import lines
 from boreprop.summary import summarize
 from conftest import Command
 from study_functions import calls, counted, numbered, weight
@@ -329,6 +330,27 @@ def test_a_file_of_something_else_is_refused(tmp_path: Path) -> None:
             run(numbered(2), weight, output=tmp_path / name)
 
 
+@pytest.mark.parametrize(
+    ("errors", "ripples", "wavelength", "expected"),
+    [
+        (["", "", ""], [1.0, 1.0, 1.0], [1.0, 2.0, 3.0], ("", "")),
+        (["", "", ""], [1.0, 0.0, 1.0], [1.0, nan, 3.0], ("", ", of the 2 cases that ripple")),
+        (["", "", ""], [0.0, 0.0, 0.0], [nan, nan, nan], ("", ", of 0 of 3 cases")),
+        (["bad", "", ""], [nan, 0.0, 1.0], [nan, nan, 3.0], ("", ", of the case that ripples")),
+        (["", "", ""], [1.0, 1.0, 1.0], [1.0, nan, 3.0], ("", ", of 2 of 3 cases")),
+    ],
+    ids=["all", "some", "none", "failed", "unknown"],
+)
+def test_a_line_over_a_part_of_the_cases_says_which(
+    errors: list[str], ripples: list[float], wavelength: list[float], expected: tuple[str, str]
+) -> None:
+    build_rate = [nan if error else 1.0 for error in errors]
+    figures = {"build_rate": build_rate, "ripples": ripples, "wavelength": wavelength, "error": errors}
+    results = xarray.Dataset({name: ("case", np.array(values)) for name, values in figures.items()})
+    (build, _, _), (wave, _, _) = lines(results, (0.1, 0.9))
+    assert (build, wave) == (f"build_rate{expected[0]}", f"wavelength{expected[1]}")
+
+
 # what dies on the way
 
 
@@ -476,6 +498,7 @@ def test_the_command_over_a_grid(command: Command, tmp_path: Path, paper_text: s
     assert result.stderr == ""
     assert "median" in result.stdout
     assert "6 cases, 2 failed (the first: tilt_limit: must be <= " in result.stdout
+    assert "the figures are of the other 4, " in result.stdout
     assert parquet.read_table(tmp_path / "study.parquet")["bit_tilt_limit_deg"].to_pylist() == [1.0, 2.0, 95.0] * 2
 
 

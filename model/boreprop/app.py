@@ -91,12 +91,17 @@ def steering(
         Path | None, typer.Option(metavar="STEERING.png", help="Draw build rate against force into this file.")
     ] = None,
     inclination_deg: Annotated[
-        float | None, typer.Option(metavar="A", help="Inclination, degrees, if not that of the end of the case's hole.")
+        float | None,
+        typer.Option(
+            metavar="A", help="Inclination at which the weight acts, degrees, if not that of the end of the hole."
+        ),
     ] = None,
     force_limit: Annotated[
         float | None,
         typer.Option(
-            parser=console.positive, metavar="N", help="Largest force, N, if not 1 % of 3EI/ℓ₁² or the case's."
+            parser=console.positive,
+            metavar="N",
+            help="Largest force, N, if not the largest of the case's schedule, or 30 kN if that has none.",
         ),
     ] = None,
 ) -> None:

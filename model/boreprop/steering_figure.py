@@ -13,7 +13,8 @@ MORE_COLOURS = (*COLOURS, "#56B4E9", "#D55E00", "#000000")  # Okabe and Ito, but
 
 def draw(summary: SteeringSummary) -> Figure:
     """Build rate and bit tilt over the force; a colour for each set of contacts, dashed where the tilt saturates."""
-    setting = f"{degrees(summary.inclination):.4g}° inclination, ηΠ = {summary.eta_pi:.3g}"
+    weight = f"{kilonewtons(summary.active_weight_on_bit)} active weight on bit (ηΠ = {summary.eta_pi:.3g})"
+    setting = f"{degrees(summary.inclination):.4g}° inclination, {weight}"
     figure = Figure(figsize=(9, 8.5), layout="constrained")
     figure.suptitle(f"Steady response to the steering force at {setting}")
     rates, tilts = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))

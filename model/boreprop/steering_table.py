@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from itertools import groupby
-from math import degrees
+from math import degrees, isfinite
 
 from .analysis.steering import (
     Piece,
@@ -16,7 +16,8 @@ from .case import Case
 from .core.assembly import eta_pi
 from .summary import BUILD_LENGTH
 
-USUAL_FORCE = 0.01  # of 3EI/ℓ₁², what pads can do: 15 to 30 kN
+USUAL_FORCE = 30e3  # N: what the pads of a large tool can do
+READABLE = 0.01  # ° per `BUILD_LENGTH`: no survey sees less
 NEAR_REVERSAL = 0.8  # of the ηΠ at which the response changes sign: its numerator has lost four fifths
 HEADINGS = (
     "force\n(kN)",
@@ -24,7 +25,7 @@ HEADINGS = (
     "per kN\n",
     "bit tilt\n(°)",
     "on a wall\n",
-    "reverses\nat ηΠ",
+    "reverses at\nkN (ηΠ)",
 )
 WALLS = {1: "low", -1: "high"}
 
@@ -36,7 +37,7 @@ class SteeringSummary:
     Parameters
     ----------
     inclination
-        Of the hole, averaged over the ℓ₁ behind the bit, rad.
+        At which the weight of the BHA acts: ⟨Θ⟩_1 of the equations, rad.
     active_weight_on_bit, eta_pi
         N; and ηΠ.
     curve, without_gravity
@@ -66,9 +67,10 @@ def summarize(case: Case, inclination: float | None = None, force_limit: float |
     case
         What is drilled.
     inclination
-        rad; without it, that of the end of the existing hole.
+        At which the weight of the BHA acts, rad; without it, that of the end of the existing hole, which does not
+        depend on where the first stabilizer is.
     force_limit
-        N; without it, 1 % of 3EI/ℓ₁², or the largest force of the case's schedule if that is more.
+        N; without it, the largest force of the case's schedule, or 30 kN if that has none.
 
     Raises
     ------
@@ -78,7 +80,7 @@ def summarize(case: Case, inclination: float | None = None, force_limit: float |
     if inclination is None:
         inclination = case.survey.inclination[-1]
     if force_limit is None:
-        force_limit = max(USUAL_FORCE * case.bha.force_scale, *map(abs, case.schedule.rss_force))
+        force_limit = max(map(abs, case.schedule.rss_force)) or USUAL_FORCE
     system = case.bha, case.bit, case.active_weight_on_bit
     highest, lowest = largest_build_rate(*system, inclination, force_limit)
     return SteeringSummary(
@@ -101,16 +103,19 @@ def rows(summary: SteeringSummary) -> list[tuple[str, str]]:
         kilonewtons(response.rss_force, "+") + " (tilt at its limit)" * bool(response.bit_tilt_saturation)
         for response in summary.holding
     )
-    error = max(abs(end.build_rate_error) for piece in summary.curve for end in (piece.start, piece.end))
+    error = per_build_length(
+        max(abs(end.build_rate_error) for piece in summary.curve for end in (piece.start, piece.end))
+    )
+    left_out = f"less than {READABLE:g}" if error < READABLE else f"up to {error:.2f}"
     return [
-        ("inclination, mean over ℓ₁ behind the bit", f"{degrees(summary.inclination):.2f} °"),
+        ("inclination at which the weight acts", f"{degrees(summary.inclination):.2f} °"),
         ("active weight on bit", f"{kilonewtons(summary.active_weight_on_bit)}, ηΠ = {summary.eta_pi:.3g}"),
         ("force limit", f"±{limit}"),
         ("build rate without force", f"{rate(summary.free.build_rate)}, on a wall: {touching(summary.free)}"),
         ("force that holds the inclination", held or f"none up to ±{limit}"),
         ("highest build rate", at_force(summary.highest)),
         ("lowest build rate", at_force(summary.lowest)),
-        ("left out: gravity changes along the arc", f"up to {per_build_length(error):.2g} °/{BUILD_LENGTH:g} m"),
+        ("left out: gravity changes along the arc", f"{left_out} °/{BUILD_LENGTH:g} m"),
         *(("warning", text) for text in warnings(summary.curve, summary.eta_pi)),
     ]
 
@@ -120,15 +125,21 @@ def piece_rows(curve: tuple[Piece, ...]) -> list[tuple[str, ...]]:
     return [
         (
             forces(piece.start, piece.end),
-            f"{per_build_length(piece.start.build_rate):+.2f}…{per_build_length(piece.end.build_rate):+.2f}",
-            f"{per_build_length(piece.gain * 1e3):+.3f}",
+            f"{per_build_length(piece.start.build_rate):+z.2f}…{per_build_length(piece.end.build_rate):+z.2f}",
+            f"{per_build_length(piece.gain * 1e3):+z.3f}",
             (
-                f"{degrees(piece.start.bit_tilt):+.2f} (limit)"
+                f"{degrees(piece.start.bit_tilt):+z.2f} (limit)"
                 if piece.start.bit_tilt_saturation
-                else f"{degrees(piece.start.bit_tilt):+.2f}…{degrees(piece.end.bit_tilt):+.2f}"
+                else f"{degrees(piece.start.bit_tilt):+z.2f}…{degrees(piece.end.bit_tilt):+z.2f}"
             ),
             touching(piece.start, piece.end),
-            "–" if piece.start.bit_tilt_saturation else f"{piece.reversal_eta_pi:.3g}",
+            (
+                "–"
+                if piece.start.bit_tilt_saturation
+                else f"{piece.reversal_weight / 1e3:.4g} ({piece.reversal_eta_pi:.3g})"
+                if isfinite(piece.reversal_eta_pi)
+                else "never"
+            ),
         )
         for piece in curve
     ]
@@ -146,12 +157,13 @@ def _warning(piece: Piece, eta_pi: float) -> str:
     if eta_pi < NEAR_REVERSAL * piece.reversal_eta_pi:
         return ""
     where = "above" if eta_pi > piece.reversal_eta_pi else "close to"
-    return f"ηΠ is {where} {piece.reversal_eta_pi:.3g}, beyond which a push to the high side drops the hole"
+    reversal = f"{piece.reversal_eta_pi:.3g} ({kilonewtons(piece.reversal_weight)} of active weight on bit)"
+    return f"ηΠ is {where} {reversal}, beyond which a push to the high side drops the hole"
 
 
 def forces(start: SteadyResponse, end: SteadyResponse) -> str:
     """From which force to which, in kN."""
-    return f"{start.rss_force / 1e3:+.2f}…{end.rss_force / 1e3:+.2f}"
+    return f"{start.rss_force / 1e3:+z.2f}…{end.rss_force / 1e3:+z.2f}"
 
 
 def touching(*responses: SteadyResponse) -> str:
@@ -168,7 +180,7 @@ def per_build_length(build_rate: float) -> float:
 
 def rate(build_rate: float) -> str:
     """A build rate, rad/m, with its sign and unit."""
-    return f"{per_build_length(build_rate):+.2f} °/{BUILD_LENGTH:g} m"
+    return f"{per_build_length(build_rate):+z.2f} °/{BUILD_LENGTH:g} m"
 
 
 def at_force(response: SteadyResponse) -> str:
@@ -178,4 +190,4 @@ def at_force(response: SteadyResponse) -> str:
 
 def kilonewtons(force: float, sign: str = "") -> str:
     """A force, N, in kN."""
-    return f"{force / 1e3:{sign}.2f} kN"
+    return f"{force / 1e3:{sign}z.2f} kN"

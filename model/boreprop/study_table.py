@@ -4,6 +4,9 @@ from collections.abc import Iterable
 from math import degrees, isfinite
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .analysis.study import probability, quantiles
 from .summary import BUILD_LENGTH
 
@@ -18,7 +21,7 @@ SHOWN = {  # SI unit: the unit to show it in and how many of those it is
 
 
 def lines(results: "Dataset", q: Iterable[float]) -> list[tuple[str, ...]]:
-    """The lines of a table: result, its quantiles `q` over the cases."""
+    """The lines of a table: result, its quantiles `q` over the cases that have one; which, if not all that ran."""
     values = quantiles(results, q)
     table: list[tuple[str, ...]] = []
     for name, figure in values.data_vars.items():
@@ -29,11 +32,21 @@ def lines(results: "Dataset", q: Iterable[float]) -> list[tuple[str, ...]]:
         what = figure.attrs.get("long_name", kind) + (f", stabilizer {number[:-1]}" if number else "")
         table.append(
             (
-                f"{what} ({unit})" if unit else what,
+                (f"{what} ({unit})" if unit else what) + _which(results, np.isfinite(results[name].values)),
                 *(f"{factor * v:.4g}" if isfinite(v) else "–" for v in figure.values),
             )
         )
     return table
+
+
+def _which(results: "Dataset", known: NDArray[np.bool_]) -> str:
+    """Over which cases a figure is, if not over all that did not fail."""
+    ran = results["error"].values == ""
+    if np.array_equal(known, ran):
+        return ""
+    if known.any() and np.array_equal(known, results["ripples"].values == 1.0):
+        return ", of the case that ripples" if known.sum() == 1 else f", of the {known.sum()} cases that ripple"
+    return f", of {known.sum()} of {ran.sum()} cases"
 
 
 def verdict(results: "Dataset") -> str:
@@ -43,6 +56,7 @@ def verdict(results: "Dataset") -> str:
     parts = [f"{errors.size} cases"]
     if failed.size:
         parts.append(f"{failed.size} failed (the first: {failed[0]})")
+        parts.append(f"the figures are of the other {errors.size - failed.size}")
     if "case" in results.dims:
         ripples = probability(results["ripples"])
         parts.append(f"probability of rippling {ripples.estimate:.1%} ({ripples.low:.1%} to {ripples.high:.1%})")

@@ -83,14 +83,16 @@ class Piece:
         The responses at its ends, by increasing force.
     gain
         Change of the build rate per force, rad/m per N.
-    reversal_eta_pi
-        The ηΠ above which the gain is negative: inf if there is none, 0 where the tilt saturates.
+    reversal_eta_pi, reversal_weight
+        The ηΠ, and the active weight on bit (N), above which the gain is negative: inf if there is none, 0 where the
+        tilt saturates.
     """
 
     start: SteadyResponse
     end: SteadyResponse
     gain: float
     reversal_eta_pi: float
+    reversal_weight: float
 
 
 def steady_response(
@@ -139,15 +141,19 @@ def build_rate_curve(
     check_number("force_limit", force_limit, above=0.0)
     steady = _steady(bha, bit, active_weight_on_bit, inclination, gravity)
     limit = force_limit / bha.force_scale
-    return tuple(
-        Piece(
-            _in_si(bha, line, start * bha.force_scale),
-            _in_si(bha, line, end * bha.force_scale),
-            line.rate[0] / (bha.length_scale * bha.force_scale),
-            0.0 if line.tilt else reversal(steady.scaled, line.mode),
+    pieces = []
+    for line, start, end in steady.walk(-limit, limit):
+        zero = 0.0 if line.tilt else reversal(steady.scaled, line.mode)
+        pieces.append(
+            Piece(
+                start=_in_si(bha, line, start * bha.force_scale),
+                end=_in_si(bha, line, end * bha.force_scale),
+                gain=line.rate[0] / (bha.length_scale * bha.force_scale),
+                reversal_eta_pi=zero,
+                reversal_weight=zero * active_weight_on_bit / steady.eta_pi,
+            )
         )
-        for line, start, end in steady.walk(-limit, limit)
-    )
+    return tuple(pieces)
 
 
 def largest_build_rate(

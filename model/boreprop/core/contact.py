@@ -1,6 +1,6 @@
 """The two nonlinearities: stabilizers that touch the wall or not, and a bit tilt that saturates.
 
-Two ways to the same answer. The paper's linear complementarity problem (15) as matrices, with a solver and a residual;
+Two ways to the same answer. The paper's linear complementarity problem (15) as matrices, with a residual;
 and, for the integrator, modes: with the contacts known, F follows from q̃ by elimination, so M, F_0, δ and F are linear
 functions of the hole, the RSS force and the weight, and which contacts hold is found by pivoting from the last mode.
 """
@@ -145,9 +145,6 @@ def bit_tilt(F_0: float, eta_pi: float, psi_star: float) -> float:
     return min(max(F_0 / eta_pi, -psi_star), psi_star)
 
 
-PIVOT = 1e-10  # the least element that Lemke's method divides by, of rows with largest element one
-TIE = 1e-13  # ratios this close are equal
-
 # The linear complementarity problem (15): w = M z + q, 0 ≤ w ⊥ z ≥ 0, z = (F_ℓ, F_u, F̂_ℓ, F̂_u)
 
 
@@ -174,51 +171,3 @@ def lcp(
 def residual(M: Matrix, q: list[float], z: list[float]) -> float:
     """Max |min(z, Mz + q)|: zero where z solves the LCP."""
     return max(abs(min(z_i, dot(row, z) + q_i)) for row, q_i, z_i in zip(M, q, z, strict=True))
-
-
-def lemke(M: Matrix, q: list[float]) -> list[float]:
-    """Solve 0 ≤ z ⊥ Mz + q ≥ 0 by Lemke's complementary pivoting, ties broken lexicographically.
-
-    Returns z. Raises `ArithmeticError` on a secondary ray, which cannot happen for (15): with its last two rows scaled
-    down M is positive semidefinite, and scaling rows does not change the problem.
-    """
-    size = len(q)
-    artificial = 2 * size  # the columns are w, z, the artificial z_0 and the right-hand side
-    scales = [1 / max(abs(m) for m in row) for row in M]
-    rows = [
-        [float(i == j) for j in range(size)] + [-scales[i] * m for m in M[i]] + [-1.0, scales[i] * q[i]]
-        for i in range(size)
-    ]
-    basis = list(range(size))
-    leaving = min(range(size), key=lambda i: rows[i][-1])
-    if rows[leaving][-1] >= 0:
-        return [0.0] * size
-    entering = artificial
-    while True:
-        rows[leaving] = [value / rows[leaving][entering] for value in rows[leaving]]
-        for i in range(size):
-            factor = rows[i][entering]
-            if i != leaving and factor:
-                rows[i] = [a - factor * b for a, b in zip(rows[i], rows[leaving], strict=True)]
-        basis[leaving], left_basis = entering, basis[leaving]
-        if left_basis == artificial:
-            break
-        entering = left_basis + size if left_basis < size else left_basis - size
-        candidates = [i for i in range(size) if rows[i][entering] > PIVOT]
-        if not candidates:
-            raise ArithmeticError("the LCP has no solution that Lemke's method can reach (secondary ray)")
-        for column in (-1, *range(size)):
-            ratios = {i: rows[i][column] / rows[i][entering] for i in candidates}
-            least = min(ratios.values())
-            candidates = [i for i in candidates if ratios[i] <= least + TIE]
-            if len(candidates) == 1:
-                break
-            if column == -1 and artificial in (basis[i] for i in candidates):
-                candidates = [i for i in candidates if basis[i] == artificial]
-                break
-        leaving = candidates[0]
-    z = [0.0] * size
-    for i, variable in enumerate(basis):
-        if size <= variable < artificial:
-            z[variable - size] = rows[i][-1]
-    return z

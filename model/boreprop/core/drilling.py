@@ -5,7 +5,7 @@ from typing import Any
 from .assembly import BitRock, BottomHoleAssembly, check_number, eta_pi, scale
 from .contact import bit_tilt, left, wall
 from .hole import Survey
-from .propagation import MERGE, RELATIVE_TOLERANCE, Propagation
+from .propagation import RELATIVE_TOLERANCE, Propagation
 from .variables import BY_NAME
 
 
@@ -121,7 +121,7 @@ class Drilling:
             "bit_tilt_saturation": left(F_0 / p.eta_pi, -psi_star, psi_star),
             "bit_lateral_force": F_0 * F_star,
             "bit_moment": -mode.M(loads) * F_star * l1,
-            "borehole_curvature": (Theta - p.hole.Theta(p.xi - 1.0 + MERGE)) / l1,  # where Θ jumped: after the jump
+            "borehole_curvature": (Theta - p.earlier_inclination(p.xi - 1.0)) / l1,
             "displacement": x * l1,
             "true_vertical_depth": z * l1,
             "eta_pi": p.eta_pi,

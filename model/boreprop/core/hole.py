@@ -3,7 +3,7 @@
 from bisect import bisect_right
 from dataclasses import dataclass
 from math import inf
-from typing import Any
+from typing import Any, NamedTuple
 
 from .assembly import ParameterError, check_increasing, check_number
 
@@ -38,11 +38,25 @@ class Survey:
             check_number("inclination", value)
 
 
+class Drilled(NamedTuple):
+    """How a piece of the hole was drilled: θ = Σ theta[m] t^m, and the inputs."""
+
+    theta: tuple[float, ...]
+    F_rss: float
+    eta_pi: float
+
+    def at(self, t: float) -> float:
+        """θ at `t`."""
+        c0, c1, c2, c3, c4, c5 = self.theta
+        return c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * c5))))
+
+
 class Hole:
     """The borehole's lateral coordinate Y(ξ) = ∫Θ dξ as polynomial pieces, oldest first.
 
     Piece k covers ξ from starts[k] to the start of the next one; there Y = Σ coefficients[k][m] t^m with
     t = (ξ − starts[k]) · rates[k]. Y counts from an origin that moves with the bit, so only differences mean anything.
+    drilled[k] is None where piece k is of the survey.
     """
 
     def __init__(self, survey: Survey, length_scale: float, reach: float) -> None:
@@ -58,6 +72,7 @@ class Hole:
         self.starts = stations[:-1]
         self.rates: list[float] = []
         self.coefficients: list[tuple[float, ...]] = []
+        self.drilled: list[Drilled | None] = [None] * len(self.starts)
         Y = 0.0
         for k in range(len(stations) - 2, -1, -1):
             width = stations[k + 1] - stations[k]
@@ -71,11 +86,12 @@ class Hole:
         ]
         self.final_inclination = inclinations[-1]
 
-    def append(self, start: float, width: float, coefficients: tuple[float, ...]) -> None:
+    def append(self, start: float, width: float, coefficients: tuple[float, ...], drilled: Drilled) -> None:
         """Add the piece drilled from `start`; the piece before ends there."""
         self.starts.append(start)
         self.rates.append(1 / width)
         self.coefficients.append(coefficients)
+        self.drilled.append(drilled)
 
     def find(self, xi: float) -> int:
         """Index of the piece that covers `xi`."""
@@ -89,7 +105,7 @@ class Hole:
         return c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * c5))))
 
     def Theta(self, xi: float) -> float:
-        """Inclination of the hole at `xi`."""
+        """Y' at `xi`: the inclination; where the hole was drilled, but for the error of a step between its nodes."""
         k = self.find(xi)
         t = (xi - self.starts[k]) * self.rates[k]
         _, c1, c2, c3, c4, c5 = self.coefficients[k]
@@ -119,7 +135,7 @@ class Hole:
     def forget(self, xi: float) -> None:
         """Drop the pieces that end before `xi`."""
         first = self.find(xi)
-        del self.starts[:first], self.rates[:first], self.coefficients[:first]
+        del self.starts[:first], self.rates[:first], self.coefficients[:first], self.drilled[:first]
 
     def shift(self, Y: float) -> None:
         """Move the origin of the lateral coordinate by `Y`."""
@@ -127,9 +143,15 @@ class Hole:
 
     def save(self) -> dict[str, Any]:
         """The pieces, as plain lists."""
-        return {"starts": self.starts[:], "rates": self.rates[:], "coefficients": self.coefficients[:]}
+        return {
+            "starts": self.starts[:],
+            "rates": self.rates[:],
+            "coefficients": self.coefficients[:],
+            "drilled": self.drilled[:],
+        }
 
     def restore(self, state: dict[str, Any]) -> None:
         """Take over the pieces from `save`."""
         self.starts, self.rates = list(state["starts"]), list(state["rates"])
         self.coefficients = [tuple(c) for c in state["coefficients"]]
+        self.drilled = [piece and Drilled(tuple(piece[0]), *piece[1:]) for piece in state["drilled"]]

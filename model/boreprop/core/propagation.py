@@ -16,13 +16,14 @@ from . import radau
 from .assembly import Scaled
 from .beam import Beam
 from .contact import ROUNDING, Loads, Mode, Modes, bit_tilt, change, left
-from .hole import Hole, Survey
+from .hole import Drilled, Hole, Survey
 from .law import Bound, Law
 
 RELATIVE_TOLERANCE = 1e-7
 
 SMALLEST_STEP = 1e-12
 LARGEST_STEP = 1.0  # ℓ₁: the shortest delay, so a step never needs a hole that is not yet drilled
+LOOK_BACK = 1.0  # ℓ₁: how far behind the bit Θ may be asked for
 LARGEST_GROWTH = 8.0
 SAFETY = 0.85
 THETA_WEIGHT = 0.1  # θ forgets an error within εηΠ, Y carries it for the length of the BHA
@@ -123,7 +124,7 @@ class Propagation:
         self.beam = Beam(scaled)
         self.modes = Modes(self.beam, scaled.y_star)
         self.length_scale, self.tolerance = length_scale, relative_tolerance
-        self.hole = Hole(survey, length_scale, scaled.s[-1])
+        self.hole = Hole(survey, length_scale, scaled.s[-1] + LOOK_BACK)
         self.xi = 0.0
         self.F_rss, self.eta_pi = F_rss, eta_pi
         self.contact: tuple[int, ...] = (0,) * len(scaled.y_star)
@@ -184,16 +185,30 @@ class Propagation:
 
     def inclination(self) -> float:
         """Θ at the bit, eq. (16): algebraic, it jumps with the inputs."""
-        loads = self.loads()
-        F_0 = self.settled(loads).F_0(loads)
-        return self.step.state(self.xi)[0] - bit_tilt(F_0, self.eta_pi, self.scaled.psi_star)
+        return self._inclination(self.step.state(self.xi)[0], self.loads(), self.eta_pi)
+
+    def earlier_inclination(self, xi: float) -> float:
+        """What Θ was when the bit was at `xi`, at most LOOK_BACK behind; where it jumped, after the jump."""
+        hole = self.hole
+        k = hole.find(xi + MERGE)
+        drilled = hole.drilled[k]
+        if drilled is None:
+            return hole.Theta(xi)
+        xi = max(xi, hole.starts[k])
+        theta = drilled.at((xi - hole.starts[k]) * hole.rates[k])
+        return self._inclination(theta, self._loads(xi, theta, hole.Y(xi), drilled.F_rss), drilled.eta_pi)
+
+    def _inclination(self, theta: float, loads: Loads, eta_pi: float) -> float:
+        return theta - bit_tilt(self.settled(loads).F_0(loads), eta_pi, self.scaled.psi_star)
 
     def loads(self) -> Loads:
         """What bends the beam where the bit is."""
-        theta, Y = self.step.state(self.xi)
-        delayed = [self.hole.Y(self.xi - s_i) for s_i in self.scaled.s]
+        return self._loads(self.xi, *self.step.state(self.xi), self.F_rss)
+
+    def _loads(self, xi: float, theta: float, Y: float, F_rss: float) -> Loads:
+        delayed = [self.hole.Y(xi - s_i) for s_i in self.scaled.s]
         e = [Y - Y_i - s_i * theta for Y_i, s_i in zip(delayed, self.scaled.s)]
-        return Loads(e, self.F_rss, sin(Y - delayed[0]))
+        return Loads(e, F_rss, sin(Y - delayed[0]))
 
     def settled(self, loads: Loads) -> Mode:
         """The contacts under `loads`."""
@@ -309,7 +324,7 @@ class Propagation:
             self.hole.shift(Y)
             self.origin += Y
             Y = 0.0
-        self.hole.forget(last.end - self.scaled.s[-1])
+        self.hole.forget(last.end - LOOK_BACK - self.scaled.s[-1])
         kink = self._kink_here(last.end)
         if last.event is not None:
             self._switch(last.event, last.side)
@@ -322,7 +337,7 @@ class Propagation:
         A bound that is met where the step starts switches the mode there. By the rates exactly one mode holds, but
         perhaps for a touch that is over before the first point of the step: then each mode finds itself beyond a bound
         there, and the step is tried shorter. At h → 0 the mode that holds shows. Where rounding hides it, a value may
-        lie beyond its bound by a slack that grows as h falls: their product, what a wrong mode adds to the state, stays.
+        lie beyond its bound by a slack that grows as h falls: their product, what a wrong mode adds to θ and Y, stays.
         """
         last, xi, shortest = self.step, self.step.end, shortest_step(self.step.end)
         theta, Y, kink = self._leave(last)
@@ -373,7 +388,7 @@ class Propagation:
         if not abs(turned) <= LARGEST_INCLINATION:
             return f"the bit turns over at {self._place(end)}: {TURNS_OVER}"
         self.step = Step(xi, h, trial.step.theta, trial.step.Y, end, event, side, next_h)
-        self.hole.append(xi, h, self.step.Y)
+        self.hole.append(xi, h, self.step.Y, Drilled(self.step.theta, self.F_rss, self.eta_pi))
         if kink is not None:
             self._add_images(xi, kink, abs(self.step.derivative(kink, xi) - last.derivative(kink, xi)))
         return None

@@ -37,7 +37,7 @@ static inline int scale_inputs(const System *system, Inputs inputs, ScaledInputs
 
 /* Capacity, in pieces of hole, that a run under ordinary inputs needs. */
 static inline Count drilling_capacity(const System *system, const Survey *survey) {
-    double l1 = length_scale(system), reach = system->stabilizer_position[system->n - 1] / l1;
+    double l1 = length_scale(system), reach = LOOK_BACK + system->stabilizer_position[system->n - 1] / l1;
     Count count, first = first_station(survey, l1, reach, &count), capacity = LEAST_CAPACITY;
     while (capacity < 4 * (count - first)) capacity *= 2;
     return capacity;
@@ -94,7 +94,7 @@ static inline int drilling_outputs(Drilling *d, double out[MOST_OUTPUTS]) {
     Propagation *p = &d->propagation;
     const State *now = &p->now;
     int n = p->scaled.n;
-    double l1 = length_scale(&d->system), F_star = force_scale(&d->system), psi_star = p->scaled.psi_star;
+    double earlier = earlier_inclination(p, now->xi - 1.0), l1 = length_scale(&d->system), F_star = force_scale(&d->system), psi_star = p->scaled.psi_star;
     double theta, Y, x, z, *next = out;
     step_state(&now->step, now->xi, &theta, &Y);
     Loads loads = present_loads(p);
@@ -115,8 +115,7 @@ static inline int drilling_outputs(Drilling *d, double out[MOST_OUTPUTS]) {
     *next++ = left(F_0 / now->inputs.eta_pi, -psi_star, psi_star, ROUNDING);
     *next++ = F_0 * F_star;
     *next++ = -row_value(&mode->M, &loads, n) * F_star * l1;
-    /* where Θ jumped: after the jump */
-    *next++ = (Theta - hole_Theta(&p->hole, now->pieces, now->xi - 1.0 + MERGE)) / l1;
+    *next++ = (Theta - earlier) / l1;
     *next++ = x * l1;
     *next++ = z * l1;
     *next++ = now->inputs.eta_pi;
@@ -131,7 +130,7 @@ typedef struct {
 } Tape;
 
 enum { WHOLE_NUMBERS = 5 + 2 * MAX_STABILIZERS, FIXED_NUMBERS = WHOLE_NUMBERS + 28 };
-enum { NUMBERS_OF_PIECE = S + 3, NUMBERS_OF_KINK = 3 };
+enum { NUMBERS_OF_PIECE = 2 * S + 7, NUMBERS_OF_KINK = 3 };
 enum { AT_LENGTH = WHOLE_NUMBERS + 1, AT_XI, AT_ETA_PI = AT_XI + 3, AT_INPUTS_XI, AT_STEP = AT_INPUTS_XI + 4 };
 enum { AT_Y = AT_STEP + S + 3, AT_STEP_END = AT_Y + S + 1 }; /* places of some of the fixed numbers */
 
@@ -180,7 +179,8 @@ static inline void pass_state(Tape *tape, Drilling *d) {
     pass(tape, 1, &now->events);
     for (Count k = now->pieces.first; k < now->pieces.end; k++) {
         Piece *at = piece(&p->hole, k);
-        pass(tape, 1, &at->start), pass(tape, 1, &at->rate), pass(tape, S + 1, at->c);
+        pass(tape, 1, &at->start), pass(tape, 1, &at->rate), pass(tape, S + 1, at->c), pass(tape, S + 1, at->theta);
+        pass(tape, 1, &at->inputs.F_rss), pass(tape, 1, &at->inputs.F_rss_slope), pass(tape, 1, &at->inputs.eta_pi);
     }
     for (Count k = first_kink; k < now->kinks_end; k++) {
         Kink *at = kink(&p->hole, k);
@@ -227,6 +227,7 @@ static inline int is_state(const Drilling *d, const double *state, Count count) 
         const double *at = state + FIXED_NUMBERS + NUMBERS_OF_PIECE * k, *step = state + AT_STEP;
         int last = k + 1 == (Count)pieces, stands = state[AT_STEP_END] == step[0];
         double end = last ? step[0] : at[NUMBERS_OF_PIECE], Y = last ? state[AT_Y] : at[NUMBERS_OF_PIECE + 2];
+        if (at[NUMBERS_OF_PIECE - 1] != 0 && !(at[NUMBERS_OF_PIECE - 1] > 0)) return 0;
         if (!(at[1] > 0) || end < at[0] || !(fabs(polynomial(at + 2, (end - at[0]) * at[1]) - Y) <= MERGE)) return 0;
         if (last && !stands && (at[0] != step[0] || at[1] != 1 / step[1])) return 0;
         if (last && !stands && memcmp(at + 2, state + AT_Y, (S + 1) * sizeof *at)) return 0;

@@ -2,8 +2,7 @@
 #ifndef BOREPROP_HOLE_H
 #define BOREPROP_HOLE_H
 
-#include "assembly.h"
-#include "radau.h"
+#include "law.h"
 
 /* The existing hole: inclination (rad) at measured depths (m), linear in between, straight above the first station.
    The last station is the bit at the start of the run. */
@@ -23,9 +22,11 @@ static inline int check_survey(const Survey *survey, char why[MESSAGE]) {
     return 1;
 }
 
-/* From `start` to the start of the next piece Y = Σ c[m] t^m with t = (ξ − start) · rate. */
+/* From `start` to the start of the next piece Y = Σ c[m] t^m with t = (ξ − start) · rate. If it was drilled, θ is a sum
+   like that, and these were the inputs from its start on; ηΠ is zero if it is of the survey. */
 typedef struct {
-    double start, rate, c[S + 1];
+    double start, rate, c[S + 1], theta[S + 1];
+    ScaledInputs inputs;
 } Piece;
 
 /* A jump in derivative `order` of Y at `xi`, that the stabilizers will pass. */
@@ -86,7 +87,7 @@ static inline double take_survey(
     for (Count k = pieces->end - 1; k >= 0; k--) {
         double inclination, xi = station(survey, length_scale, reach, first + k, &inclination), width = end - xi;
         double slope = inclination * width, curve = (end_inclination - inclination) * width / 2;
-        Piece arc = {xi, 1 / width, {Y -= slope + curve, slope, curve}};
+        Piece arc = {xi, 1 / width, {Y -= slope + curve, slope, curve}, {0}, {0, 0, 0}};
         *piece(hole, k) = arc;
         end = xi, end_inclination = inclination;
     }
@@ -102,11 +103,9 @@ static inline double take_survey(
     return final_inclination;
 }
 
-/* Add the piece drilled from `start`; the piece before ends there. */
-static inline void append(const Hole *hole, Pieces *pieces, double start, double width, const double c[S + 1]) {
-    Piece *added = piece(hole, pieces->end++);
-    added->start = start, added->rate = 1 / width;
-    memcpy(added->c, c, sizeof added->c);
+/* Add the piece that was drilled last; the piece before ends where it starts. */
+static inline void append(const Hole *hole, Pieces *pieces, const Piece *drilled) {
+    *piece(hole, pieces->end++) = *drilled;
 }
 
 /* Number of the piece that covers `xi`. */
@@ -134,7 +133,7 @@ static inline double hole_Y(const Hole *hole, Pieces pieces, double xi) {
     return polynomial(at->c, (xi - at->start) * at->rate);
 }
 
-/* Inclination of the hole at `xi`. */
+/* Y' at `xi`: the inclination; where the hole was drilled, but for the error of a step between its nodes. */
 static inline double hole_Theta(const Hole *hole, Pieces pieces, double xi) {
     const Piece *at = piece(hole, find(hole, pieces, xi));
     return polynomial_slope(at->c, (xi - at->start) * at->rate) * at->rate;

@@ -12,6 +12,7 @@
 
 #define SMALLEST_STEP 1e-12
 #define LARGEST_STEP 1.0 /* ℓ₁: the shortest delay, so a step never needs a hole that is not yet drilled */
+#define LOOK_BACK 1.0 /* ℓ₁: how far behind the bit Θ may be asked for */
 #define LARGEST_GROWTH 8.0
 #define SAFETY 0.85
 #define THETA_WEIGHT 0.1 /* θ forgets an error within εηΠ, Y carries it for the length of the BHA */
@@ -113,14 +114,12 @@ static inline double present_force(const State *now) {
     return now->inputs.F_rss + now->inputs.F_rss_slope * (now->xi - now->inputs_xi);
 }
 
-/* What bends the beam where the bit is. */
-static inline Loads present_loads(const Propagation *p) {
-    const State *now = &p->now;
-    double theta, Y, Y_1 = 0.0;
-    Loads loads = {{0}, present_force(now), 0};
-    step_state(&now->step, now->xi, &theta, &Y);
+/* What bends the beam with the bit at `xi`. */
+static inline Loads loads_at(const Propagation *p, double xi, double theta, double Y, double F_rss) {
+    double Y_1 = 0.0;
+    Loads loads = {{0}, F_rss, 0};
     for (int i = 0; i < p->scaled.n; i++) {
-        double Y_i = hole_Y(&p->hole, now->pieces, now->xi - p->scaled.s[i]);
+        double Y_i = hole_Y(&p->hole, p->now.pieces, xi - p->scaled.s[i]);
         if (i == 0) Y_1 = Y_i;
         loads.e[i] = Y - Y_i - p->scaled.s[i] * theta;
     }
@@ -128,13 +127,35 @@ static inline Loads present_loads(const Propagation *p) {
     return loads;
 }
 
-/* Θ at the bit, eq. (16): algebraic, it jumps with the inputs. */
-static inline double inclination(Propagation *p) {
-    Loads loads = present_loads(p);
-    const Mode *mode = settle(&p->modes, &loads, p->now.contact);
-    double theta, Y, F_0 = row_value(&mode->F_0, &loads, p->scaled.n);
+/* What bends the beam where the bit is. */
+static inline Loads present_loads(const Propagation *p) {
+    double theta, Y;
     step_state(&p->now.step, p->now.xi, &theta, &Y);
-    return theta - bit_tilt(F_0, p->now.inputs.eta_pi, p->scaled.psi_star);
+    return loads_at(p, p->now.xi, theta, Y, present_force(&p->now));
+}
+
+/* Θ, eq. (16): algebraic, it jumps with the inputs. */
+static inline double inclination_under(Propagation *p, double theta, const Loads *loads, double eta_pi) {
+    const Mode *mode = settle(&p->modes, loads, p->now.contact);
+    return theta - bit_tilt(row_value(&mode->F_0, loads, p->scaled.n), eta_pi, p->scaled.psi_star);
+}
+
+/* Θ at the bit. */
+static inline double inclination(Propagation *p) {
+    double theta, Y;
+    Loads loads = present_loads(p);
+    step_state(&p->now.step, p->now.xi, &theta, &Y);
+    return inclination_under(p, theta, &loads, p->now.inputs.eta_pi);
+}
+
+/* What Θ was when the bit was at `xi`, at most LOOK_BACK behind; where it jumped, after the jump. */
+static inline double earlier_inclination(Propagation *p, double xi) {
+    const Piece *at = piece(&p->hole, find(&p->hole, p->now.pieces, xi + MERGE));
+    if (at->inputs.eta_pi == 0) return hole_Theta(&p->hole, p->now.pieces, xi);
+    double ahead = larger(xi - at->start, 0.0), t = ahead * at->rate, theta = polynomial(at->theta, t);
+    double F_rss = at->inputs.F_rss + at->inputs.F_rss_slope * ahead;
+    Loads loads = loads_at(p, at->start + ahead, theta, polynomial(at->c, t), F_rss);
+    return inclination_under(p, theta, &loads, at->inputs.eta_pi);
 }
 
 /* the integrator */
@@ -247,7 +268,7 @@ static inline int leave(Propagation *p, const Step *last, double *theta, double 
         now->origin += *Y;
         *Y = 0.0;
     }
-    now->pieces.first = find(&p->hole, now->pieces, last->end - p->scaled.s[p->scaled.n - 1]);
+    now->pieces.first = find(&p->hole, now->pieces, last->end - LOOK_BACK - p->scaled.s[p->scaled.n - 1]);
     int kink = kink_here(p, last->end);
     if (last->event != NONE) {
         switch_over(p, last->event, last->side);
@@ -463,7 +484,11 @@ static inline Status take_step(Propagation *p, char why[MESSAGE]) {
     step_state(&now->step, now->step.end, &turned, &end_Y);
     if (!(fabs(turned) <= LARGEST_INCLINATION))
         return failed(p, "the bit turns over", now->step.end, TURNS_OVER, why);
-    append(&p->hole, &now->pieces, xi, h, now->step.Y);
+    Piece drilled = {xi, 1 / h, {0}, {0}, now->inputs};
+    memcpy(drilled.c, now->step.Y, sizeof drilled.c);
+    memcpy(drilled.theta, now->step.theta, sizeof drilled.theta);
+    drilled.inputs.F_rss += now->inputs.F_rss_slope * (xi - now->inputs_xi);
+    append(&p->hole, &now->pieces, &drilled);
     if (kink <= SMOOTHEST_KINK)
         add_images(p, xi, kink, fabs(step_derivative(&now->step, kink, xi) - step_derivative(&last, kink, xi)));
     now->accepted++;
@@ -534,7 +559,7 @@ static inline void prepare(
 /* Start at the end of a survey; the rings must have room for it. */
 static inline Status begin(Propagation *p, const Survey *survey, ScaledInputs inputs, char why[MESSAGE]) {
     State *now = &p->now;
-    double reach = p->scaled.s[p->scaled.n - 1];
+    double reach = LOOK_BACK + p->scaled.s[p->scaled.n - 1];
     double final_inclination = take_survey(&p->hole, survey, p->length_scale, reach, &now->pieces, &now->kinks_end);
     for (Count k = 0; k < now->pieces.end; k++)
         if (!check_finite("l_1 / distance of stations", piece(&p->hole, k)->rate, why)) return FAILED;
