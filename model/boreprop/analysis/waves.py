@@ -192,9 +192,11 @@ class LastWaves:
     def starts(self) -> Floats:
         """Where the waves rise through zero without their harmonics, in the unit of x: one more than there are lengths.
 
+        Of their trend only the polynomial is taken off: it keeps nothing of waves of two lengths in turn.
+
         A mean over half a wavelength keeps nothing of the even harmonics, one over a third of it nothing of each third.
         """
-        x, smooth = self.x, without_trend(self.x, self.trend + self.deviation)
+        x, smooth = self.x, self.deviation + without_trend(self.x, self.trend)
         for part in (2, 3):
             inside, smooth = mean_over(x, smooth, self.wavelength / part)
             x = x[inside]
