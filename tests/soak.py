@@ -8,13 +8,14 @@ printed repeats it.
 """
 
 import argparse
+import os
 import secrets
+import signal
 import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
-from signal import SIGINT
 from time import monotonic
 from xml.etree import ElementTree
 
@@ -38,6 +39,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     print(f"soak: {options.minutes:g} minutes, seed {options.seed}", flush=True)
     end = monotonic() + 60 * options.minutes
     failures: list[str] = []
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # which a shell may have told us to ignore
     try:
         failures += properties(options.seed, end - FUZZERS_SHARE * 60 * options.minutes)
         failures += fuzzers(options.seed, (end - monotonic()) / 60)
@@ -63,7 +65,7 @@ def properties(seed: int, until: float) -> list[str]:
                 return [" ".join(command)]
         if not cut:
             done += 1
-    print(f"soak: the property tests with {done} times the examples of the suite", flush=True)
+    print(f"soak: the property tests with {done} × the examples of the suite", flush=True)
     return []
 
 
@@ -105,12 +107,12 @@ def finish(processes: list["subprocess.Popen[bytes]"], until: float | None = Non
 def stop(processes: list["subprocess.Popen[bytes]"]) -> None:
     """Ask processes to end, and wait until they have."""
     for process in processes:
-        process.send_signal(SIGINT)
+        process.send_signal(signal.SIGINT)
     for process in processes:
         try:
             process.wait(PATIENCE)
         except subprocess.TimeoutExpired:
-            process.kill()
+            os.killpg(process.pid, signal.SIGKILL)
             process.wait()
 
 

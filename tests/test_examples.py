@@ -1,20 +1,24 @@
 """The examples do what their files and the README say of them."""
 
 from dataclasses import replace
-from math import pi, radians
+from math import degrees, pi, radians
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from boreprop.analysis.rippling import find_rippling
+from boreprop.analysis.stability import Roots, critical_eta_pi, find_roots
 from boreprop.case import Case, load_case, read_survey
+from boreprop.core.assembly import eta_pi
+from boreprop.core.drilling import Drilling
 from boreprop.core.hole import Survey
 from boreprop.results import Trajectory
-from boreprop.simulation import simulate
+from boreprop.simulation import best_engine, simulate
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 INCH = 0.0254
+README = (EXAMPLES / "README.md").read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="module")
@@ -89,6 +93,62 @@ def test_a_quarter_of_the_weight_makes_it_ripple(case: Case) -> None:
     run = simulate(replace(case, active_weight_on_bit=case.active_weight_on_bit / 4), sample_interval=0.1)
     assert ripple(run, case) > 0.5
     assert ripples(run, case)
+
+
+def miss(case: Case) -> np.ndarray:
+    """How far a run of the schedule is from the plan, row by row, degrees."""
+    run, plan = simulate(case, engine=best_engine()), read_survey(EXAMPLES / "build_section_plan.csv")
+    planned = np.interp(plan.measured_depth[0] + run["drilled_length"], plan.measured_depth, plan.inclination)
+    return np.degrees(run["borehole_inclination"] - planned)
+
+
+def test_the_readme_of_the_examples_has_the_numbers_of_the_run(case: Case, run: Trajectory) -> None:
+    own, light = miss(case), replace(case, active_weight_on_bit=case.active_weight_on_bit / 2)
+    loose = replace(case, bha=replace(case.bha, stabilizer_clearances=(3.2e-3, 6.4e-3)))
+    forces, contacts = np.abs(run.stack("stabilizer_force")).max(axis=0), run.stack("stabilizer_contact") != 0
+    said = (
+        f"within {np.abs(own).max():.2f}° (",
+        f"{np.sqrt((own**2).mean()):.2f}° root mean square",
+        f"{forces[0] / 1e3:.1f} kN at stabilizer 1 (in contact over {100 * contacts[:, 0].mean():.0f} % of the length)",
+        f"{forces[1] / 1e3:.1f} kN at stabilizer 2 (all of it)",
+        f"within ±{np.degrees(np.abs(run['bit_tilt']).max()):.2f}°, never at its limit",
+        f"half the weight on bit: by up to {np.abs(miss(light)).max():.1f}°",
+        f"clearances doubled: by up to {np.abs(miss(loose)).max():.1f}°",
+    )
+    assert [text for text in said if text not in README] == []
+    assert contacts[:, 1].all()
+    assert not run["bit_tilt_saturation"].any()
+
+
+def test_a_jump_of_the_force_turns_the_hole_by_what_the_readme_says(case: Case) -> None:
+    drilling = Drilling(case.bha, case.bit, case.survey, active_weight_on_bit=case.active_weight_on_bit, rss_force=2e3)
+    drilling.advance(50.0, 2e3, case.active_weight_on_bit)
+    before = drilling.outputs()
+    drilling.advance(50.0, 3e3, case.active_weight_on_bit)
+    jump = degrees(drilling.outputs()["borehole_inclination"] - before["borehole_inclination"])
+    assert (before["stabilizer_contact[1]"], before["stabilizer_contact[2]"]) == (1, 1)
+    assert f"turns the hole at once by {jump:.3f}° per kN" in README
+
+
+def test_the_stability_of_the_build_section_is_what_the_readme_says(case: Case) -> None:
+    def found(at: float, inclination: float) -> Roots:
+        return find_roots(case.bha, case.bit, at, contact=(1, 2), inclination=inclination)
+
+    start, end = case.survey.inclination[-1], radians(53.43)
+    own = eta_pi(case.bha, case.bit, case.active_weight_on_bit)
+    weight = case.active_weight_on_bit / own
+    assert (found(0.1289, start).verdict, found(0.129, start).verdict) == ("oscillatory", "stable")
+    critical = critical_eta_pi(case.bha, case.bit, contact=(1, 2), inclination=start)
+    assert critical is not None
+    told = f"ηΠ = 0.1289 ({critical.eta_pi * weight / 1e3:.1f} kN; wavelength {critical.wavelength:.1f} m)"
+    assert told in " ".join(README.split())
+    for contact in ((), (1,), (2,)):
+        for saturated in (False, True):
+            other = critical_eta_pi(case.bha, case.bit, contact=contact, saturated=saturated, inclination=end)
+            assert other is None or other.eta_pi < 0.037
+    assert f"below 0.037 ({0.037 * weight / 1e3:.1f} kN)" in README
+    slow = [found(own, inclination).roots[0].real for inclination in (start, end)]
+    assert f"(−{-slow[0]:.4f} per 4.3 m at 26.37°, −{-slow[1]:.4f} at 53.43°)" in README
 
 
 def test_the_case_of_the_paper_ripples() -> None:

@@ -51,7 +51,7 @@ def test_it_is_green_where_all_pass(
     assert soaked(monkeypatch, pytest_of(tmp_path, "assert number == number"), PASSES) == 0
     told = capfd.readouterr().out
     assert "soak: 10 minutes, seed 7" in told
-    assert "2 times the examples" in told
+    assert "2 × the examples" in told
     assert "all green" in told
     assert told.count("1 passed") == 2
 
@@ -80,7 +80,7 @@ def test_a_round_that_lasts_too_long_is_cut_and_is_no_failure(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     assert soaked(monkeypatch, pytest_of(tmp_path, "time.sleep(60.0)"), PASSES, minutes="0.1") == 0
-    assert "0 times the examples" in capfd.readouterr().out
+    assert "0 × the examples" in capfd.readouterr().out
 
 
 def test_a_soak_takes_time(capsys: pytest.CaptureFixture[str]) -> None:
