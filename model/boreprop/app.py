@@ -1,6 +1,7 @@
 """The command `boreprop`: simulate a case, draw the paper's figures."""
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated, NoReturn
 
@@ -36,10 +37,16 @@ def simulate(
     engine: Annotated[
         str, typer.Option(metavar="python|native", help="The model in Python, or the same as compiled code: faster.")
     ] = "python",
+    tolerance: console.Tolerance = None,
 ) -> None:
-    """Simulate a case; rows at k times the sample interval, k = 0, 1, …"""
+    """Simulate a case; rows at k times the sample interval, k = 0, 1, …
+
+    If the run cannot go on to its end, the rows so far are written all the same; the exit status is then 3.
+    """
     from .case import InputError, load_case
     from .core.assembly import check_number
+    from .core.propagation import RELATIVE_TOLERANCE
+    from .errors import Stopped
     from .results import SUFFIXES, case_path, write_trajectory
 
     console.check_output(output, SUFFIXES)
@@ -51,8 +58,19 @@ def simulate(
     check_number("--sample-interval", sample_interval, at_least=case.length / MAX_ROWS)
     from .simulation import simulate
 
-    with console.progress("drilling", case.length) as drilled:
-        trajectory = simulate(case, sample_interval=sample_interval, progress=drilled, engine=engine)
+    try:
+        with console.progress("drilling", case.length) as drilled:
+            trajectory = simulate(
+                case,
+                sample_interval=sample_interval,
+                relative_tolerance=RELATIVE_TOLERANCE if tolerance is None else tolerance,
+                progress=drilled,
+                engine=engine,
+            )
+    except Stopped as stopped:
+        if stopped.trajectory is not None:
+            write_trajectory(stopped.trajectory, output)
+        raise
     write_trajectory(trajectory, output)
     print(f"{output}: {len(trajectory)} rows over {case.length:g} m")
 
@@ -153,6 +171,7 @@ def study(
     workers: Annotated[
         int | None, typer.Option(metavar="K", help="Number of processes, if not one for each core.")
     ] = None,
+    tolerance: console.Tolerance = None,
 ) -> None:
     """Simulate many cases on all cores: over a grid, or of uncertain parameters.
 
@@ -178,12 +197,13 @@ def study(
     else:
         cases = sample(case, parse_each(parse_distribution, uncertain or []), draws, seed)
         quantiles = {"10 %": 0.1, "50 %": 0.5, "90 %": 0.9}
-    from .analysis.study import run
+    from .analysis.study import key_figures, run
     from .study_table import lines, verdict
 
+    figures = key_figures if tolerance is None else partial(key_figures, relative_tolerance=tolerance)
     try:
         with console.progress("cases", len(cases)) as done:
-            results = run(cases, output=output, workers=workers, progress=done)
+            results = run(cases, figures, output=output, workers=workers, progress=done)
     except KeyboardInterrupt:
         if output.exists():
             console.warn(f"{output}: keeps the cases that are done; the same command goes on from there")

@@ -31,6 +31,8 @@ class Summary:
         Share of the length the bit tilt is at its limit.
     rippling
         Whether it ends rippling, with what wave.
+    stopped
+        Why the run ended before its end, if it did.
     """
 
     drilled_length: float
@@ -42,6 +44,7 @@ class Summary:
     contact_share: NDArray[np.float64]
     saturation_share: float
     rippling: Rippling
+    stopped: str | None = None
 
 
 def summarize(trajectory: Trajectory, length_scale: float) -> Summary:
@@ -63,6 +66,7 @@ def summarize(trajectory: Trajectory, length_scale: float) -> Summary:
         contact_share=np.average(trajectory.stack("stabilizer_contact") != 0, axis=0, weights=weights),
         saturation_share=float(np.average(trajectory["bit_tilt_saturation"] != 0, weights=weights)),
         rippling=examine_rippling(trajectory, length_scale),
+        stopped=trajectory.stopped,
     )
 
 
@@ -71,6 +75,7 @@ def rows(summary: Summary, length_scale: float) -> list[tuple[str, str]]:
     stabilizers = enumerate(zip(summary.largest_contact_force, summary.contact_share, strict=True), 1)
     return [
         ("drilled length", f"{summary.drilled_length:.1f} m"),
+        *([("stopped", summary.stopped)] if summary.stopped else []),
         ("inclination at the start", f"{np.degrees(summary.start_inclination):.2f} °"),
         ("inclination at the end", f"{np.degrees(summary.end_inclination):.2f} °"),
         ("build rate, mean", _rate(summary.build_rate)),
