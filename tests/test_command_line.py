@@ -13,8 +13,8 @@ from boreprop import console
 from boreprop.case import InputError, load_case
 from boreprop.core.assembly import ParameterError
 from boreprop.core.tables import TableError
+from boreprop.errors import Stopped
 from boreprop.results import read_trajectory
-from boreprop.simulation import SimulationError
 from conftest import Command
 
 ROOT = Path(__file__).parents[1]
@@ -189,7 +189,7 @@ def run_raising(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
         InputError("x: must be y, got z"),
         ParameterError("x", "must be y", 5),
         TableError("x: must be y, got z"),
-        SimulationError("after 5 m: x"),
+        Stopped("after 5 m: x"),
         FileNotFoundError(2, "no such file", "x"),
         ModuleNotFoundError("No module named 'rerun.x'", name="rerun.x"),
         InputError("x: must be y,\ngot z"),

@@ -26,9 +26,10 @@ from boreprop.case import Case, Schedule
 from boreprop.core.assembly import ParameterError
 from boreprop.core.drilling import Drilling
 from boreprop.core.hole import Survey
+from boreprop.errors import Stopped
 from boreprop.paper import LENGTH_SCALE, paper_case
 from boreprop.results import Trajectory
-from boreprop.simulation import SimulationError, simulate
+from boreprop.simulation import simulate
 from boreprop.tipping_table import left_out, loop, rows
 from conftest import Command
 
@@ -111,7 +112,7 @@ def test_a_wave_that_takes_for_ever_to_die_out_does_not_ripple() -> None:
 
 def test_a_failing_run_says_where() -> None:
     pushed = replace(paper_case(), schedule=Schedule((0.0,), (1e9,)))
-    with pytest.raises(SimulationError, match="after 0 m: the bit turns over"):
+    with pytest.raises(Stopped, match="after 0 m: the bit turns over"):
         drill_until_settled(pushed)
 
 

@@ -76,18 +76,28 @@ def run(
     stop: Annotated[
         float | None, typer.Option(parser=positive, metavar="T", help="End, s, instead of the FMU's own.")
     ] = None,
+    tolerance: console.Tolerance = None,
 ) -> None:
-    """Run an FMU through fmpy; rows at k times the step, k = 0, 1, …"""
+    """Run an FMU through fmpy; rows at k times the step, k = 0, 1, …
+
+    If the FMU cannot go on to the end, the rows so far are written all the same; the exit status is then 3.
+    """
     from boreprop.case import read_schedule
+    from boreprop.errors import Stopped
     from boreprop.results import SUFFIXES, write_trajectory
 
     from .drive import Run
 
     console.check_output(output, SUFFIXES)
     forces = None if schedule is None else read_schedule(schedule)
-    fmu_run = Run(fmu, forces, step=step, stop=stop)
-    with console.progress("drilling", fmu_run.stop) as done:
-        trajectory = fmu_run.trajectory(done)
+    fmu_run = Run(fmu, forces, step=step, stop=stop, relative_tolerance=tolerance)
+    try:
+        with console.progress("drilling", fmu_run.stop) as done:
+            trajectory = fmu_run.trajectory(done)
+    except Stopped as stopped:
+        if stopped.trajectory is not None:
+            write_trajectory(stopped.trajectory, output)
+        raise
     write_trajectory(trajectory, output)
     print(f"{output}: {len(trajectory)} rows over {trajectory['drilled_length'][-1]:g} m")
 

@@ -25,6 +25,7 @@ from fmpy.fmi2 import (
 from boreprop.case import Case, InputError, Schedule, parse_case
 from boreprop.core.assembly import check_number
 from boreprop.core.variables import INPUTS, OUTPUTS
+from boreprop.errors import Stopped
 from boreprop.kernel.compiler import host_platform
 from boreprop.results import Trajectory
 
@@ -46,6 +47,8 @@ class Run:
         that is packed in the FMU, without one the FMU's own start value.
     step, stop
         Communication step and last communication point, s. None: those of the FMU's default experiment.
+    relative_tolerance
+        The FMU's parameter of that name. None: as it is packed.
 
     Attributes
     ----------
@@ -63,7 +66,13 @@ class Run:
     """
 
     def __init__(
-        self, fmu: str | Path, schedule: Schedule | None = None, *, step: float | None = None, stop: float | None = None
+        self,
+        fmu: str | Path,
+        schedule: Schedule | None = None,
+        *,
+        step: float | None = None,
+        stop: float | None = None,
+        relative_tolerance: float | None = None,
     ) -> None:
         self.fmu = Path(fmu)
         self._description = _read_description(self.fmu)
@@ -79,7 +88,8 @@ class Run:
         check_number("step", self.step, above=0.0)
         check_number("stop", self.stop, at_least=self.start)
         self._variables = {variable.name: variable for variable in self._description.modelVariables}
-        for name in ("rss_force", "drilled_length"):
+        self._tolerance = relative_tolerance
+        for name in ("rss_force", "drilled_length") + ("relative_tolerance",) * (relative_tolerance is not None):
             if name not in self._variables:
                 raise InputError(f"{fmu}: must have a variable {name!r}, got {', '.join(self._variables) or 'none'}")
         n = sum(name.startswith("average_inclination[") for name in self._variables)
@@ -94,6 +104,8 @@ class Run:
         time = self.start
         try:
             with self._instance(messages) as slave:
+                if self._tolerance is not None:
+                    slave.setReal([self._variables["relative_tolerance"].valueReference], [self._tolerance])
                 changes = self._changes(slave)
                 read = self._reader(slave)
                 self._advance(slave, time, time, changes)
@@ -109,15 +121,28 @@ class Run:
             raise InputError(f"{self.fmu}: at {time:.9g} s: {' '.join(messages) or error}") from error
 
     def trajectory(self, progress: Callable[[float], None] | None = None) -> Trajectory:
-        """All rows, with the case; `progress` is called with the time, s, after each row."""
+        """All rows, with the case; `progress` is called with the time, s, after each row.
+
+        Raises `Stopped`, with the rows so far, if a call fails after the first row.
+        """
         if len(self) > MAX_ROWS:
             raise InputError(f"step: must give at most {MAX_ROWS} rows up to {self.stop:g} s, got {self.step:g} s")
-        rows = np.empty((len(self), len(self.columns)))
-        for k, row in enumerate(self):
-            rows[k] = row
-            if progress:
-                progress(row[0])
-        return Trajectory(dict(zip(self.columns, rows.T.copy(), strict=True)), self.case)
+        rows, done, stopped = np.empty((len(self), len(self.columns))), 0, None
+        try:
+            for row in self:
+                rows[done] = row
+                done += 1
+                if progress:
+                    progress(row[0])
+        except InputError as error:
+            if not done:
+                raise
+            stopped = str(error)
+        columns = dict(zip(self.columns, rows[:done].T.copy(), strict=True))
+        trajectory = Trajectory(columns, self.case, stopped)
+        if stopped:
+            raise Stopped(stopped, trajectory)
+        return trajectory
 
     def _choose(self, name: str, given: float | None, default: str | float | None) -> float:
         if given is None and default is None:
@@ -231,8 +256,8 @@ def drive(
 
     Raises
     ------
-    InputError, ParameterError
-        See `Run`.
+    InputError, ParameterError, Stopped
+        See `Run` and `Run.trajectory`.
     """
     return Run(fmu, schedule, step=step, stop=stop).trajectory(progress)
 

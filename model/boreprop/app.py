@@ -1,6 +1,7 @@
 """The command `boreprop`: simulate a case, draw the paper's figures."""
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated, NoReturn
 
@@ -37,10 +38,16 @@ def simulate(
     engine: Annotated[
         str, typer.Option(metavar="python|native", help="The model in Python, or the same as compiled code: faster.")
     ] = "python",
+    tolerance: console.Tolerance = None,
 ) -> None:
-    """Simulate a case; rows at k times the sample interval, k = 0, 1, …"""
+    """Simulate a case; rows at k times the sample interval, k = 0, 1, …
+
+    If the run cannot go on to its end, the rows so far are written all the same; the exit status is then 3.
+    """
     from .case import InputError, load_case
     from .core.assembly import check_number
+    from .core.propagation import RELATIVE_TOLERANCE
+    from .errors import Stopped
     from .results import SUFFIXES, case_path, write_trajectory
 
     console.check_output(output, SUFFIXES)
@@ -52,8 +59,19 @@ def simulate(
     check_number("--sample-interval", sample_interval, at_least=case.length / MAX_ROWS)
     from .simulation import simulate
 
-    with console.progress("drilling", case.length) as drilled:
-        trajectory = simulate(case, sample_interval=sample_interval, progress=drilled, engine=engine)
+    try:
+        with console.progress("drilling", case.length) as drilled:
+            trajectory = simulate(
+                case,
+                sample_interval=sample_interval,
+                relative_tolerance=tolerance or RELATIVE_TOLERANCE,
+                progress=drilled,
+                engine=engine,
+            )
+    except Stopped as stopped:
+        if stopped.trajectory is not None:
+            write_trajectory(stopped.trajectory, output)
+        raise
     write_trajectory(trajectory, output)
     print(f"{output}: {len(trajectory)} rows over {case.length:g} m")
 
@@ -158,6 +176,7 @@ def study(
     workers: Annotated[
         int | None, typer.Option(metavar="K", help="Number of processes, if not one for each core.")
     ] = None,
+    tolerance: console.Tolerance = None,
 ) -> None:
     """Simulate many cases on all cores: over a grid, or of uncertain parameters.
 
@@ -183,12 +202,13 @@ def study(
     else:
         cases = sample(case, parse_each(parse_distribution, uncertain or []), draws, seed)
         quantiles = {"10 %": 0.1, "50 %": 0.5, "90 %": 0.9}
-    from .analysis.study import run
+    from .analysis.study import key_figures, run
     from .study_table import lines, verdict
 
+    figures = key_figures if tolerance is None else partial(key_figures, relative_tolerance=tolerance)
     try:
         with console.progress("cases", len(cases)) as done:
-            results = run(cases, output=output, workers=workers, progress=done)
+            results = run(cases, figures, output=output, workers=workers, progress=done)
     except KeyboardInterrupt:
         if output.exists():
             console.warn(f"{output}: keeps the cases that are done; the same command goes on from there")
@@ -213,7 +233,7 @@ def dogleg(
     limit_deg: Annotated[
         float, typer.Option(parser=console.positive, metavar="A", help="Largest turn that is tried, degrees.")
     ] = 10.0,
-    tolerance: console.Tolerance = RELATIVE_TOLERANCE,
+    tolerance: console.Tolerance = None,
 ) -> None:
     """Print the smallest dogleg in the existing hole from which a case ripples; map it over weight and clearance.
 
@@ -234,7 +254,10 @@ def dogleg(
     across = parse_range("--eta-pi", eta_pi) if eta_pi else None
     up = parse_range("--clearance-mm", clearance_mm) / 1e3 if clearance_mm else None
     case, limit = load_case(case_file), radians(limit_deg)
-    found = {side: critical_dogleg_or_why(case, side=side, limit=limit, relative_tolerance=tolerance) for side in SIDES}
+    found = {
+        side: critical_dogleg_or_why(case, side=side, limit=limit, relative_tolerance=tolerance or RELATIVE_TOLERANCE)
+        for side in SIDES
+    }
     table = Table(str(case_file), "")
     for row in rows(case, found, limit):
         table.add_row(*row)
@@ -246,7 +269,9 @@ def dogleg(
         usual = usual_map(case)
         across, up = usual[0] if across is None else across, usual[1] if up is None else up
         with console.progress("doglegs", len(across) * len(up)) as done:
-            found_map = dogleg_map(case, across, up, limit=limit, relative_tolerance=tolerance, progress=done)
+            found_map = dogleg_map(
+                case, across, up, limit=limit, relative_tolerance=tolerance or RELATIVE_TOLERANCE, progress=done
+            )
         save(draw_map(case, found_map, limit), output)
         print(f"{output}: the smallest dogleg that tips it over, by weight and clearance{left_out(found_map)}")
 
@@ -269,7 +294,7 @@ def hysteresis(
             help="Turn of straight holes over half the BHA before the bit, degrees.",
         ),
     ] = 0.5,
-    tolerance: console.Tolerance = RELATIVE_TOLERANCE,
+    tolerance: console.Tolerance = None,
 ) -> None:
     """Draw where an ongoing ripple dies out as weight or clearance goes up, and where it comes back on the way down."""
     from math import radians
@@ -290,7 +315,9 @@ def hysteresis(
     else:
         name, values = "stabilizer_clearance[1]", (parse_range("--clearance-mm", clearance_mm or "") / 1e3).tolist()
     with console.progress("values", 2 * len(values)) as done:
-        found = tipping.hysteresis(case, name, values, radians(dogleg_deg), relative_tolerance=tolerance, progress=done)
+        found = tipping.hysteresis(
+            case, name, values, radians(dogleg_deg), relative_tolerance=tolerance or RELATIVE_TOLERANCE, progress=done
+        )
     save(draw_loop(case, found), output)
     print(f"{output}: {loop(case, found)}")
 

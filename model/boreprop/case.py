@@ -4,6 +4,7 @@ The file speaks the field's language (long names, degrees), a `Case` the core's 
 like is in `case_file`, which needs the extra [cli]; a `Case` made in Python needs nothing.
 """
 
+import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -164,11 +165,24 @@ def _naming(path: str | Path) -> Iterator[None]:
         raise InputError(f"{path}: {error.name}: {error.constraint}, got {shown(error.value)}") from error
 
 
-def dump_case(case: Case) -> str:
-    """`case` as the text of a case file that refers to no other file; `parse_case` gives the same case back."""
+def read_stopped(text: str) -> str | None:
+    """Why the run of a case stopped before its end, if the text of the case's file says so."""
+    try:
+        stopped = tomllib.loads(text).get("run", {}).get("stopped")
+    except (tomllib.TOMLDecodeError, AttributeError):
+        return None
+    return None if stopped is None else str(stopped)
+
+
+def dump_case(case: Case, stopped: str | None = None) -> str:
+    """`case` as the text of a case file that refers to no other file; `parse_case` gives the same case back.
+
+    If its run stopped before its end, the text may say why; `read_stopped` gives that back.
+    """
     import tomli_w
 
     bha, bit = case.bha, case.bit
+    run = {} if stopped is None else {"run": {"stopped": stopped}}
     document = {
         "bha": {
             "stabilizer_positions": list(bha.stabilizer_positions),
@@ -190,7 +204,7 @@ def dump_case(case: Case) -> str:
         },
         "rss": {"drilled_length": list(case.schedule.drilled_length), "force": list(case.schedule.rss_force)},
     }
-    return tomli_w.dumps(document)
+    return tomli_w.dumps(document | run)
 
 
 def _file_degrees(angle: float) -> float:

@@ -72,12 +72,19 @@ class _Rss(_Columns):
         return Schedule(tuple(self.drilled_length), tuple(self.force))
 
 
+class _Run(_Table):
+    """What became of the run of a case: in the case file beside it."""
+
+    stopped: str
+
+
 class _CaseFile(_Table):
     bha: _Bha
     bit: _Bit
     drilling: _Drilling
     hole: _Hole
     rss: _Rss | None = None
+    run: _Run | None = None
 
 
 _TABLES: dict[str, type[_Table]] = {"bha": _Bha, "bit": _Bit, "drilling": _Drilling, "hole": _Hole, "rss": _Rss}

@@ -1,6 +1,7 @@
 """The shell that the three commands share: an application, one-line errors, progress.
 
-Bad input of any kind ends a command with exit status 2 and one line on stderr; Ctrl-C ends it with 130.
+Bad input of any kind ends a command with exit status 2 and one line on stderr, a run that stops before its end with 3;
+Ctrl-C ends it with 130.
 """
 
 import os
@@ -16,6 +17,7 @@ from .case import InputError
 from .core.assembly import ParameterError
 from .core.tables import TableError
 from .core.variables import BY_NAME
+from .errors import Stopped
 
 EXTRAS = {  # the extra that brings a package
     "typer": "cli",
@@ -31,13 +33,14 @@ EXTRAS = {  # the extra that brings a package
     "rerun_notebook": "notebook",
     "libcosimpy": "dev",
 }
+STOPPED = 3  # exit status of a run that stopped before its end
 COMMANDS = {"boreprop_viz": "viz", "boreprop_fmu": "fmu"}  # a command's package: its own extra, which brings [cli] too
 
 
-def fail(message: str) -> NoReturn:
-    """End the process with exit status 2 and `message` as one line on stderr."""
+def fail(message: str, status: int = 2) -> NoReturn:
+    """End the process with this exit status and `message` as one line on stderr."""
     print("error:", " ".join(message.split()), file=sys.stderr)
-    sys.exit(2)
+    sys.exit(status)
 
 
 def warn(message: str) -> None:
@@ -88,27 +91,22 @@ def positive(text: str) -> float:
     return value
 
 
-def _tolerance(text: str) -> float:
+def tolerance(text: str) -> float:
+    """Parse an option that takes a relative_tolerance in the range of the table of variables."""
     allowed = BY_NAME["relative_tolerance"]
-    try:
-        value = float(text)
-    except ValueError:
-        value = nan
+    value = positive(text)
     if not allowed.min <= value <= allowed.max:
-        raise typer.BadParameter(f"must be a number from {allowed.min:g} to {allowed.max:g}, got {text!r}")
+        raise typer.BadParameter(f"must be {allowed.min:g} to {allowed.max:g}, got {text!r}")
     return value
 
 
 Tolerance = Annotated[
-    float,
+    float | None,
     typer.Option(
-        "--tolerance",
-        parser=_tolerance,
-        metavar="X",
-        help="Local error allowed in one step of the integrator, relative to 1 rad and to ℓ₁.",
+        parser=tolerance, metavar="X", help="Local error of one step of the integrator, over 1 rad and ℓ₁, if not 1e-7."
     ),
 ]
-"""The option --tolerance of a command that drills: ``def command(tolerance: Tolerance = RELATIVE_TOLERANCE)``."""
+"""The option --tolerance of a command that drills: ``tolerance: Tolerance = None``."""
 
 
 def new_app(description: str) -> typer.Typer:
@@ -117,7 +115,10 @@ def new_app(description: str) -> typer.Typer:
 
 
 def run(app: typer.Typer) -> NoReturn:
-    """Run `app` on the process's arguments and exit: 0, 2 with one line on stderr for bad input, 130 on Ctrl-C."""
+    """Run `app` on the process's arguments and exit: 0, 130 on Ctrl-C, with one line on stderr 2 or 3.
+
+    2 stands for bad input, 3 for a run that stopped before its end.
+    """
     try:
         sys.exit(app(standalone_mode=False))
     except ClickException as error:
@@ -125,6 +126,8 @@ def run(app: typer.Typer) -> NoReturn:
         fail(error.format_message() + (f" (see {context.command_path} --help)" if context else ""))
     except (InputError, ParameterError, TableError) as error:
         fail(str(error))
+    except Stopped as error:
+        fail(str(error), STOPPED)
     except ModuleNotFoundError as error:
         fail_without(error)
     except OSError as error:
@@ -134,9 +137,8 @@ def run(app: typer.Typer) -> NoReturn:
     except RuntimeError as error:
         from .kernel.binding import KernelError  # not before: these bring numpy
         from .kernel.compiler import CompilerError
-        from .simulation import SimulationError
 
-        if not isinstance(error, (SimulationError, KernelError, CompilerError)):
+        if not isinstance(error, (KernelError, CompilerError)):
             raise
         fail(str(error))
 

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .case import Case, InputError, dump_case, load_case, parse_case
+from .case import Case, InputError, dump_case, load_case, parse_case, read_stopped
 from .core.tables import read_columns
 from .core.variables import BY_NAME, INPUTS, OUTPUTS
 
@@ -38,10 +38,13 @@ class Trajectory:
         shape (rows,).
     case
         The case that was run, if it is known.
+    stopped
+        Why it ended before its end, if it did.
     """
 
     columns: dict[str, NDArray[np.float64]]
     case: Case | None = None
+    stopped: str | None = None
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
         """The column `name`; `InputError` if the run has none."""
@@ -66,7 +69,7 @@ class Trajectory:
 
 
 def write_trajectory(trajectory: Trajectory, path: str | Path) -> None:
-    """Write a run, and its case if it is known, to a .csv or .parquet file.
+    """Write a run, and if it is known its case, with why the run stopped if it did, to a .csv or .parquet file.
 
     Nothing of that name changes before everything is written.
 
@@ -180,7 +183,7 @@ def _write_csv(trajectory: Trajectory, path: Path) -> None:
             case_path(path).unlink(missing_ok=True)  # of a run that is overwritten
         else:
             with replacing(case_path(path)) as case_draft:
-                case_draft.write_text(dump_case(trajectory.case), encoding="utf-8")
+                case_draft.write_text(dump_case(trajectory.case, trajectory.stopped), encoding="utf-8")
 
 
 def _read_csv(path: Path, case: Case | None) -> Trajectory:
@@ -189,14 +192,16 @@ def _read_csv(path: Path, case: Case | None) -> Trajectory:
         headings = [heading.strip() for heading in next(filter(None, reader(file)), [])]
     ours = _ours(path, headings)
     columns = {name: np.array(c) for name, c in zip(ours, read_columns(path, tuple(ours.values())), strict=True)}
-    if case is None and case_path(path).exists():
-        case = load_case(case_path(path))
-    return Trajectory(columns, case)
+    own = case_path(path)
+    if not own.exists():
+        return Trajectory(columns, case)
+    stopped = read_stopped(own.read_text("utf-8-sig", errors="replace"))
+    return Trajectory(columns, load_case(own) if case is None else case, stopped)
 
 
 def _write_parquet(trajectory: Trajectory, path: Path) -> None:
     pyarrow, parquet = _pyarrow(path)
-    metadata = {} if trajectory.case is None else {CASE_KEY: dump_case(trajectory.case)}
+    metadata = {} if trajectory.case is None else {CASE_KEY: dump_case(trajectory.case, trajectory.stopped)}
     with replacing(path) as draft:
         parquet.write_table(pyarrow.table(_typed(trajectory), metadata=metadata), draft)
 
@@ -209,9 +214,11 @@ def _read_parquet(path: Path, case: Case | None) -> Trajectory:
             table, metadata = file.read(columns=list(ours.values())), file.schema_arrow.metadata or {}
     except (OSError, pyarrow.ArrowException) as error:
         raise InputError(f"{path}: must be a readable Parquet file, got: {error}") from error
-    if case is None and CASE_KEY in metadata:
-        case = parse_case(metadata[CASE_KEY].decode(), path)
-    return Trajectory({name: _numbers(path, name, table.column(heading)) for name, heading in ours.items()}, case)
+    columns = {name: _numbers(path, name, table.column(heading)) for name, heading in ours.items()}
+    if CASE_KEY not in metadata:
+        return Trajectory(columns, case)
+    own = metadata[CASE_KEY].decode()
+    return Trajectory(columns, parse_case(own, path) if case is None else case, read_stopped(own))
 
 
 def _numbers(path: Path, name: str, column: Any) -> NDArray[np.float64]:

@@ -10,6 +10,7 @@ from .core.assembly import ParameterError, check_number
 from .core.drilling import Drilling
 from .core.propagation import RELATIVE_TOLERANCE
 from .core.variables import OUTPUTS, scalar_names
+from .errors import Stopped
 from .kernel.binding import NativeDrilling, available
 from .results import Trajectory
 
@@ -19,10 +20,6 @@ Floats = NDArray[np.float64]
 ENGINES = ("python", "native")
 PARTS = 100  # a run reports its progress about so often
 ROUNDING = 1e-9  # of a sample interval: a row this close before the end or a change of force counts as on it
-
-
-class SimulationError(RuntimeError):
-    """The integrator could not go on. The message says where, and what helps."""
 
 
 def simulate(
@@ -61,8 +58,8 @@ def simulate(
     ------
     ParameterError
         If a value is out of range.
-    SimulationError
-        If the integrator cannot go on.
+    Stopped
+        If the integrator cannot go on; its `trajectory` holds the rows so far.
     KernelError
         If the native engine is not there.
     """
@@ -72,18 +69,24 @@ def simulate(
     weight = case.active_weight_on_bit
     drilling = start(case, engine, relative_tolerance)
     names = scalar_names(OUTPUTS, len(case.bha.stabilizer_positions))
-    table = np.empty((int(length / sample_interval + ROUNDING) + 1, len(names)))
+    table = np.full((int(length / sample_interval + ROUNDING) + 1, len(names)), np.nan)
     lengths, forces, rows = _legs(case.schedule, len(table), sample_interval)
     batch = len(lengths) // PARTS + 1 if progress else len(lengths)
+    stopped = None
     for first in range(0, len(lengths), batch):
         part = slice(first, first + batch)
         failure = follow(drilling, lengths[part], forces[part], weight, rows[part], table)
         if failure:
-            raise SimulationError(f"after {drilling.drilled_length:g} m of {length:g} m: {failure}")
+            stopped = f"after {drilling.drilled_length:g} m of {length:g} m: {failure}"
+            break
         if progress:
             progress(drilling.drilled_length)
-    columns = {"rss_force": forces[rows >= 0], "active_weight_on_bit": np.full(len(table), weight)}
-    return Trajectory(columns | {name: table[:, j] for j, name in enumerate(names)}, case)
+    table = table[~np.isnan(table[:, 0])]
+    columns = {"rss_force": forces[rows >= 0][: len(table)], "active_weight_on_bit": np.full(len(table), weight)}
+    trajectory = Trajectory(columns | {name: table[:, j] for j, name in enumerate(names)}, case, stopped)
+    if stopped:
+        raise Stopped(stopped, trajectory)
+    return trajectory
 
 
 def best_engine() -> str:

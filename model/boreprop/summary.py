@@ -41,6 +41,8 @@ class Summary:
         Whether it ends rippling, with what wave.
     hidden_waves
         Why waves that this BHA may make would not show, "" if they would.
+    stopped
+        Why the run ended before its end, if it did.
     """
 
     drilled_length: float
@@ -54,6 +56,7 @@ class Summary:
     saturation_share: float
     rippling: Rippling
     hidden_waves: str
+    stopped: str | None = None
 
 
 def summarize(trajectory: Trajectory) -> Summary:
@@ -91,6 +94,7 @@ def summarize(trajectory: Trajectory) -> Summary:
         saturation_share=float(np.average(trajectory["bit_tilt_saturation"] != 0, weights=weights)),
         rippling=rippling,
         hidden_waves=hidden_waves(length, case.bha),
+        stopped=trajectory.stopped,
     )
 
 
@@ -134,6 +138,7 @@ def rows(summary: Summary) -> list[tuple[str, str]]:
     stabilizers = enumerate(zip(summary.largest_contact_force, summary.contact_share, strict=True), 1)
     return [
         ("drilled length", f"{summary.drilled_length:.1f} m"),
+        *([("stopped", summary.stopped)] if summary.stopped else []),
         (f"inclination at the start, {mean}", f"{np.degrees(summary.start_inclination):.2f} °"),
         (f"inclination at the end, {mean}", f"{np.degrees(summary.end_inclination):.2f} °"),
         ("build rate, mean", _rate(summary.build_rate)),

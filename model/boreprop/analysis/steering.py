@@ -30,11 +30,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import cos, inf, sin
 
-from ..core.assembly import BitRock, BottomHoleAssembly, Scaled, check_number, eta_pi, scale
+from ..core.assembly import BitRock, BottomHoleAssembly, ParameterError, Scaled, check_number, eta_pi, scale
 from ..core.beam import Beam
 from ..core.contact import ROUNDING, Loads, Mode, Modes, Row, change, left, wall
 from ..core.drilling import check_inputs
 from ..core.linear import dot
+
+MOST_SWITCHES = 1000  # from mode to mode, of which there are at most 729
 
 
 @dataclass(frozen=True)
@@ -329,9 +331,12 @@ class Steady:
         return Line(self, self.modes[changed], line.tilt)
 
     def settle(self, F_rss: float) -> Line:
-        """The line that holds under a force, by least-index pivoting from no contact and no saturation."""
+        """The line that holds under a force, by least-index pivoting from no contact and no saturation.
+
+        Raises `ParameterError` if no line is found that does.
+        """
         line = Line(self, self.modes[self.held((0,) * len(self.scaled.y_star))], 0)
-        while True:
+        for _ in range(MOST_SWITCHES):
             loads = line.loads(F_rss)
             for part, (row, lower, upper) in enumerate(self.bounds(line)):
                 side = left(row(loads), lower, upper)
@@ -340,15 +345,22 @@ class Steady:
                     break
             else:
                 return line
+        raise ParameterError("rss_force / F*", "must have a steady response", F_rss)
 
     def walk(self, start: float, stop: float) -> Iterator[tuple[Line, float, float]]:
-        """The lines that hold from one force to a larger one, each with the forces between which it does."""
+        """The lines that hold from one force to a larger one, each with the forces between which it does.
+
+        Raises `ParameterError` if the way there has no end.
+        """
         line, at = self.settle(start), start
-        while at < stop:
+        for _ in range(MOST_SWITCHES):
+            if at >= stop:
+                return
             end, part, side = self._first_met(line, at)
             if min(end, stop) - at > ROUNDING:
                 yield line, at, min(end, stop)
             line, at = self.switch(line, part, side), end
+        raise ParameterError("force_limit / F*", f"must be reached in {MOST_SWITCHES} pieces of the curve", stop)
 
     def _first_met(self, line: Line, at: float) -> tuple[float, int, int]:
         """The force, from `at` on, at which a line first meets a bound, which part's, and on which side."""

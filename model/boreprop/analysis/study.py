@@ -35,7 +35,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..case import Case, InputError, dump_case, shown
+from ..core.propagation import RELATIVE_TOLERANCE
 from ..core.variables import BY_NAME
+from ..errors import Stopped
 from ..results import CASE_KEY, replacing
 from ..simulation import best_engine, simulate
 from ..summary import summarize
@@ -57,9 +59,9 @@ STUDY_KEY = b"boreprop.study"
 WRITING = 0.02  # share of the time that goes into writing the file
 
 
-def key_figures(case: Case) -> dict[str, float]:
+def key_figures(case: Case, relative_tolerance: float = RELATIVE_TOLERANCE) -> dict[str, float]:
     """A simulation in a dozen numbers, SI units: the `boreprop.summary.Summary` of a run, one name for each number."""
-    summary = summarize(simulate(case, engine=best_engine()))
+    summary = summarize(simulate(case, relative_tolerance=relative_tolerance, engine=best_engine()))
     wave = summary.rippling
     stabilizers = list(enumerate(zip(summary.largest_contact_force, summary.contact_share, strict=True), 1))
     return {
@@ -133,8 +135,8 @@ def run(
     xarray.Dataset
         A variable for each result and ``error``. Of a grid, its axes are the dimensions; else ``case`` is, and the
         varied parameters are coordinates along it. A case whose parameters are out of range, or whose function raises
-        an ArithmeticError, RuntimeError or ValueError, has nan for results and the message in ``error``; so has one
-        that no worker survives.
+        an ArithmeticError, RuntimeError, ValueError or Stopped, has nan for results and the message in ``error``; so
+        has one that no worker survives.
 
     Raises
     ------
@@ -205,7 +207,7 @@ def _outcome(
     try:
         results = function(vary(case, dict(zip(names, values, strict=True))))
         return {name: float(result) for name, result in results.items()}
-    except (ArithmeticError, RuntimeError, ValueError) as error:
+    except (ArithmeticError, RuntimeError, ValueError, Stopped) as error:
         return str(error) or type(error).__name__
 
 

@@ -26,8 +26,9 @@ from ..core.assembly import check_number, eta_pi
 from ..core.hole import Survey
 from ..core.propagation import RELATIVE_TOLERANCE
 from ..core.variables import OUTPUTS, scalar_names
+from ..errors import Stopped
 from ..results import Trajectory
-from ..simulation import SimulationError, best_engine, follow, start
+from ..simulation import best_engine, follow, start
 from .design import vary
 from .rippling import Rippling, State, examine_rippling, find_rippling, longest_wave, modes_of
 from .stability import critical_eta_pi
@@ -73,7 +74,7 @@ def drill_until_settled(case: Case, *, relative_tolerance: float = RELATIVE_TOLE
 
     Raises
     ------
-    SimulationError
+    Stopped
         If the integrator cannot go on.
     """
     half = case.bha.half_length
@@ -87,7 +88,7 @@ def drill_until_settled(case: Case, *, relative_tolerance: float = RELATIVE_TOLE
         force = np.full(len(more), case.schedule.rss_force[0])
         failure = follow(drilling, lengths, force, case.active_weight_on_bit, np.arange(len(more), dtype=np.intc), more)
         if failure:
-            raise SimulationError(f"after {drilling.drilled_length:g} m: {failure}")
+            raise Stopped(f"after {drilling.drilled_length:g} m: {failure}")
         rows = np.concatenate((rows, more))
         run = Trajectory(dict(zip(names, rows.T, strict=True)), case)
         length, inclination = run["drilled_length"], run["borehole_inclination"]
@@ -181,7 +182,7 @@ def critical_dogleg(
     ------
     ParameterError
         If the limit or the tolerance is out of range.
-    SimulationError
+    Stopped
         If the integrator cannot go on.
     """
     check_limits(limit, tolerance)
@@ -300,7 +301,7 @@ def critical_dogleg_or_why(case: Case, **options: Any) -> CriticalDogleg | str:
     """A `critical_dogleg`, or why a run could not go on."""
     try:
         return critical_dogleg(case, **options)
-    except SimulationError as error:
+    except Stopped as error:
         return str(error)
 
 
@@ -421,7 +422,7 @@ class _Ramp:
         case = replace(case, survey=hole) if hole else with_dogleg(case, self.dogleg)
         try:
             run, wave = drill_until_settled(case, relative_tolerance=self.relative_tolerance)
-        except SimulationError:
+        except Stopped:
             return _End(None, None)
         return _End(wave, _left_behind(run, case) if wave.ripples else None)
 

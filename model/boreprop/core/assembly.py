@@ -5,6 +5,7 @@ from itertools import pairwise
 from math import inf, isfinite, pi
 
 MAX_STABILIZERS = 6
+LEAST_SPAN = 0.01  # m between stabilizers: none is shorter, and the force between closer ones is rounding
 
 
 class ParameterError(ValueError):
@@ -43,8 +44,8 @@ class BottomHoleAssembly:
     Parameters
     ----------
     stabilizer_positions
-        Distance of stabilizers 1…n from the bit, m, increasing, 1 <= n <= 6. The last one is ideal
-        (centred and hinged).
+        Distance of stabilizers 1…n from the bit, m, increasing by at least 0.01 m, 1 <= n <= 6. The last one is
+        ideal (centred and hinged).
     stabilizer_clearances
         Clearance y*_i between blade and wall on each side of a centred stabilizer, m, one for each of the
         n − 1 non-ideal stabilizers.
@@ -77,6 +78,10 @@ class BottomHoleAssembly:
             )
         check_number("stabilizer_positions", self.stabilizer_positions[0], above=0.0)
         check_increasing("stabilizer_positions", self.stabilizer_positions)
+        for before, after in pairwise((0.0, *self.stabilizer_positions)):
+            if after - before < LEAST_SPAN * (1 - 1e-9):  # 4.34 and 4.35 are that far apart, but for rounding
+                constraint = f"must be at least {LEAST_SPAN:g} m from each other and from the bit"
+                raise ParameterError("stabilizer_positions", constraint, (before, after))
         if len(self.stabilizer_clearances) != n - 1:
             raise ParameterError(
                 "stabilizer_clearances",
@@ -155,9 +160,10 @@ class Scaled:
 
 
 def scale(bha: BottomHoleAssembly, bit: BitRock) -> Scaled:
-    """The dimensionless numbers of a drilling system, section II of the paper."""
+    """The dimensionless numbers of a drilling system, section II of the paper; `ParameterError` if one is none."""
     l1 = bha.length_scale
-    return Scaled(
+    check_number("F*", bha.force_scale, above=0.0)
+    scaled = Scaled(
         s=tuple(position / l1 for position in bha.stabilizer_positions),
         y_star=tuple(clearance / l1 for clearance in bha.stabilizer_clearances),
         Delta=bha.rss_position / l1,
@@ -165,6 +171,11 @@ def scale(bha: BottomHoleAssembly, bit: BitRock) -> Scaled:
         epsilon=bit.angular_steering_resistance / bit.lateral_steering_resistance,
         psi_star=bit.tilt_limit,
     )
+    check_number("s_n / l_1", scaled.s[-1])
+    check_number("w l_1 / F*", scaled.w)
+    check_number("epsilon", scaled.epsilon, above=0.0)
+    check_number("1 / epsilon", 1 / scaled.epsilon)
+    return scaled
 
 
 def eta_pi(bha: BottomHoleAssembly, bit: BitRock, active_weight_on_bit: float) -> float:

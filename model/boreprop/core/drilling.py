@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from .assembly import BitRock, BottomHoleAssembly, check_number, eta_pi, scale
+from .assembly import BitRock, BottomHoleAssembly, ParameterError, check_number, eta_pi, scale
 from .contact import bit_tilt, left, wall
 from .hole import Survey
-from .propagation import RELATIVE_TOLERANCE, Propagation
+from .propagation import NOT_FINITE, RELATIVE_TOLERANCE, Propagation
 from .variables import BY_NAME
 
 
@@ -38,7 +38,7 @@ class Drilling:
     Raises
     ------
     ParameterError
-        If an input or the tolerance is out of range.
+        If an input or the tolerance is out of range, or a dimensionless number made of them is not finite.
     """
 
     def __init__(
@@ -56,14 +56,21 @@ class Drilling:
         self._bha, self._bit = bha, bit
         self._length, self._force = bha.length_scale, bha.force_scale
         self.drilled_length = 0.0
-        self._propagation = Propagation(
-            scale(bha, bit),
-            survey,
-            self._length,
-            rss_force / self._force,
-            eta_pi(bha, bit, active_weight_on_bit),
-            relative_tolerance,
-        )
+        scaled, inputs = scale(bha, bit), self._scaled_inputs(rss_force, active_weight_on_bit)
+        try:
+            self._propagation = Propagation(scaled, survey, self._length, *inputs, relative_tolerance)
+        except ParameterError:
+            raise
+        except (ArithmeticError, ValueError) as error:  # what other languages call inf and nan
+            raise ParameterError("parameters", "must give a finite state", NOT_FINITE.format("0 m")) from error
+
+    def _scaled_inputs(self, rss_force: float, active_weight_on_bit: float) -> tuple[float, float]:
+        """F_RSS and ηΠ; `ParameterError` if they are no numbers to go on with."""
+        F_rss, own_eta_pi = rss_force / self._force, eta_pi(self._bha, self._bit, active_weight_on_bit)
+        check_number("rss_force / F*", F_rss)
+        check_number("eta_pi", own_eta_pi, above=0.0)
+        check_number("1 / eta_pi", 1 / own_eta_pi)
+        return F_rss, own_eta_pi
 
     def advance(self, drilled_length: float, rss_force: float, active_weight_on_bit: float) -> str | None:
         """Drill on under inputs held from here; None, or one line that says what failed and what helps.
@@ -83,11 +90,11 @@ class Drilling:
         check_inputs(rss_force, active_weight_on_bit)
         check_number("drilled_length", drilled_length, at_least=self.drilled_length)
         drilled_length, rss_force = float(drilled_length), float(rss_force)  # numpy's own would slow down what follows
-        failure = self._propagation.drill(
-            drilled_length / self._length,
-            rss_force / self._force,
-            eta_pi(self._bha, self._bit, active_weight_on_bit),
-        )
+        try:
+            inputs = self._scaled_inputs(rss_force, active_weight_on_bit)
+        except ParameterError as error:
+            return str(error)
+        failure = self._propagation.drill(drilled_length / self._length, *inputs)
         if failure is None:
             self.drilled_length = drilled_length
         return failure

@@ -60,7 +60,10 @@ class Hole:
     """
 
     def __init__(self, survey: Survey, length_scale: float, reach: float) -> None:
-        """Take the last `reach` (in ℓ₁) of the survey; the bit is at ξ = 0, where Y = 0."""
+        """Take the last `reach` (in ℓ₁) of the survey; the bit is at ξ = 0, where Y = 0.
+
+        `ParameterError` if two stations are so close that ℓ₁ over their distance is not finite.
+        """
         bit_depth = survey.measured_depth[-1]
         stations = [(depth - bit_depth) / length_scale for depth in survey.measured_depth]
         inclinations = list(survey.inclination)
@@ -78,7 +81,9 @@ class Hole:
             width = stations[k + 1] - stations[k]
             slope, bend = inclinations[k] * width, (inclinations[k + 1] - inclinations[k]) * width / 2
             Y -= slope + bend
-            self.rates.insert(0, 1 / width)
+            rate = 1 / width if width else inf
+            check_number("l_1 / distance of stations", rate)
+            self.rates.insert(0, rate)
             self.coefficients.insert(0, (Y, slope, bend, 0.0, 0.0, 0.0))
         slopes = [(b - a) * rate for a, b, rate in zip(inclinations, inclinations[1:], self.rates, strict=False)]
         self.kinks = [

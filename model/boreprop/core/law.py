@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from .assembly import Scaled
 from .contact import Mode, Modes, Row
-from .linear import dot, total
+from .linear import dot, ratio, total
 
 
 class Linear(NamedTuple):
@@ -79,12 +79,12 @@ class Law:
     def __init__(self, scaled: Scaled, modes: Modes, mode: Mode, tilt: int, F_rss: float, eta_pi: float) -> None:
         s, psi_star, contacts = scaled.s, scaled.psi_star, len(mode.contact)
         psi = Linear.of(mode.F_0, s, F_rss, 1 / eta_pi)
-        self.theta_rate = Linear.of(mode.M, s, F_rss, 1 / (scaled.epsilon * eta_pi))
+        self.theta_rate = Linear.of(mode.M, s, F_rss, ratio(1, scaled.epsilon * eta_pi))
         if tilt:
             self.Theta = Linear(1.0, 0.0, (0.0,) * len(s), 0.0, -tilt * psi_star)
         else:
             self.Theta = Linear(1.0 - psi.theta, -psi.Y, tuple(-c for c in psi.delayed), -psi.g, -psi.one)
-        self.relaxation = 1 / abs(self.theta_rate.theta + self.Theta.Y)
+        self.relaxation = ratio(1, abs(self.theta_rate.theta + self.Theta.Y))
         tilt_bounds = {0: (-psi_star, psi_star), 1: (psi_star, inf), -1: (-inf, -psi_star)}
         self.bounds = [Bound(contacts, psi, *tilt_bounds[tilt])]
         for i in range(contacts):
@@ -93,7 +93,7 @@ class Law:
                 self.bounds.append(Bound(i, Linear.of(row, s, F_rss, 1.0), lower, upper))
         # change per change of Y(ξ−s_i): of Θ, θ having settled, or of what the bounds are on
         self.gains = [
-            max(abs(a / self.theta_rate.theta) + abs(b), *(abs(bound.value.delayed[i]) for bound in self.bounds))
+            max(abs(ratio(a, self.theta_rate.theta)) + abs(b), *(abs(bound.value.delayed[i]) for bound in self.bounds))
             for i, (a, b) in enumerate(zip(self.theta_rate.delayed, self.Theta.delayed))
         ]
-        self.gains[0] += abs(self.theta_rate.g / self.theta_rate.theta) + abs(self.Theta.g)
+        self.gains[0] += abs(ratio(self.theta_rate.g, self.theta_rate.theta)) + abs(self.Theta.g)

@@ -1,6 +1,7 @@
 """The little linear algebra the core needs, on lists of rows."""
 
 from collections.abc import Iterable
+from math import copysign, inf
 from operator import mul
 from typing import TypeVar
 
@@ -18,6 +19,11 @@ def total(values: Iterable[float]) -> float:
 def dot(a: Iterable[float], b: Iterable[float]) -> float:
     """Sum of the products of two lists."""
     return total(map(mul, a, b))
+
+
+def ratio(a: float, b: float) -> float:
+    """a/b as in C: by zero it is infinite, or no number."""
+    return a / b if b else a * copysign(inf, b)
 
 
 def inverse(matrix: list[list[Number]]) -> list[list[Number]]:

@@ -32,6 +32,7 @@ ITERATIONS = 10  # on that rest; each gains two digits or more
 LAYERS = 16.0  # first step after a kink, in relaxation lengths of θ
 STRETCH = 1.3  # how much longer than planned a step may be if it then ends on the next kink
 SMOOTHEST_KINK = 3  # jumps in higher derivatives of the hole are left to the error estimate
+NOT_FINITE = "the state is not finite at {}: check inputs and parameters"
 LARGEST_INCLINATION = 2 * pi
 TURNS_OVER = (
     "its inclination grows beyond a full turn; use a smaller or shorter rss_force, a larger active_weight_on_bit, "
@@ -121,10 +122,10 @@ class Propagation:
         relative_tolerance: float = RELATIVE_TOLERANCE,
     ) -> None:
         self.scaled = scaled
+        self.hole = Hole(survey, length_scale, scaled.s[-1] + LOOK_BACK)
         self.beam = Beam(scaled)
         self.modes = Modes(self.beam, scaled.y_star)
         self.length_scale, self.tolerance = length_scale, relative_tolerance
-        self.hole = Hole(survey, length_scale, scaled.s[-1] + LOOK_BACK)
         self.xi = 0.0
         self.F_rss, self.eta_pi = F_rss, eta_pi
         self.contact: tuple[int, ...] = (0,) * len(scaled.y_star)
@@ -151,12 +152,20 @@ class Propagation:
             self.xi = xi
             return None
         before = self.save()
-        if inputs != (self.F_rss, self.eta_pi):
+        try:
+            failure = self._drill(xi, F_rss, eta_pi)
+        except (ArithmeticError, ValueError):  # what other languages call inf and nan
+            failure = NOT_FINITE.format(self._place(self.step.end))
+        if failure:
+            self.restore(before)
+        return failure
+
+    def _drill(self, xi: float, F_rss: float, eta_pi: float) -> str | None:
+        if (F_rss, eta_pi) != (self.F_rss, self.eta_pi):
             self._steer(F_rss, eta_pi)
         while xi > self.step.end:
             failure = self._take_step()
             if failure:
-                self.restore(before)
                 return failure
         self.xi = xi
         return None
@@ -258,15 +267,20 @@ class Propagation:
         return Step(self.xi, 1.0, (theta, *rest), (Y, *rest), self.xi)
 
     def _restart(self, Theta: float) -> None:
-        """Find the mode under new inputs and mark the jump of the inclination, which was Θ, that they make."""
+        """Find the mode under new inputs and mark the jump of the inclination, which was Θ, that they make.
+
+        Raises `ArithmeticError` if numbers have run away.
+        """
         self.laws = {}
         loads = self.loads()
         mode = self.settled(loads)
         F_0, psi_star = mode.F_0(loads), self.scaled.psi_star
         self.contact = mode.contact
         self.tilt = left(F_0 / self.eta_pi, -psi_star, psi_star)
-        now = self.step.theta[0] - bit_tilt(F_0, self.eta_pi, psi_star)
-        self._add_images(self.xi, 1, abs(now - Theta))
+        jump = abs(self.step.theta[0] - bit_tilt(F_0, self.eta_pi, psi_star) - Theta)
+        if not (isfinite(jump) and isfinite(F_0)):
+            raise ArithmeticError(NOT_FINITE.format(self._place(self.xi)))
+        self._add_images(self.xi, 1, jump)
 
     def _law(self) -> Law:
         key = (self.contact, self.tilt)
@@ -337,7 +351,8 @@ class Propagation:
         A bound that is met where the step starts switches the mode there. By the rates exactly one mode holds, but
         perhaps for a touch that is over before the first point of the step: then each mode finds itself beyond a bound
         there, and the step is tried shorter. At h → 0 the mode that holds shows. Where rounding hides it, a value may
-        lie beyond its bound by a slack that grows as h falls: their product, what a wrong mode adds to θ and Y, stays.
+        lie beyond its bound by a slack that grows as h falls; their product, what a wrong mode adds to the state, is
+        the same each time.
         """
         last, xi, shortest = self.step, self.step.end, shortest_step(self.step.end)
         theta, Y, kink = self._leave(last)
@@ -360,7 +375,7 @@ class Propagation:
                 )
             trial = self._try(law, xi, h, theta, Y)
             if not isfinite(trial.error):
-                return self._not_finite(xi)
+                return NOT_FINITE.format(self._place(xi))
             growth = SAFETY * max(trial.error, 1e-12) ** (-1 / (radau.S + 1))
             if trial.error > 1.0:
                 planned = resumed = h * max(growth, 0.1)
@@ -474,10 +489,6 @@ class Propagation:
     def _place(self, xi: float) -> str:
         """A position for a message: how far the bit has drilled."""
         return f"{xi * self.length_scale:.9g} m"
-
-    def _not_finite(self, xi: float) -> str:
-        """The line that says that numbers have run away."""
-        return f"the state is not finite at {self._place(xi)}: check inputs and parameters"
 
     @staticmethod
     def _crossing(

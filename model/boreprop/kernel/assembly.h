@@ -9,6 +9,8 @@
 
 enum { MAX_STABILIZERS = 6, MESSAGE = 512 };
 
+#define LEAST_SPAN 0.01 /* m between stabilizers: none is shorter, and the force between closer ones is rounding */
+
 /* FAILED: `why` says in one line what is wrong, and nothing has moved. FULL: the memory is too small. */
 typedef enum { DONE, FAILED, FULL } Status;
 
@@ -100,6 +102,22 @@ static inline int check_increasing(const char *name, Count count, const double *
     return 1;
 }
 
+/* Whether stabilizers, in order, are far enough from each other and from the bit. */
+static inline int check_spans(const char *name, int count, const double *positions, char why[MESSAGE]) {
+    char least[32], below[32], above[32];
+    for (int i = 0; i < count; i++) {
+        double before = i ? positions[i - 1] : 0.0, after = positions[i];
+        if (!(after - before < LEAST_SPAN * (1 - 1e-9))) continue; /* 4.34 and 4.35 are, but for rounding */
+        decimal(LEAST_SPAN, 6, least), represent(before, below), represent(after, above);
+        snprintf(
+            why, MESSAGE, "%s: must be at least %s m from each other and from the bit, got (%s, %s)", name, least,
+            below, above
+        );
+        return 0;
+    }
+    return 1;
+}
+
 static inline int check_system(const System *system, char why[MESSAGE]) {
     const double *positions = system->stabilizer_position;
     if (system->n < 1 || system->n > MAX_STABILIZERS) {
@@ -108,6 +126,7 @@ static inline int check_system(const System *system, char why[MESSAGE]) {
     }
     if (!check_positive("stabilizer_position", positions[0], why)) return 0;
     if (!check_increasing("stabilizer_position", system->n, positions, why)) return 0;
+    if (!check_spans("stabilizer_position", system->n, positions, why)) return 0;
     for (int i = 0; i < system->n - 1; i++)
         if (!check_at_least("stabilizer_clearance", system->stabilizer_clearance[i], 0.0, why)) return 0;
     return check_number("rss_position", system->rss_position, -INFINITY, 0.0, positions[0], why) &&

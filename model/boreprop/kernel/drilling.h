@@ -56,6 +56,7 @@ static inline Status drilling_prepare(
     Drilling *d, const System *system, void *memory, Count capacity, char why[MESSAGE]
 ) {
     if (!check_system(system, why)) return FAILED;
+    if (!check_positive("F*", force_scale(system), why)) return FAILED;
     Scaled scaled = scale(system);
     if (!check_finite("s_n / l_1", scaled.s[scaled.n - 1], why) || !check_finite("w l_1 / F*", scaled.w, why) ||
         !check_positive("epsilon", scaled.epsilon, why) || !check_finite("1 / epsilon", 1 / scaled.epsilon, why))

@@ -436,7 +436,7 @@ static inline int has_room(const Propagation *p) {
    A bound that is met where the step starts switches the mode there. By the rates exactly one mode holds, but perhaps
    for a touch that is over before the first point of the step: then each mode finds itself beyond a bound there, and
    the step is tried shorter. At h → 0 the mode that holds shows. Where rounding hides it, a value may lie beyond its
-   bound by a slack that grows as h falls: their product, what a wrong mode adds to the state, stays. */
+   bound by a slack that grows as h falls; their product, what a wrong mode adds to the state, is the same each time. */
 static inline Status take_step(Propagation *p, char why[MESSAGE]) {
     State *now = &p->now;
     Step last = now->step;

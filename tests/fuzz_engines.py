@@ -1,0 +1,252 @@
+"""Random drilling systems through both engines: none may fail numerically, and both must say the same.
+
+    python tests/fuzz_engines.py near-bit|wide [--cases N] [--minutes M] [--seed S] [--python K]
+
+The near-bit space is that of BHAs with a stabilizer 0.8 to 2 m behind the bit under a low weight, over 300 m, now and
+then over 8 km; the wide one is of all that the model takes, over 10 ℓ₁. Either has force steps and tolerances between
+1e-9 and 1e-5. The native engine runs every case; Python the first K, and each in which the native one stops. A bit that
+turns over is no failure. What goes wrong is told with the case file that shows it, and ends in exit status 1.
+
+Some runs depend on their last digits: where the engines differ, the native one runs once more with a BHA that is
+stiffer and longer by 1e-12. Then rows count up to the first in which that moves a column by a tenth of what the engines may
+differ by.
+"""
+
+import argparse
+import re
+import sys
+from collections import Counter
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from dataclasses import dataclass, replace
+from itertools import accumulate, count, islice
+from math import log10, radians
+from pathlib import Path
+from random import Random
+from time import monotonic
+
+import numpy as np
+from numpy.typing import NDArray
+
+from boreprop.case import Case, Schedule, dump_case
+from boreprop.core.assembly import LEAST_SPAN, BitRock, BottomHoleAssembly
+from boreprop.core.hole import Survey
+from boreprop.core.propagation import RELATIVE_TOLERANCE
+from boreprop.errors import Stopped
+from boreprop.results import Trajectory
+from boreprop.simulation import simulate
+
+COMPARED = 50.0  # m at the start of a run, over which both engines are compared
+AGREEMENT = 1e-6  # of the largest value of a column
+HAIR = 1e-12  # relative
+BATCH = 20  # cases that a process gets at once
+FOLDER = Path("out/fuzz")
+
+
+def near_bit(random: Random) -> tuple[Case, float]:
+    """A case with a near-bit stabilizer and a low weight, and a tolerance."""
+    first = random.uniform(0.8, 2.0)
+    positions = tuple(accumulate([first, *(random.uniform(3.5, 9.5) for _ in range(random.randint(1, 3)))]))
+    clearances = [random.choice([2e-3, 5e-3, 15e-3, 30e-3]), *(random.uniform(5e-4, 4e-3) for _ in positions[2:])]
+    bha = BottomHoleAssembly(positions, tuple(clearances), min(0.6, first / 2), 1500.0, 10 ** random.uniform(6.8, 7.6))
+    inclination, end = radians(random.choice([0.0, 10.0, 40.0])), positions[-1]
+    case = Case(
+        bha=bha,
+        bit=BitRock(20.0, 1.0, radians(random.uniform(0.5, 1.5))),
+        bit_diameter=0.2,
+        active_weight_on_bit=10 ** random.uniform(2.8, 4.5),
+        length=8000.0 if random.random() < 0.003 else 300.0,
+        survey=Survey((0.0, end, end + 8.0), (inclination, inclination, inclination + radians(1.5))),
+    )
+    if random.random() < 0.1:
+        changes = tuple(accumulate([0.0, *(random.uniform(0.3, 8.0) for _ in range(40))]))
+        case = replace(case, schedule=Schedule(changes, tuple(random.uniform(-3e3, 3e3) for _ in changes)))
+    return case, any_tolerance(random)
+
+
+def wide(random: Random) -> tuple[Case, float]:
+    """A case from all that the model takes, and a tolerance."""
+    l1, n = random.uniform(1.0, 6.0), random.randint(1, 6)
+    powers = [(-2.0, 0.5) if random.random() < 0.15 else (log10(0.3), log10(2.5)) for _ in range(n - 1)]
+    spans = [max(10 ** random.uniform(*power), 1.001 * LEAST_SPAN / l1) for power in powers]
+    clearances = [0.0 if random.random() < 0.15 else 10 ** random.uniform(-9.0, -2.0) for _ in spans]
+    bha = BottomHoleAssembly(
+        stabilizer_positions=tuple(l1 * s for s in accumulate([1.0, *spans])),
+        stabilizer_clearances=tuple(l1 * y for y in clearances),
+        rss_position=random.uniform(0.0, l1),
+        distributed_weight=10 ** random.uniform(0.0, 4.0),
+        flexural_stiffness=10 ** random.uniform(6.0, 8.0),
+    )
+    eta = 20.0
+    first = radians(random.uniform(-170.0, 170.0))
+    last, end = first + radians(random.uniform(-5.0, 5.0)), bha.stabilizer_positions[-1]
+    changes = [0.0, *sorted(random.uniform(0.0, 10.0 * l1) for _ in range(random.randint(0, 4)))]
+    forces = [random.choice([-1.0, 1.0]) * 10 ** random.uniform(-5.0, -1.0) * bha.force_scale for _ in changes]
+    case = Case(
+        bha=bha,
+        bit=BitRock(eta, eta * 10 ** random.uniform(-4.0, 1.0), radians(10 ** random.uniform(-2.0, 1.0))),
+        bit_diameter=0.2,
+        active_weight_on_bit=10 ** random.uniform(-5.0, 3.0) * bha.force_scale / eta,
+        length=10.0 * l1,
+        survey=Survey((0.0, end, end + 1.0), (first, first, last)),
+        schedule=Schedule(tuple(changes), tuple(forces)) if len(changes) > 1 else Schedule(),
+    )
+    return case, any_tolerance(random)
+
+
+def any_tolerance(random: Random) -> float:
+    """The usual one, or any."""
+    return RELATIVE_TOLERANCE if random.random() < 0.5 else 10 ** random.uniform(-9.0, -5.0)
+
+
+SPACES: dict[str, Callable[[Random], tuple[Case, float]]] = {"near-bit": near_bit, "wide": wide}
+
+
+@dataclass
+class Finding:
+    """What became of one case."""
+
+    number: int
+    stopped: str | None  # why the native engine stopped
+    fault: str | None = None  # what is wrong
+    rows: int = 0  # compared with Python
+    uncompared: int = 0  # rows beyond the place where a hair decides
+
+
+def examine(space: str, seed: int, number: int, compared: bool) -> Finding:
+    """Run one case natively; compare it with Python if asked, or if it stops."""
+    case, tolerance = draw(space, seed, number)
+    try:
+        run = drilled(case, tolerance, "native", case.length / 10)
+        found = Finding(number, run.stopped)
+        if run.stopped and "turns over" not in run.stopped:
+            found.fault = run.stopped
+        elif not all(np.isfinite(column).all() for column in run.columns.values()):
+            found.fault = "a column is not finite"
+        if (compared or run.stopped) and not found.fault:
+            compare(case if run.stopped else replace(case, length=min(COMPARED, case.length)), tolerance, found)
+    except Exception as error:  # whatever it is, it is what is looked for
+        return Finding(number, None, f"{type(error).__name__}: {error}")
+    return found
+
+
+def draw(space: str, seed: int, number: int) -> tuple[Case, float]:
+    """A case of a space and its tolerance, by number."""
+    return SPACES[space](Random(f"{space} {seed} {number}"))
+
+
+def drilled(case: Case, tolerance: float, engine: str, interval: float) -> Trajectory:
+    """A run, or what there is of it."""
+    try:
+        return simulate(case, sample_interval=interval, relative_tolerance=tolerance, engine=engine)
+    except Stopped as stopped:
+        if stopped.trajectory is None:
+            raise
+        return stopped.trajectory
+
+
+def compare(case: Case, tolerance: float, found: Finding) -> None:
+    """Drill with both engines, and note where they differ more than they may."""
+    interval = min(case.length, COMPARED) / 100
+    python, native = (drilled(case, tolerance, engine, interval) for engine in ("python", "native"))
+    bad = differing(python, native, AGREEMENT)
+    sure = len(native)
+    if bad.any() or not same_end(python, native):
+        bha, positions = case.bha, case.bha.stabilizer_positions
+        longer = tuple(position * (1 + i * HAIR) for i, position in enumerate(positions))
+        moved_bha = replace(bha, flexural_stiffness=bha.flexural_stiffness * (1 + HAIR), stabilizer_positions=longer)
+        other = drilled(replace(case, bha=moved_bha), tolerance, "native", interval)
+        moved = differing(other, native, AGREEMENT / 10)
+        sure = int(np.argmax(moved)) if moved.any() else len(moved)
+        if sure == len(native) and same_end(other, native) and not same_end(python, native):
+            found.fault = f"python: {python.stopped or 'no stop'}; native: {native.stopped or 'no stop'}"
+    found.rows, found.uncompared = min(sure, len(bad)), len(native) - min(sure, len(bad))
+    if bad[:sure].any():
+        row = int(np.argmax(bad))
+        found.fault = f"the engines differ at {native['drilled_length'][row]:g} m"
+
+
+def differing(one: Trajectory, other: Trajectory, share: float) -> NDArray[np.bool_]:
+    """Which of the rows that both have differ by more than a share of the largest value of a column."""
+    rows = min(len(one), len(other))
+    bad = np.zeros(rows, dtype=bool)
+    for name, column in other.columns.items():
+        if name.startswith(("stabilizer_contact", "bit_tilt_saturation")):
+            continue  # whole numbers: a row may lie on the event
+        bad |= np.abs(one[name][:rows] - column[:rows]) > share * np.abs(column).max() + 1e-12
+    return bad
+
+
+def same_end(one: Trajectory, other: Trajectory) -> bool:
+    """Whether both went to the end, or stopped at the same place for the same reason."""
+    if one.stopped is None or other.stopped is None:
+        return one.stopped == other.stopped
+    (reason, place), (same, there) = (told(run.stopped or "") for run in (one, other))
+    return reason == same and abs(place - there) <= AGREEMENT * max(place, 1.0)
+
+
+def told(stopped: str) -> tuple[str, float]:
+    """The reason and the place in a message."""
+    match = re.search(r": (.+) at ([-+.e\d]+) m: ", stopped)
+    return (match[1], float(match[2])) if match else (stopped, 0.0)
+
+
+def findings(space: str, seed: int, numbers: Iterator[int], python: int, until: float) -> Iterator[Finding]:
+    """What becomes of the cases, as it is known, on two processes, until all are done or the time is over."""
+    with ProcessPoolExecutor(2) as pool:
+        running: set[Future[list[Finding]]] = set()
+        while True:
+            while len(running) < 4 and monotonic() < until and (batch := list(islice(numbers, BATCH))):
+                running.add(pool.submit(examine_all, space, seed, batch, python))
+            if not running:
+                return
+            done, running = wait(running, return_when=FIRST_COMPLETED)
+            for future in done:
+                yield from future.result()
+
+
+def examine_all(space: str, seed: int, numbers: list[int], python: int) -> list[Finding]:
+    """In a process."""
+    return [examine(space, seed, number, number < python) for number in numbers]
+
+
+def report(space: str, seed: int, found: Finding) -> None:
+    """Tell what is wrong with a case, and keep its file."""
+    case, tolerance = draw(space, seed, found.number)
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    path = FOLDER / f"{space}-{seed}-{found.number}.toml"
+    path.write_text(dump_case(case), encoding="utf-8")
+    print(f"{path} --tolerance {tolerance!r}: {found.fault}", flush=True)
+
+
+def main() -> int:
+    """The command."""
+    parser = argparse.ArgumentParser(description="Random drilling systems through both engines.")
+    parser.add_argument("space", choices=SPACES)
+    parser.add_argument("--cases", type=int, help="how many; without it, until the minutes are over")
+    parser.add_argument("--minutes", type=float, default=float("inf"), help="start no case after so many")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--python", type=int, default=100, help="how many, the first, Python runs too")
+    given = parser.parse_args()
+    if given.cases is None and given.minutes == float("inf"):
+        parser.error("must be given --cases or --minutes")
+    numbers = count() if given.cases is None else iter(range(given.cases))
+    totals: Counter[str] = Counter()
+    for found in findings(given.space, given.seed, numbers, given.python, monotonic() + 60 * given.minutes):
+        totals["cases"] += 1
+        totals["failures"] += found.fault is not None
+        totals["turned over"] += found.stopped is not None and found.fault is None
+        totals["compared"] += found.rows > 0
+        totals["cut short"] += found.uncompared > 0
+        if found.fault:
+            report(given.space, given.seed, found)
+    print(
+        f"{given.space}, seed {given.seed}: {totals['cases']} cases, {totals['failures']} failures; "
+        f"the bit turned over in {totals['turned over']}; {totals['compared']} in Python too, "
+        f"{totals['cut short']} of them up to where a hair decides"
+    )
+    return 1 if totals["failures"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
