@@ -8,8 +8,8 @@ then over 8 km; the wide one is of all that the model takes, over 10 ℓ₁. Eit
 turns over is no failure. What goes wrong is told with the case file that shows it, and ends in exit status 1.
 
 Some runs depend on their last digits: where the engines differ, the native one runs once more with a BHA that is
-stiffer and longer by 1e-12. Then rows count up to the first in which that moves a column by a tenth of what the engines may
-differ by.
+stiffer and longer by 1e-12. Then rows count up to the first in which that moves a column by a tenth of what the engines
+may differ by.
 """
 
 import argparse
