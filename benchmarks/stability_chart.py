@@ -54,7 +54,7 @@ def unstable(roots: np.ndarray) -> int:
 def chart() -> Chart:
     """Ours."""
     bha, bit = CASE.bha, CASE.bit
-    return stability_chart(bha, bit, *usual_grid(bha, bit, eta_pi(bha, bit, CASE.active_weight_on_bit)))
+    return stability_chart(bha, bit, *usual_grid(bha, eta_pi(bha, bit, CASE.active_weight_on_bit)))
 
 
 def eigenvalues(made: Chart, panel: Panel, point: Point, nodes: int) -> np.ndarray:

@@ -289,7 +289,7 @@ def roots(
     ] = None,
     contact: Annotated[
         str | None,
-        typer.Option(metavar="1,2", help="One mode in full: the stabilizers that touch, '' for those of clearance 0 only."),
+        typer.Option(metavar="1,2", help="One mode in full: the stabilizers that touch, '' for none."),
     ] = None,
     saturated: Annotated[bool, typer.Option("--saturated", help="With the bit tilt at its limit.")] = False,
     inclination_deg: Annotated[
@@ -316,7 +316,17 @@ def roots(
     from .case import InputError, load_case
     from .core import assembly
     from .core.assembly import check_number
-    from .stability_table import HEADINGS, MODE_HEADINGS, as_plain, caption, mode_row, modes_title, rows, title
+    from .stability_table import (
+        HEADINGS,
+        MODE_HEADINGS,
+        NOT_MET,
+        as_plain,
+        caption,
+        mode_row,
+        modes_title,
+        rows,
+        title,
+    )
 
     if every and contact is not None:
         raise InputError(f"--all: must be without --contact, got --contact {contact!r}")
@@ -337,7 +347,7 @@ def roots(
         if as_json:
             print(json.dumps([as_plain(roots) for roots in found]))
             return
-        table = Table(*MODE_HEADINGS, title=modes_title(at, weight_on_bit, inclination))
+        table = Table(*MODE_HEADINGS, title=modes_title(at, weight_on_bit, inclination), caption=NOT_MET)
         here = held(bha, bit, weight_on_bit, forces[0], inclination)
         met = contacts_met(bha, bit, inclination, forces)
         for roots in found:
@@ -381,10 +391,11 @@ def stability(
     case = load_case(case_file)
     bha, bit, inclination, forces = case.bha, case.bit, case.survey.inclination[-1], case.schedule.rss_force
     own = assembly.eta_pi(bha, bit, case.active_weight_on_bit)
-    usual_across, usual_up = usual_grid(bha, bit, own, inclination)
-    across, up = usual_across if across is None else across, usual_up if up is None else up
     here, _ = held(bha, bit, case.active_weight_on_bit, forces[0], inclination)
     contacts = charted(bha, bit, inclination, forces, here)
+    limits = {contact: critical_eta_pi(bha, bit, contact=contact, inclination=inclination) for contact in contacts}
+    usual_across, usual_up = usual_grid(bha, own, max(limit.eta_pi if limit else 0.0 for limit in limits.values()))
+    across, up = usual_across if across is None else across, usual_up if up is None else up
     from .drawing import save
     from .stability_figure import draw
     from .stability_table import stability_limit, weight
@@ -392,7 +403,6 @@ def stability(
     with console.progress("chart", 1.0) as done:
         chart = stability_chart(bha, bit, across, up, inclination, done, contacts)
     save(draw(chart, case), output)
-    limits = {contact: critical_eta_pi(bha, bit, contact=contact, inclination=inclination) for contact in contacts}
     print(
         f"{output}: {len(across)} × {len(up)} points; {stability_limit(contacts[0], limits[contacts[0]])}; "
         f"the case: ηΠ = {own:.4g} ({weight(case.active_weight_on_bit)})"

@@ -60,7 +60,7 @@ def make_figure_6(output: Path) -> None:
     """Draw the stability chart of a vertical hole."""
     case = paper_case()
     bha, bit = case.bha, case.bit
-    grid = usual_grid(bha, bit, eta_pi(bha, bit, case.active_weight_on_bit))
+    grid = usual_grid(bha, eta_pi(bha, bit, case.active_weight_on_bit))
     save(stability_figure.draw(stability_chart(bha, bit, *grid), case), output)
 
 

@@ -39,7 +39,9 @@ MARKER: dict[str, Any] = {
 LINE = 1.0
 FINER = 4  # rows of a picture to one of the chart
 PIXELS = 1200  # across a panel
+SPECK = 0.01  # of the range of ηΠ: where two limits meet, islands this small within a row are those of the grid
 WIDTH, ROW, MARGINS = 10.0, 3.4, 1.4  # of the picture, of a row of panels, and around them, inches
+
 
 def draw(chart: Chart, case: Case) -> Figure:
     """The modes over ηΠ and λ₂, with the point of the case; a row of panels for each contact."""
@@ -86,8 +88,7 @@ def scaling(factor: float) -> tuple[Any, Any]:
 def draw_panel(axes: Axes, chart: Chart, panel: Panel, point: tuple[float, float]) -> None:
     """One mode."""
     axes.set_title(f"{contact_text(panel.contact)}, bit tilt {'saturated' if panel.saturated else 'not saturated'}")
-    rows = in_between(shaded(chart, panel))
-    x = np.linspace(chart.eta_pi[0], chart.eta_pi[-1], PIXELS)
+    x, rows = finer(chart, panel)
     axes.imshow(
         np.array([shades[np.searchsorted(ends, x)] for ends, shades in rows]),
         cmap=ListedColormap(list(SHADES.values())),
@@ -121,17 +122,33 @@ def shaded(chart: Chart, panel: Panel) -> list[Band]:
     return found
 
 
+def finer(chart: Chart, panel: Panel) -> tuple[Floats, list[Band]]:
+    """The ηΠ of the pixels across a panel, and the shades of the rows of pixels as far as they can be seen."""
+    x = np.linspace(chart.eta_pi[0], chart.eta_pi[-1], PIXELS)
+    return x, [visible(row, x[1] - x[0]) for row in in_between(shaded(chart, panel))]
+
+
+def visible(row: Band, pixel: float) -> Band:
+    """A row without the bands that are narrower than a pixel."""
+    narrow = np.flatnonzero(np.diff(row.ends) < pixel)
+    if not len(narrow):
+        return row
+    k = narrow[0]
+    gone = [k, k + 1] if row.codes[k] == row.codes[k + 2] else [k]
+    return visible(Band(np.delete(row.ends, gone), np.delete(row.codes, [k + 1, k + 2][: len(gone)])), pixel)
+
+
 def in_between(rows: list[Band]) -> list[Band]:
     """The bands of a finer λ₂: their ends move evenly from row to row, or jump where the next has quite others."""
-    finer = []
+    found = []
     for row, after in pairwise(rows):
         same = matched(row, after)
         for part in np.arange(FINER) / FINER:
             if same:
-                finer.append(Band(same[0] + (same[1] - same[0]) * part, same[2]))
+                found.append(Band(same[0] + (same[1] - same[0]) * part, same[2]))
             else:
-                finer.append(row if part < 0.5 else after)
-    return [*finer, rows[-1]]
+                found.append(row if part < 0.5 else after)
+    return [*found, rows[-1]]
 
 
 def matched(row: Band, after: Band) -> tuple[Floats, Floats, Integers] | None:
@@ -163,8 +180,7 @@ def boundaries(chart: Chart, panel: Panel) -> list[Floats]:
 
     The distance in ηΠ to the nearest change, negative on one side of it, is zero there.
     """
-    rows = in_between(shaded(chart, panel))
-    x = np.linspace(chart.eta_pi[0], chart.eta_pi[-1], PIXELS)
+    x, rows = finer(chart, panel)
     lambda2 = np.interp(np.arange(len(rows)) / FINER, np.arange(len(chart.lambda2)), chart.lambda2)
     lines = []
     for kind in np.unique(panel.verdicts)[1:]:
@@ -176,7 +192,7 @@ def boundaries(chart: Chart, panel: Panel) -> list[Floats]:
                 away[:] = abs(x[:, None] - limits).min(axis=1)
             away[~inside[np.searchsorted(ends, x)]] *= -1
         lines += zero_lines(x, lambda2, distance)
-    return lines
+    return [line for line in lines if (np.ptp(line, axis=0) > (SPECK * x[-1], lambda2[FINER] - lambda2[0])).any()]
 
 
 def zero_lines(x: Floats, y: Floats, z: Floats) -> list[Floats]:

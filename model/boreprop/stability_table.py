@@ -7,6 +7,7 @@ from .analysis.stability import CriticalEtaPi, Roots, Verdict
 
 HEADINGS = ("growth, per ℓ₁", "frequency, per ℓ₁", "what it does", "wavelength")
 MODE_HEADINGS = ("in contact", "bit tilt", "verdict", "what it does", "wavelength", "the case")
+NOT_MET = "not met: the case does not come to this contact, in no hole that turns by up to 10° over 30 m"
 MOST_ROWS = 20
 
 
@@ -29,7 +30,9 @@ def title(found: Roots, active_weight_on_bit: float) -> str:
 
 def modes_title(eta_pi: float, active_weight_on_bit: float, inclination: float) -> str:
     """At which weight, N, and inclination, rad, the modes are looked at."""
-    return f"ηΠ = {eta_pi:.4g} ({weight(active_weight_on_bit)}), straight hole at {degrees(inclination):.4g}° inclination"
+    return (
+        f"ηΠ = {eta_pi:.4g} ({weight(active_weight_on_bit)}), straight hole at {degrees(inclination):.4g}° inclination"
+    )
 
 
 def mode_row(
@@ -70,12 +73,17 @@ def change(root: complex, length_scale: float) -> str:
     """Over how many metres what a root makes doubles or halves."""
     if not root.real:
         return "stays"
-    return f"{'doubles' if root.real > 0 else 'halves'} in {log(2) / abs(root.real) * length_scale:.3g} m"
+    return f"{'doubles' if root.real > 0 else 'halves'} in {metres(log(2) / abs(root.real) * length_scale)}"
 
 
 def wavelength(root: complex, length_scale: float) -> str:
     """Of the wave that a pair of roots makes, m."""
-    return f"{2 * pi / root.imag * length_scale:.3g} m" if root.imag else ""
+    return metres(2 * pi / root.imag * length_scale) if root.imag else ""
+
+
+def metres(length: float) -> str:
+    """A length in three digits."""
+    return f"{float(f'{length:.3g}'):.15g} m"
 
 
 def caption(found: Roots) -> str | None:
@@ -90,7 +98,7 @@ def stability_limit(contact: tuple[int, ...], critical: CriticalEtaPi | None) ->
         return f"{contact_text(contact)}: never oscillatory"
     return (
         f"{contact_text(contact)}: oscillatory up to ηΠ = {critical.eta_pi:.6g} "
-        f"({weight(critical.active_weight_on_bit)}; waves of {critical.wavelength:.3g} m)"
+        f"({weight(critical.active_weight_on_bit)}; waves of {metres(critical.wavelength)})"
     )
 
 

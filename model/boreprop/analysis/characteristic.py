@@ -31,13 +31,14 @@ from ..core.linear import dot
 NEAR_ZERO = 1e-4  # |ν s| below which B'(ν) is the start of its series
 FREQUENCIES = np.concatenate([[0.0], np.logspace(-3.0, 9.0, 300)])  # where bounds on the roots are looked for
 LADDER = 4.0 ** np.arange(12)  # likewise of ηΠ, over the smallest
-ABSCISSAS = np.linspace(0.0, 5.0, 101) ** 2
+ABSCISSAS = np.concatenate([np.linspace(0.0, 5.0, 101) ** 2, np.logspace(1.45, 5.0, 30)])
 SAMPLES = 36  # per period of the fastest wave in P, where crossings are looked for
 LOW = np.logspace(-7.0, -0.2, 48)  # further samples below the first, in steps
 PARTS = 8  # into which the space between two samples is divided where crossings may hide
 REFINEMENTS = 5  # of the samples, at most
 SECANTS = 6  # after which a crossing is good enough for Newton's method
 NEWTON_STEPS = 4  # after which only rounding is left
+IN_BETWEEN = 1e-6  # of the space between two samples: how far beyond them a crossing of theirs may be
 IS_A_ROOT = 1e-11  # |P| over the size of its terms
 
 Floats = NDArray[np.float64]
@@ -99,12 +100,12 @@ class Characteristic:
     def slope_over_eta_pi(self, nu: Complexes, eta_pi: Floats) -> Complexes:
         """∂P/∂ηΠ."""
         m, f, _, _ = self._delayed(nu)
-        drag = self.epsilon * nu
+        drag: Complexes = self.epsilon * nu
         return drag if self.saturated else drag * (2 * eta_pi + f) - self.m_theta - m
 
     def size(self, nu: Complexes, eta_pi: Floats) -> Floats:
         """The sum of the moduli of the terms of P: what rounding in P is measured by."""
-        m, f = np.zeros((2, *nu.shape))
+        m, f = np.zeros(nu.shape), np.zeros(nu.shape)
         for s_i, m_i, f_i in self._terms.tolist():
             B = abs(lag(nu, s_i)[0])
             m += abs(m_i) * B
@@ -131,17 +132,17 @@ class Characteristic:
 
     def on_grid(self, x: Floats, y: Floats, eta_pi: float) -> Complexes:
         """νP at ν = x + iy, shape (len(y), len(x)): cheap, as e^{−ν s} is a product."""
-        nu = x + 1j * y[:, None]
-        m, f = np.empty((2, *nu.shape), complex)
-        m[:], f[:] = self.m.sum(), self.f.sum()
+        nu = np.asarray(x + 1j * y[:, None], complex)
+        m, f = np.full(nu.shape, self.m.sum(), complex), np.full(nu.shape, self.f.sum(), complex)
         for s_i, m_i, f_i in self._terms.tolist():
             delayed = np.exp(-1j * y * s_i)[:, None] * np.exp(-s_i * x)
             m -= m_i * delayed
             f -= f_i * delayed
         turning = self.epsilon * eta_pi * nu - self.m_theta
-        if self.saturated:
-            return turning * nu - m
-        return turning * (eta_pi * nu + f) - (eta_pi - self.f_theta) * m
+        value: Complexes = turning * nu - m
+        if not self.saturated:
+            value = turning * (eta_pi * nu + f) - (eta_pi - self.f_theta) * m
+        return value
 
     def at_zero(self) -> tuple[float, float]:
         """P(0) = b ηΠ + c: b and c, both zero without weight and in a horizontal hole, where turning is neutral."""
@@ -228,12 +229,14 @@ class Characteristic:
         eta_pi = on_branch(omega).real
         with np.errstate(all="ignore"):  # what runs away is left out
             for _ in range(NEWTON_STEPS):  # P + iP' dω + ∂P/∂ηΠ dηΠ = 0, both changes real
-                value, slope = self(1j * omega, eta_pi)
-                rest, turn = np.array([value, 1j * slope]) / -self.slope_over_eta_pi(1j * omega, eta_pi)
+                nu = np.asarray(1j * omega, complex)
+                value, slope = self(nu, eta_pi)
+                rest, turn = np.array([value, 1j * slope]) / -self.slope_over_eta_pi(nu, eta_pi)
                 step = -rest.imag / turn.imag
                 omega, eta_pi = omega + step, eta_pi + (rest + turn * step).real
-            residual = abs(self(1j * omega, eta_pi)[0]) / self.size(1j * omega, eta_pi)
-        within = (a <= omega) & (omega <= b)
+            nu = np.asarray(1j * omega, complex)
+            residual = abs(self(nu, eta_pi)[0]) / self.size(nu, eta_pi)
+        within = abs(2 * omega - a - b) <= (b - a) * (1 + IN_BETWEEN)
         return omega, np.where(within & (residual < IS_A_ROOT), eta_pi, np.nan)
 
     # νP = Q_0 + Σ Q_i e^{−ν s_i} with polynomials Q, so there is no root where Σ |Q_i e^{−ν s_i}| < |Q_0|. The ratio of
@@ -241,7 +244,7 @@ class Characteristic:
 
     def highest_on_axis(self, smallest: float) -> float:
         """A bound on |Im ν| of the roots on the imaginary axis at any ηΠ >= `smallest`."""
-        eta_pi = smallest * LADDER
+        eta_pi = np.asarray(smallest * LADDER, float)
         may = self._delayed_share(1j * FREQUENCIES, eta_pi[:, None]) >= 1
         for zero in self._free_roots(eta_pi):
             may |= (zero.real >= 0)[:, None] & (FREQUENCIES <= abs(zero.imag)[:, None])
@@ -283,7 +286,8 @@ class Characteristic:
         for s_i, m_i, f_i in self._terms.tolist():
             delayed += abs(rest * m_i - turning * f_i) * np.exp(-nu.real * s_i)
         a, b, c = self._free(eta_pi)
-        share: Floats = delayed / abs((a * nu + b) * nu + c)
+        with np.errstate(divide="ignore"):  # at a zero of Q_0
+            share: Floats = delayed / abs((a * nu + b) * nu + c)
         return share
 
 
@@ -320,7 +324,7 @@ def doubtful(x: Complexes) -> NDArray[np.bool_]:
     bend = size[:, 2:] - 2 * size[:, 1:-1] + size[:, :-2]
     least = (size[:, 1:-1] <= size[:, 2:]) & (size[:, 1:-1] <= size[:, :-2]) & (size[:, 1:-1] < bend)
     low = least.any(axis=0)
-    found = np.append(low, False) | np.append(False, low)
+    found: NDArray[np.bool_] = np.append(low, False) | np.append(False, low)
     if len(x) == 2:
         stay, change = moves(x)
         found |= stay > change / 2

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from ..core.assembly import BitRock, BottomHoleAssembly, ParameterError, Scaled, check_increasing, check_number, scale
 from .characteristic import Characteristic, Floats
-from .modes import Contact, can_touch, charted
-from .stability import SMALLEST_ETA_PI, Verdict, critical_eta_pi, touching_stabilizers
+from .modes import Contact, charted
+from .stability import SMALLEST_ETA_PI, Verdict, touching_stabilizers
 
 VERDICTS = tuple(Verdict)  # by their codes in a chart
 STABLE, DRIFT, OSCILLATORY = range(3)
@@ -70,11 +70,10 @@ class Chart:
     panels: tuple[Panel, ...]
 
 
-def usual_grid(bha: BottomHoleAssembly, bit: BitRock, eta_pi: float, inclination: float = 0.0) -> tuple[Floats, Floats]:
-    """ηΠ and λ₂ of a chart that shows what matters: the case at `eta_pi`, and the critical ηΠ, well inside."""
-    critical = critical_eta_pi(bha, bit, contact=can_touch(bha, bit, inclination), inclination=inclination)
-    lambda2, highest = lambda_2(bha), max(4.0 * critical.eta_pi if critical else 0.6, 1.5 * eta_pi)
-    highest = max(highest, 300 * SMALLEST_ETA_PI)
+def usual_grid(bha: BottomHoleAssembly, eta_pi: float, critical: float = 0.15) -> tuple[Floats, Floats]:
+    """ηΠ and λ₂ of a chart that shows what matters: the case, at `eta_pi`, and the `critical` ηΠ well inside."""
+    lambda2 = lambda_2(bha)
+    highest = max(4.0 * critical, 1.5 * eta_pi, 300 * SMALLEST_ETA_PI)
     return (
         np.linspace(highest / 300, highest, 300),
         np.linspace(max(min(0.4, lambda2 / 1.5), SMALLEST_LAMBDA2), max(2.4, 1.5 * lambda2), 200),
@@ -182,7 +181,8 @@ def all_roots(characteristic: Characteristic, eta_pi: Floats, at: Floats, change
     to_come = np.append(np.cumsum(change[::-1])[::-1], 0.0)
     b, c = characteristic.at_zero()
     # ηΠ → ∞ leaves one root near zero, on the side that the sign of P(0) tells
-    return np.rint(((b or c) < 0) - to_come[np.searchsorted(at, eta_pi)]).astype(int)
+    number: Integers = np.rint(((b or c) < 0) - to_come[np.searchsorted(at, eta_pi)]).astype(int)
+    return number
 
 
 def real_roots(characteristic: Characteristic, eta_pi: Floats, total: Integers) -> tuple[Integers, Floats]:

@@ -53,9 +53,7 @@ def contacts_met(
     return frozenset(met)
 
 
-def can_touch(
-    bha: BottomHoleAssembly, bit: BitRock, inclination: float, rss_forces: Iterable[float] = ()
-) -> Contact:
+def can_touch(bha: BottomHoleAssembly, bit: BitRock, inclination: float, rss_forces: Iterable[float] = ()) -> Contact:
     """The stabilizers that touch in one of `contacts_met`: all but those whose clearance no hole uses up."""
     return tuple(sorted(set().union(*contacts_met(bha, bit, inclination, rss_forces))))
 

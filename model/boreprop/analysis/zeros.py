@@ -123,8 +123,8 @@ def count(function: Function, strip: Strip, spacing: float) -> int:
     for a, b in pairwise(corners):
         samples = int(abs(b - a) / spacing) + 1
         for first in range(0, samples, BLOCK):
-            piece = np.arange(first, min(first + BLOCK, samples) + 1) / samples
-            turn += turning(function, a + (b - a) * piece)
+            part = np.arange(first, min(first + BLOCK, samples) + 1) / samples
+            turn += turning(function, np.asarray(a + (b - a) * part, complex))
     return round(turn / pi)
 
 
