@@ -54,6 +54,30 @@ class LinearMode:
         tilt = [1.0, -1.0] if self.saturated else [eta_pi - self.F_0[0], -eta_pi - f]
         return np.asarray(turn[1] * tilt[0] - turn[0] * tilt[1])
 
+    def unstable(self, eta_pi: float, top: float, shift: float = 1e-7) -> int:
+        """How many roots lie right of `shift` below |Im ν| = `top`, where there are none: the argument principle.
+
+        The determinant grows like ν to the right, and turns by half a turn on the way back.
+        """
+        reach = self.s[-1]
+        omega = np.concatenate([[0.0], np.geomspace(1e-9, 0.3 / reach, 40), np.arange(0.6 / reach, top, 0.3 / reach)])
+        value = self.determinant(shift + 1j * omega, eta_pi)
+        while True:
+            turns = np.angle(value[1:] / value[:-1])
+            coarse = np.flatnonzero(abs(turns) > 0.7)
+            if not len(coarse):
+                return round(0.5 - float(turns.sum()) / np.pi)
+            between = (omega[coarse] + omega[coarse + 1]) / 2
+            omega = np.insert(omega, coarse + 1, between)
+            value = np.insert(value, coarse + 1, self.determinant(shift + 1j * between, eta_pi))
+
+    def top(self, eta_pi: float) -> float:
+        """A frequency far above those of the roots in the right half plane: there e^{−νs} hardly counts."""
+        of_M, of_F_0 = (2 * (abs(row[1:]) / np.diff([0.0, *self.s])).sum() for row in (self.M, self.F_0))
+        drag, share = self.epsilon * eta_pi, 1.0 if self.saturated else abs(1 - self.F_0[0] / eta_pi)
+        bounds = [2.0, abs(self.M[0]) / drag, np.sqrt(of_M * share / drag), 0.0 if self.saturated else of_F_0 / eta_pi]
+        return 4 * float(max(bounds))
+
     def matrix(self, eta_pi: float, nodes: int) -> np.ndarray:
         """The generator of (θ, Y on [−s_n, 0]) on Chebyshev nodes, shape (nodes + 1, nodes + 1).
 

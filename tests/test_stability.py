@@ -1,8 +1,12 @@
 """Roots, verdicts, the critical ηΠ and the chart: against the paper's numbers, a discretisation and simulations."""
 
 import json
+import os
+import subprocess
+import sys
 from dataclasses import replace
-from math import pi, radians
+from itertools import accumulate
+from math import log, pi, radians
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +17,9 @@ from matplotlib.colors import to_rgb
 from matplotlib.image import imread
 from scipy.optimize import brentq
 
-from boreprop.analysis.characteristic import Characteristic, Complexes
+from boreprop.analysis.characteristic import Characteristic, Complexes, Crossings
 from boreprop.analysis.chart import (
+    DRIFT,
     OSCILLATORY,
     VERDICTS,
     Chart,
@@ -23,6 +28,7 @@ from boreprop.analysis.chart import (
     unstable_roots,
     usual_grid,
 )
+from boreprop.analysis.modes import all_contacts, can_touch, charted, contacts_met, held
 from boreprop.analysis.stability import (
     NEUTRAL,
     Verdict,
@@ -281,6 +287,119 @@ def test_a_system_in_contact_oscillates_below_its_critical_eta_pi_and_not_above(
         assert nearest == pytest.approx(critical.frequency * 1j, abs=1e-8)
 
 
+NEAR_BIT = BottomHoleAssembly((1.2, 5.10859, 14.60859), (1.5875e-3, 1.5875e-3), 0.6, 1830.0, 17.3e6)
+LONG = BottomHoleAssembly((0.6193, 6.6906, 10.0877, 18.8639), (1e-3,) * 3, 0.3, 1500.0, 1e7)
+BIT = BitRock(20.0, 1.0, radians(1.0))
+
+
+@st.composite
+def assemblies(draw: st.DrawFn) -> BottomHoleAssembly:
+    """Any number of stabilizers up to 40 ℓ₁ from the bit, and such as have the first one right behind the bit."""
+    if draw(st.booleans()):
+        spans, first = st.floats(3.5, 9.5), draw(st.floats(0.8, 2.0))
+        n = draw(st.integers(2, 4))
+    else:
+        spans, first = st.floats(-0.5, 1.1).map(lambda power: 3.66 * 10**power), 3.66
+        n = draw(st.integers(1, 6))
+    positions = tuple(accumulate([first, *(draw(spans) for _ in range(n - 1))]))
+    assume(positions[-1] < 40 * first)
+    stiffness, weight = 10 ** draw(st.floats(6.5, 7.6)), draw(st.floats(500.0, 3000.0))
+    return BottomHoleAssembly(positions, (1e-3,) * (n - 1), first / 4, weight, stiffness)
+
+
+@pytest.mark.parametrize("second", [5.10859, 5.1054, 5.1351, 7.0378])
+def test_where_the_equation_for_the_crossings_is_nearly_zero_there_is_no_crossing_for_that(second: float) -> None:
+    bha = replace(NEAR_BIT, stabilizer_positions=(1.2, second, second + 9.5))
+    critical = critical_eta_pi(bha, BIT, inclination=radians(30.0))
+    assert critical is not None
+    assert critical.wavelength < 5.0  # not some hundred metres
+    for factor, expected in ((0.999, True), (1.001, False), (2.0, False), (9.0, False)):
+        found = find_roots(bha, BIT, factor * critical.eta_pi, contact=(1, 2), inclination=radians(30.0))
+        assert (found.verdict is Verdict.OSCILLATORY) == expected
+
+
+@settings(deadline=None, max_examples=25, derandomize=True)
+@given(assemblies(), contacts, st.booleans(), inclinations, st.floats(0.01, 0.2))
+def test_at_a_critical_eta_pi_a_pair_of_roots_leaves_the_right_half_plane_for_good(
+    bha: BottomHoleAssembly, contact: list[int], saturated: bool, inclination: float, epsilon: float
+) -> None:
+    bit = BitRock(20.0, 20.0 * epsilon, 0.02)
+    scaled, touching = scale(bha, bit), tuple(contact[: len(bha.stabilizer_clearances)])
+    mode = LinearMode.of(scaled, touching, saturated, inclination)
+    numbers = [i for i, touches in enumerate(touching, 1) if touches]
+    critical = critical_eta_pi(bha, bit, contact=numbers, saturated=saturated, inclination=inclination)
+    least = critical.eta_pi if critical else 0.02
+    assume(mode.top(least) * scaled.s[-1] < 3e4)
+    characteristic = Characteristic.of(scaled, touching, saturated, inclination)
+    assume(not 0.0 < abs(characteristic.m_g) < 1e-6)  # so little weight that rounding decides
+    if critical:
+        assert mode.unstable(0.9999 * least, mode.top(0.9999 * least)) >= 2
+        assert abs(mode.determinant(np.array([1j * critical.frequency]), least))[0] < 1e-9
+    for factor in (1.0001, 1.01, 2.0, 10.0):
+        assert mode.unstable(factor * least, mode.top(factor * least)) <= 1
+
+
+@settings(deadline=None, max_examples=40, derandomize=True)
+@given(assemblies(), contacts, inclinations, st.floats(0.01, 0.2), st.floats(-2.0, 0.0))
+def test_the_crossings_account_for_every_unstable_root(
+    bha: BottomHoleAssembly, contact: list[int], inclination: float, epsilon: float, log_eta_pi: float
+) -> None:
+    scaled, eta_pi = scale(bha, BitRock(20.0, 20.0 * epsilon, 0.02)), 10**log_eta_pi
+    touching = tuple(contact[: len(scaled.y_star)])
+    mode = LinearMode.of(scaled, touching, False, inclination)
+    characteristic = Characteristic.of(scaled, touching, False, inclination)
+    assume(mode.top(eta_pi) * scaled.s[-1] < 3e4)
+    near_zero = mode.determinant(np.array([1e-9, 1e-5], complex), eta_pi).real
+    assume(near_zero[0] * near_zero[1] > 0 or not characteristic.m_g)
+    crossings = characteristic.crossings(eta_pi)
+    assume(crossings.eta_pi.min(initial=1.0) / eta_pi > 1 + 1e-5)
+    assert unstable_roots(characteristic, np.array([eta_pi]))[0][0] == mode.unstable(eta_pi, mode.top(eta_pi))
+
+
+def test_two_crossings_that_are_about_to_vanish_are_both_found() -> None:
+    """Where an edge of the chart turns back two crossings meet; they are found until they are next to each other."""
+    scaled = scale(PAPER.bha, PAPER.bit)
+
+    def crossings(lambda2: float) -> Crossings:
+        found = Characteristic.of(respaced(scaled, lambda2), (1,), False).crossings(0.03)
+        return Crossings(*(column[found.omega < 5.8] for column in found))
+
+    both, neither = 2.165, 2.175
+    assert (len(crossings(both).eta_pi), len(crossings(neither).eta_pi)) == (2, 0)
+    while neither - both > 1e-8:
+        middle = (both + neither) / 2
+        both, neither = (middle, neither) if len(crossings(middle).eta_pi) == 2 else (both, middle)
+    assert np.ptp(crossings(both).omega) < 1e-2  # a sample to each 0.06
+    assert sorted(crossings(both).direction) == [-1, 1]
+
+
+def test_a_long_assembly_takes_little_memory() -> None:
+    resource = pytest.importorskip("resource")  # not on Windows
+    program = f"""
+import resource
+resource.setrlimit(resource.RLIMIT_AS, ({2**30}, {2**30}))
+from boreprop.analysis.stability import find_roots
+from boreprop.core.assembly import BitRock, BottomHoleAssembly
+for contact in ((), (2, 3), (1, 2, 3)):
+    print(len(find_roots({LONG!r}, {BIT!r}, 0.0146, contact=contact, inclination=0.5).roots))
+"""
+    assert resource
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}  # each thread claims memory that it does not use
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, env=environment, timeout=60)
+    assert run.returncode == 0, run.stderr
+    assert all(int(line) > 0 for line in run.stdout.split())
+
+
+@pytest.mark.parametrize("contact", [(), (2, 3), (1, 2, 3)])
+def test_the_roots_of_a_long_assembly_are_all_there(contact: tuple[int, ...]) -> None:
+    found = np.array(find_roots(LONG, BIT, 0.0146, contact=contact, inclination=0.5).roots)
+    touching = tuple(int(i in contact) for i in (1, 2, 3))
+    mode = LinearMode.of(scale(LONG, BIT), touching, False, 0.5)
+    for abscissa in (1e-7, -0.05):
+        counted = mode.unstable(0.0146, 300.0, abscissa)
+        assert np.where(found.imag > 0, 2, 1)[found.real > abscissa].sum() == counted
+
+
 @pytest.fixture(scope="module")
 def chart() -> Chart:
     return stability_chart(PAPER.bha, PAPER.bit, np.linspace(0.005, 0.6, 60), np.linspace(0.5, 2.4, 39))
@@ -320,11 +439,77 @@ def test_on_the_boundaries_of_the_chart_a_root_is_on_the_imaginary_axis(chart: C
         points = np.concatenate([np.empty((0, 2)), *boundaries(chart, panel)])
         points = points[~np.isnan(points[:, 0])]
         assert len(points) >= least
+        points = points[np.isin(points[:, 1], chart.lambda2)]  # between those the lines are straight
         for at, lambda2 in points[:: len(points) // 20 + 1]:
             scaled = respaced(scale(PAPER.bha, PAPER.bit), lambda2)
             contact = (int(bool(panel.contact)),)
             roots = rightmost_roots(Characteristic.of(scaled, contact, panel.saturated), float(at))
-            assert min(abs(root.real) for root in roots) < 2e-3
+            assert min(abs(root.real) for root in roots) < 1e-3
+
+
+def test_a_drift_of_the_chart_doubles_as_fast_as_its_root_says(chart: Chart) -> None:
+    free_saturated = chart.panels[3]
+    assert (free_saturated.verdicts == DRIFT).all()
+    for i, j in ((0, 0), (20, 3), (38, 59)):
+        first = PAPER.bha.length_scale
+        bha = replace(PAPER.bha, stabilizer_positions=(first, first * (1 + chart.lambda2[i])))
+        [root, *_] = find_roots(bha, PAPER.bit, float(chart.eta_pi[j]), saturated=True).roots
+        assert free_saturated.doubling[i, j] == pytest.approx(log(2) / root.real * first, rel=0.2)
+    for panel in chart.panels:
+        assert (np.isnan(panel.doubling) == (panel.verdicts != DRIFT)).all()
+
+
+THREE = BottomHoleAssembly((4.3, 12.5, 21.5), (1.6e-3, 3.2e-3), 0.75, 1964.0, 1.923e7)
+
+
+def test_the_chart_of_three_stabilizers_has_all_their_modes() -> None:
+    made = stability_chart(THREE, BIT, np.linspace(0.02, 0.4, 4), np.linspace(1.0, 2.0, 3), 0.46)
+    contacts = ((1, 2), (1,), (2,), ())
+    assert [(panel.contact, panel.saturated) for panel in made.panels] == [
+        (contact, saturated) for contact in contacts for saturated in (False, True)
+    ]
+
+
+def test_with_many_stabilizers_a_chart_has_four_contacts_and_the_one_that_holds_the_case() -> None:
+    six = BottomHoleAssembly(tuple(np.arange(1.0, 7.0) * 5.0), (2e-3,) * 5, 0.7, 1500.0, 1e7)
+    here, _ = held(six, BIT, 5e4, 0.0, 0.5)
+    shown = charted(six, BIT, 0.5, first=here)
+    assert len(shown) == 4
+    assert shown[0] == (1, 2, 3, 4, 5)
+    assert here in shown
+    assert set(shown) <= {*contacts_met(six, BIT, 0.5), here, shown[0]}
+
+
+@settings(deadline=None, max_examples=20, derandomize=True)
+@given(st.floats(0.3, 20.0), st.sampled_from([0.0, 0.3, 1.0]), st.floats(-2e4, 2e4))
+def test_a_blade_that_cannot_touch_adds_no_mode_to_a_chart(at: float, inclination: float, force: float) -> None:
+    assume(abs(np.array(THREE.stabilizer_positions) - at).min() > 0.1)
+    place = int(np.searchsorted(THREE.stabilizer_positions, at))
+    idle = replace(
+        THREE,
+        stabilizer_positions=(*THREE.stabilizer_positions[:place], at, *THREE.stabilizer_positions[place:]),
+        stabilizer_clearances=(*THREE.stabilizer_clearances[:place], 0.2, *THREE.stabilizer_clearances[place:]),
+        rss_position=0.3,
+    )
+
+    def renumbered(contact: tuple[int, ...]) -> tuple[int, ...]:
+        return tuple(i + (i > place) for i in contact)
+
+    without = replace(THREE, rss_position=0.3)
+    assert can_touch(idle, BIT, inclination, [force]) == renumbered(can_touch(without, BIT, inclination, [force]))
+    shown = charted(without, BIT, inclination, [force])
+    assert charted(idle, BIT, inclination, [force]) == tuple(map(renumbered, shown))
+
+
+def test_stabilizers_without_clearance_are_in_every_contact() -> None:
+    assert all_contacts(replace(THREE, stabilizer_clearances=(0.0, 1e-3))) == ((1, 2), (1,))
+
+
+def test_a_case_is_held_in_the_mode_of_its_steady_response() -> None:
+    assert held(THREE, BIT, 6e4, 0.0, 0.0) == ((), False)  # hangs straight
+    contact, saturated = held(THREE, replace(BIT, tilt_limit=1e-6), 6e4, 2e4, radians(26.37))
+    assert saturated
+    assert contact in all_contacts(THREE)
 
 
 def test_the_shades_of_the_chart_differ_in_lightness() -> None:
@@ -333,8 +518,19 @@ def test_the_shades_of_the_chart_differ_in_lightness() -> None:
 
 
 def test_the_chart_s_picture_marks_the_case(chart: Chart) -> None:
-    for axes in draw(chart, PAPER).axes:
+    figure = draw(chart, PAPER)
+    assert len(figure.axes) == 4
+    for axes in figure.axes:
         assert axes.lines[-1].get_xydata() == pytest.approx(np.array([[0.01, 1.0]]), rel=1e-4)
+
+
+def test_the_chart_s_picture_has_kilonewtons_and_metres_and_no_specks(chart: Chart) -> None:
+    axes = draw(chart, PAPER).axes[0]
+    across, up = axes.child_axes[0], draw(chart, PAPER).axes[1].child_axes[-1]
+    assert across.get_xlabel() == "active weight on bit (kN)"
+    assert up.get_ylabel() == "stabilizer 1 to 2 (m)"
+    for line in boundaries(chart, chart.panels[0]):
+        assert np.ptp(line, axis=0).max() > 0.05
 
 
 def test_the_usual_grid_has_the_case_inside() -> None:
@@ -386,6 +582,42 @@ def test_roots_takes_eta_pi_and_the_inclination_from_the_case_and_no_contact(
     assert printed["mode"] == {"contact": [], "saturated": True}
 
 
+def test_roots_prints_a_line_for_each_mode(command: Command, paper_case: Path) -> None:
+    result = command("boreprop", "roots", paper_case)
+    lines = [line for line in result.stdout.splitlines() if "saturated" in line]
+    assert len(lines) == 4
+    for line, texts in zip(
+        lines,
+        [
+            ("1 ", "not saturated", "oscillatory", "doubles in 8.1 m", "1.27 m", "held here"),
+            ("1 ", "saturated", "drift", "doubles in 4160 m"),
+            ("none", "not saturated", "stable", "halves in 11.5 m"),
+            ("none", "saturated", "drift", "doubles in 1040 m"),
+        ],
+        strict=True,
+    ):
+        assert all(text in line for text in texts)
+    assert "1.612 kN" in result.stdout
+
+
+def test_roots_prints_all_modes_as_json(command: Command, paper_case: Path) -> None:
+    printed = json.loads(command("boreprop", "roots", paper_case, "--all", "--json").stdout)
+    assert [(mode["mode"]["contact"], mode["mode"]["saturated"]) for mode in printed] == [
+        ([1], False),
+        ([1], True),
+        ([], False),
+        ([], True),
+    ]
+    one = json.loads(command("boreprop", "roots", paper_case, "--json").stdout)
+    assert one == printed[2]
+
+
+def test_roots_of_no_contact_asked_for_are_a_table(command: Command, paper_case: Path) -> None:
+    result = command("boreprop", "roots", paper_case, "--contact", "")
+    assert "no contact, bit tilt not saturated: stable" in result.stdout
+    assert "-0.220685" in result.stdout
+
+
 def test_roots_prints_a_table(command: Command, paper_case: Path) -> None:
     result = command("boreprop", "roots", paper_case, "--contact", "1")
     assert result.returncode == 0
@@ -400,7 +632,8 @@ def test_stability_draws_a_picture_and_prints_the_critical_eta_pi(
     result = command("boreprop", "stability", paper_case, "--output", "chart.png", *ranges)
     assert result.stderr == ""
     assert "8 × 6 points" in result.stdout
-    assert "0.146757" in result.stdout
+    assert "stabilizer 1 in contact: oscillatory up to ηΠ = 0.146757 (23.66 kN; waves of 4.88 m)" in result.stdout
+    assert "no contact: never oscillatory" in result.stdout
     assert imread(tmp_path / "chart.png")[..., :3].std() > 0.05
     assert [path.name for path in tmp_path.iterdir()] == ["chart.png"]
 
@@ -409,6 +642,7 @@ def test_stability_draws_a_picture_and_prints_the_critical_eta_pi(
     ("arguments", "named"),
     [
         (("roots", "--contact", "1,x"), ("--contact", "'1,x'")),
+        (("roots", "--all", "--contact", "1"), ("--all", "--contact '1'")),
         (("roots", "--contact", "2"), ("contact", "here 1", "got 2")),
         (("roots", "--eta-pi", "1e-5"), ("eta_pi", "0.0001", "1e-05")),
         (("roots", "--inclination-deg", "nan"), ("--inclination-deg", "finite", "nan")),

@@ -11,6 +11,7 @@ from .console import typer
 from .core.propagation import RELATIVE_TOLERANCE
 
 MAX_ROWS = 10_000_000
+WIDE = 110  # characters: a line a mode
 
 app = console.new_app("Borehole propagation of a directional drilling system.")
 
@@ -329,47 +330,78 @@ def roots(
         float | None, typer.Option(parser=console.positive, metavar="X", help="ηΠ, if not the case's.")
     ] = None,
     contact: Annotated[
-        str, typer.Option(metavar="1,2", help="The stabilizers that touch; none if not given, but for clearance 0.")
-    ] = "",
-    saturated: Annotated[bool, typer.Option("--saturated", help="The bit tilt is at its limit.")] = False,
+        str | None,
+        typer.Option(metavar="1,2", help="One mode in full: the stabilizers that touch, '' for none."),
+    ] = None,
+    saturated: Annotated[bool, typer.Option("--saturated", help="With the bit tilt at its limit.")] = False,
     inclination_deg: Annotated[
         float | None, typer.Option(metavar="A", help="Inclination of the straight hole, if not that at the end.")
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print JSON: one mode, without --contact that with no contact.")
+    ] = False,
+    every: Annotated[bool, typer.Option("--all", help="With --json: a list of all modes.")] = False,
 ) -> None:
-    """Print the rightmost roots of a mode, and whether it is stable, drifts or oscillates."""
+    """Print what the modes of a case do: whether each is stable, drifts or oscillates, how fast, and in which waves.
+
+    A mode is which stabilizers touch the wall, and whether the bit tilt is at its limit. With --contact or --json the
+    rightmost roots of one mode.
+    """
     import json
     from math import radians
 
     from rich.console import Console
     from rich.table import Table
 
+    from .analysis.modes import all_contacts, contacts_met, held
     from .analysis.stability import find_roots, parse_contact
-    from .case import load_case
+    from .case import InputError, load_case
     from .core import assembly
     from .core.assembly import check_number
-    from .stability_table import HEADINGS, caption, rows, title
+    from .stability_table import (
+        HEADINGS,
+        MODE_HEADINGS,
+        NOT_MET,
+        as_plain,
+        caption,
+        mode_row,
+        modes_title,
+        rows,
+        title,
+    )
 
-    touching = parse_contact(contact)
+    if every and contact is not None:
+        raise InputError(f"--all: must be without --contact, got --contact {contact!r}")
+    touching = parse_contact(contact or "")
     if inclination_deg is not None:
         check_number("--inclination-deg", inclination_deg)
     case = load_case(case_file)
-    bha, bit = case.bha, case.bit
-    found = find_roots(
-        bha,
-        bit,
-        assembly.eta_pi(bha, bit, case.active_weight_on_bit) if eta_pi is None else eta_pi,
-        contact=touching,
-        saturated=saturated,
-        inclination=case.survey.inclination[-1] if inclination_deg is None else radians(inclination_deg),
-    )
-    if as_json:
-        mode = {"contact": found.contact, "saturated": found.saturated}
-        numbers = [[root.real, root.imag] for root in found.roots]
-        print(json.dumps({"eta_pi": found.eta_pi, "mode": mode, "roots": numbers, "verdict": found.verdict}))
+    bha, bit, forces = case.bha, case.bit, case.schedule.rss_force
+    inclination = case.survey.inclination[-1] if inclination_deg is None else radians(inclination_deg)
+    at = assembly.eta_pi(bha, bit, case.active_weight_on_bit) if eta_pi is None else eta_pi
+    weight_on_bit = at * bha.force_scale / bit.lateral_steering_resistance
+    if every or (contact is None and not as_json):
+        found = [
+            find_roots(bha, bit, at, contact=numbers, saturated=tilt, inclination=inclination)
+            for numbers in all_contacts(bha)
+            for tilt in ((True,) if saturated else (False, True))
+        ]
+        if as_json:
+            print(json.dumps([as_plain(roots) for roots in found]))
+            return
+        table = Table(*MODE_HEADINGS, title=modes_title(at, weight_on_bit, inclination), caption=NOT_MET)
+        here = held(bha, bit, weight_on_bit, forces[0], inclination)
+        met = contacts_met(bha, bit, inclination, forces)
+        for roots in found:
+            table.add_row(*mode_row(roots, bha.length_scale, here, met))
+        Console(width=WIDE).print(table)
         return
-    table = Table(*HEADINGS, title=title(found), caption=caption(found))
-    for row in rows(found, bha.length_scale):
+    one = find_roots(bha, bit, at, contact=touching, saturated=saturated, inclination=inclination)
+    if as_json:
+        print(json.dumps(as_plain(one)))
+        return
+    table = Table(*HEADINGS, title=title(one, weight_on_bit), caption=caption(one))
+    for row in rows(one, bha.length_scale):
         table.add_row(*row)
     Console().print(table)
 
@@ -383,9 +415,14 @@ def stability(
         str | None, typer.Option(metavar="A:B:N", help="N values of λ₂, stabilizer 1 to 2 over bit to 1, from A to B.")
     ] = None,
 ) -> None:
-    """Draw the stability chart of a case: four modes over ηΠ and λ₂, for the inclination at its end."""
+    """Draw the stability chart of a case over ηΠ and λ₂, for the inclination at its end, and print its limits.
+
+    There is a panel for each mode that matters: at most four ways in which stabilizers can touch, among them the one
+    the case is held in, each with the bit tilt saturated and not.
+    """
     from .analysis.chart import stability_chart, usual_grid
     from .analysis.design import parse_range
+    from .analysis.modes import charted, held
     from .analysis.stability import critical_eta_pi
     from .case import load_case
     from .core import assembly
@@ -394,19 +431,26 @@ def stability(
     across = parse_range("--eta-pi", eta_pi) if eta_pi else None
     up = parse_range("--lambda2", lambda2) if lambda2 else None
     case = load_case(case_file)
-    bha, bit, inclination = case.bha, case.bit, case.survey.inclination[-1]
+    bha, bit, inclination, forces = case.bha, case.bit, case.survey.inclination[-1], case.schedule.rss_force
     own = assembly.eta_pi(bha, bit, case.active_weight_on_bit)
-    usual_across, usual_up = usual_grid(bha, own)
+    here, _ = held(bha, bit, case.active_weight_on_bit, forces[0], inclination)
+    contacts = charted(bha, bit, inclination, forces, here)
+    limits = {contact: critical_eta_pi(bha, bit, contact=contact, inclination=inclination) for contact in contacts}
+    usual_across, usual_up = usual_grid(bha, own, max(limit.eta_pi if limit else 0.0 for limit in limits.values()))
     across, up = usual_across if across is None else across, usual_up if up is None else up
     from .drawing import save
     from .stability_figure import draw
-    from .stability_table import stability_limit
+    from .stability_table import stability_limit, weight
 
     with console.progress("chart", 1.0) as done:
-        chart = stability_chart(bha, bit, across, up, inclination, done)
+        chart = stability_chart(bha, bit, across, up, inclination, done, contacts)
     save(draw(chart, case), output)
-    critical = critical_eta_pi(bha, bit, inclination=inclination)
-    print(f"{output}: {len(across)} × {len(up)} points; {stability_limit(critical)}; the case: ηΠ = {own:.4g}")
+    print(
+        f"{output}: {len(across)} × {len(up)} points; {stability_limit(contacts[0], limits[contacts[0]])}; "
+        f"the case: ηΠ = {own:.4g} ({weight(case.active_weight_on_bit)})"
+    )
+    for contact in contacts[1:]:
+        print(f"{output}: {stability_limit(contact, limits[contact])}")
 
 
 @app.command()

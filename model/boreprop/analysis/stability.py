@@ -18,8 +18,11 @@ from .zeros import Strip, find_zeros
 
 SMALLEST_ETA_PI = 1e-4  # the number of roots to the right of any abscissa grows as 1/ηΠ
 ABSCISSA = -0.5  # roots are listed right of it
-MARGIN = 0.1  # left of the abscissa, for a contour that keeps clear of the roots
+DAMPING = 5.0  # nor do roots matter that shrink by e^-3 on the way from the bit to the last stabilizer
+MARGIN = 0.2  # left of the abscissa, times s_n, for a contour that keeps clear of the roots
+MOST_ROOTS = 2_000_000  # that are looked for
 NEUTRAL = 1e-9  # a root this close to the imaginary axis is on it
+SMOOTH = 6.0  # times 1/s_n: e^-6 is nothing to be seen on the grid
 SPACING = 0.5  # of the grid on which roots are looked for, times s_n
 
 
@@ -66,6 +69,8 @@ class CriticalEtaPi:
     ----------
     eta_pi
         ηΠ.
+    active_weight_on_bit
+        The same as a force, N.
     frequency
         ω, per ℓ₁.
     wavelength
@@ -73,6 +78,7 @@ class CriticalEtaPi:
     """
 
     eta_pi: float
+    active_weight_on_bit: float
     frequency: float
     wavelength: float
 
@@ -85,7 +91,7 @@ def find_roots(
     contact: Iterable[int] = (),
     saturated: bool = False,
     inclination: float = 0.0,
-    abscissa: float = ABSCISSA,
+    abscissa: float | None = None,
 ) -> Roots:
     """All roots of a mode right of an abscissa, or the nearest beyond it if there are none.
 
@@ -111,7 +117,7 @@ def find_roots(
     """
     check_number("eta_pi", eta_pi, at_least=SMALLEST_ETA_PI)
     check_number("inclination", inclination)
-    check_number("abscissa", abscissa, at_most=0.0)
+    check_number("abscissa", abscissa or 0.0, at_most=0.0)
     touching = touching_stabilizers(bha, contact)
     characteristic = Characteristic.of(scale(bha, bit), touching, saturated, inclination)
     roots = rightmost_roots(characteristic, eta_pi, abscissa)
@@ -152,8 +158,9 @@ def critical_eta_pi(
     for smallest in (0.1, 0.01, 0.001, SMALLEST_ETA_PI):  # the smaller, the more of them there are
         crossings = characteristic.crossings(smallest)
         if len(crossings.eta_pi):
-            frequency = float(crossings.omega[-1])
-            return CriticalEtaPi(float(crossings.eta_pi[-1]), frequency, 2 * pi / frequency * bha.length_scale)
+            eta_pi, frequency = float(crossings.eta_pi[-1]), float(crossings.omega[-1])
+            weight = eta_pi * bha.force_scale / bit.lateral_steering_resistance
+            return CriticalEtaPi(eta_pi, weight, frequency, 2 * pi / frequency * bha.length_scale)
     return None
 
 
@@ -193,20 +200,36 @@ def verdict(roots: Iterable[complex]) -> Verdict:
     return Verdict.DRIFT if unstable else Verdict.STABLE
 
 
-def rightmost_roots(characteristic: Characteristic, eta_pi: float, abscissa: float = ABSCISSA) -> tuple[complex, ...]:
+def rightmost_roots(
+    characteristic: Characteristic, eta_pi: float, abscissa: float | None = None
+) -> tuple[complex, ...]:
     """All roots with Re ν >= `abscissa` (<= 0); if there are none, as far left as it takes.
 
     Rightmost first, one of each pair (imaginary part >= 0), a multiple root as often as it is one.
     """
-    strip = Strip(abscissa, characteristic.rightmost(eta_pi), characteristic.highest(eta_pi, abscissa - MARGIN))
+    reach = float(characteristic.s[-1])
+    if abscissa is None:
+        abscissa = usual_abscissa(characteristic)
+    frequencies, rightmost = characteristic.outline(eta_pi, abscissa - MARGIN / reach)
+    if frequencies[-1] * reach > 2 * pi * MOST_ROOTS:
+        raise ParameterError(
+            "abscissa", f"must be nearer to 0: right of it lie millions of roots at ηΠ = {eta_pi:g}", abscissa
+        )
     roots = find_zeros(
         lambda nu: characteristic(nu, eta_pi),
         lambda x, y: characteristic.on_grid(x, y, eta_pi),
-        strip,
-        MARGIN,
-        SPACING / float(characteristic.s[-1]),
+        Strip(abscissa, float(rightmost[0]), float(frequencies[-1])),
+        MARGIN / reach,
+        SPACING / reach,
+        lambda y: float(rightmost[np.searchsorted(frequencies, y, side="right") - 1]),
+        SMOOTH / reach,
     )
     roots = roots[roots.real >= abscissa]
     if not len(roots):
-        return rightmost_roots(characteristic, eta_pi, abscissa + ABSCISSA)
+        return rightmost_roots(characteristic, eta_pi, abscissa + usual_abscissa(characteristic))
     return tuple(roots[np.lexsort([roots.imag, -roots.real])].tolist())
+
+
+def usual_abscissa(characteristic: Characteristic) -> float:
+    """Right of which roots are listed, if nobody says another one."""
+    return max(ABSCISSA, -DAMPING / float(characteristic.s[-1]))

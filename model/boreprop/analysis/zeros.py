@@ -3,9 +3,9 @@
 For functions that are real on the real axis: zeros are real or come in pairs, and the upper half plane is enough.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from itertools import pairwise
-from math import pi
+from math import inf, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +16,7 @@ from .characteristic import Complexes, Floats
 SAME = 1e-7  # zeros closer than this are one
 GRIDS = 4  # tried in turn, each twice as fine as the one before
 SEARCHES = 4  # beside the zeros that are known
-BLOCK = 4096  # rows of a grid at a time
+BLOCK = 2**17  # points of a grid or a contour at a time
 NEWTON_STEPS = 60
 CONVERGED = 1e-13  # step of Newton's method after which another would find rounding only
 BESIDE = 1e-3 * (1 + 1j)  # from a known zero to the start for the next
@@ -28,6 +28,10 @@ OnGrid = Callable[[Floats, Floats], Complexes]
 """The function at x + iy, shape (len(y), len(x)); extra zeros do no harm."""
 
 
+Right = Callable[[float], float]
+"""A bound on Re ν of the zeros with Im ν above the argument."""
+
+
 class Strip(NamedTuple):
     """left < Re ν < right, |Im ν| < top."""
 
@@ -36,11 +40,20 @@ class Strip(NamedTuple):
     top: float
 
 
-def find_zeros(function: Function, on_grid: OnGrid, strip: Strip, margin: float, spacing: float) -> Complexes:
+def find_zeros(
+    function: Function,
+    on_grid: OnGrid,
+    strip: Strip,
+    margin: float,
+    spacing: float,
+    right: Right | None = None,
+    smooth: float = inf,
+) -> Complexes:
     """All zeros in a strip.
 
     On a grid the modulus has minima next to zeros only. Newton's method polishes them, and the argument principle tells
-    how many are missing: those are looked for beside the ones found, then on a finer grid.
+    how many are missing: those are looked for beside the ones found, then on a finer grid. The grid and the contour are
+    gone through in pieces: only the zeros themselves need memory.
 
     Parameters
     ----------
@@ -52,6 +65,11 @@ def find_zeros(function: Function, on_grid: OnGrid, strip: Strip, margin: float,
         How far beyond the left edge of the strip the count may go, to keep clear of zeros.
     spacing
         Of the first grid.
+    right
+        A bound on Re ν of the zeros above a given Im ν, if that is less than the strip's further up.
+    smooth
+        The abscissa > 0 right of which the function changes more slowly: the grid is twice as coarse right of its
+        double, and so on.
 
     Returns
     -------
@@ -65,7 +83,8 @@ def find_zeros(function: Function, on_grid: OnGrid, strip: Strip, margin: float,
     """
     wide = strip._replace(left=strip.left - margin)
     for k in range(GRIDS):
-        zeros = distinct(newton(function, minima(on_grid, wide, spacing / 2**k)))
+        starts = minima(on_grid, wide, spacing / 2**k, right or (lambda _: strip.right), smooth)
+        zeros = distinct(np.concatenate([newton(function, piece) for piece in starts]))
         for _ in range(SEARCHES):
             counted = strip._replace(left=clear_abscissa(zeros, wide.left, strip.left))
             missing = count(function, counted, spacing) - number(zeros, counted.left)
@@ -99,18 +118,33 @@ def count(function: Function, strip: Strip, spacing: float) -> int:
         If a zero lies on the contour.
     """
     left, right, top = strip
-    corners = np.array([right, right + 1j * top, left + 1j * top, left])
-    sides = [np.linspace(a, b, int(abs(b - a) / spacing) + 2)[:-1] for a, b in pairwise(corners)]
-    at = np.concatenate([*sides, corners[-1:]])
+    corners = [complex(right), right + 1j * top, left + 1j * top, complex(left)]
+    turn = 0.0
+    for a, b in pairwise(corners):
+        samples = int(abs(b - a) / spacing) + 1
+        for first in range(0, samples, BLOCK):
+            part = np.arange(first, min(first + BLOCK, samples) + 1) / samples
+            turn += turning(function, np.asarray(a + (b - a) * part, complex))
+    return round(turn / pi)
+
+
+def turning(function: Function, at: Complexes) -> float:
+    """By how much the argument of a function grows along a line through the samples `at`, and more as needed.
+
+    Raises
+    ------
+    ArithmeticError
+        If a zero lies on the line.
+    """
     value, slope = function(at)
     while True:
         length, size = abs(np.diff(at)), abs(value)
         change = length * np.maximum(abs(slope[:-1]), abs(slope[1:]))
         coarse = np.flatnonzero(change > STEADY * np.minimum(size[:-1], size[1:]))
         if not len(coarse):
-            return round(float(np.angle(value[1:] / value[:-1]).sum()) / pi)
+            return float(np.angle(value[1:] / value[:-1]).sum())
         if length[coarse].min() < SAME**2:
-            raise ArithmeticError(f"a zero lies on the edge of {strip}")
+            raise ArithmeticError(f"a zero lies on the edge of the region, between {at[0]} and {at[-1]}")
         between = (at[coarse] + at[coarse + 1]) / 2
         new_value, new_slope = function(between)
         at = np.insert(at, coarse + 1, between)
@@ -118,21 +152,29 @@ def count(function: Function, strip: Strip, spacing: float) -> int:
         slope = np.insert(slope, coarse + 1, new_slope)
 
 
-def minima(on_grid: OnGrid, strip: Strip, spacing: float) -> Complexes:
-    """The points of a grid over the upper half of a strip at which the modulus is least among nine."""
-    x = strip.left + spacing * np.arange(-2.0, (strip.right - strip.left) / spacing + 2)
-    rows = int(strip.top / spacing) + 3
-    found = []
-    for first in range(0, rows, BLOCK):
-        y = spacing * (np.arange(first, min(first + BLOCK, rows) + 2.0) - 0.5)  # symmetric about the real axis
-        size = abs(on_grid(x, y))
-        inner = size[1:-1, 1:-1]
-        least = np.ones_like(inner, bool)
-        for i, j in np.ndindex(3, 3):
-            least &= inner <= size[i : i + inner.shape[0], j : j + inner.shape[1]]
-        row, column = np.nonzero(least)
-        found.append(x[column + 1] + 1j * y[row + 1])
-    return np.concatenate(found)
+def minima(on_grid: OnGrid, strip: Strip, spacing: float, right: Right, smooth: float) -> Iterator[Complexes]:
+    """The points of a grid over the upper half of a strip at which the modulus is least among nine, in pieces."""
+    left, end = strip.left, min(2 * smooth, strip.right)
+    while left < strip.right:
+        y = 0.0
+        while y < strip.top and left < right(y):
+            x = np.arange(left - 2 * spacing, min(end, right(y)) + 2 * spacing, spacing)
+            rows = spacing * np.arange(-1.5, BLOCK // len(x) + 2)  # about y, and so symmetric about the real axis
+            yield least_among_nine(x, y + rows[rows < strip.top - y + 3 * spacing], on_grid)
+            y += rows[-1] - spacing / 2
+        left, end, spacing = end, min(2 * end, strip.right), 2 * spacing
+
+
+def least_among_nine(x: Floats, y: Floats, on_grid: OnGrid) -> Complexes:
+    """The inner points of a grid at which the modulus is least among their neighbours."""
+    size = abs(on_grid(x, y))
+    inner = size[1:-1, 1:-1]
+    least = np.ones_like(inner, bool)
+    for i, j in np.ndindex(3, 3):
+        least &= inner <= size[i : i + inner.shape[0], j : j + inner.shape[1]]
+    row, column = np.nonzero(least)
+    found: Complexes = x[column + 1] + 1j * y[row + 1]
+    return found
 
 
 def beside(function: Function, known: Complexes) -> Complexes:
