@@ -7,9 +7,9 @@ then over 8 km; the wide one is of all that the model takes, over 10 ℓ₁. Eit
 1e-9 and 1e-5. The native engine runs every case; Python the first K, and each in which the native one stops. A bit that
 turns over is no failure. What goes wrong is told with the case file that shows it, and ends in exit status 1.
 
-Some runs depend on their last digits: where the engines differ, the native one runs once more with a BHA that is stiffer
-and longer by 1e-12. Then rows count up to the first in which that moves a column by a tenth of what the engines may
-differ by.
+Some runs depend on their last digits: where the engines differ, the native one runs once more with a BHA that is
+stiffer and longer by 1e-12. Then rows count up to the first in which that moves a column by a tenth of what the engines
+may differ by.
 """
 
 import argparse
@@ -48,9 +48,7 @@ def near_bit(random: Random) -> tuple[Case, float]:
     first = random.uniform(0.8, 2.0)
     positions = tuple(accumulate([first, *(random.uniform(3.5, 9.5) for _ in range(random.randint(1, 3)))]))
     clearances = [random.choice([2e-3, 5e-3, 15e-3, 30e-3]), *(random.uniform(5e-4, 4e-3) for _ in positions[2:])]
-    bha = BottomHoleAssembly(
-        positions, tuple(clearances), min(0.6, first / 2), 1500.0, 10 ** random.uniform(6.8, 7.6)
-    )
+    bha = BottomHoleAssembly(positions, tuple(clearances), min(0.6, first / 2), 1500.0, 10 ** random.uniform(6.8, 7.6))
     inclination, end = radians(random.choice([0.0, 10.0, 40.0])), positions[-1]
     case = Case(
         bha=bha,
@@ -142,7 +140,8 @@ def drilled(case: Case, tolerance: float, engine: str, interval: float) -> Traje
     try:
         return simulate(case, sample_interval=interval, relative_tolerance=tolerance, engine=engine)
     except Stopped as stopped:
-        assert stopped.trajectory is not None
+        if stopped.trajectory is None:
+            raise
         return stopped.trajectory
 
 

@@ -19,11 +19,12 @@ from boreprop.core.assembly import BitRock, BottomHoleAssembly, ParameterError, 
 from boreprop.core.drilling import Drilling
 from boreprop.core.hole import Survey
 from boreprop.core.propagation import Propagation
+from boreprop.errors import Stopped
 from boreprop.kernel import binding
 from boreprop.kernel.binding import KernelError, NativeDrilling
 from boreprop.kernel.compiler import NoCompilerError, build_library
 from boreprop.results import read_trajectory
-from boreprop.simulation import SimulationError, best_engine, simulate
+from boreprop.simulation import best_engine, simulate
 from conftest import Command
 from reference_cases import CASES, reference
 from systems import scaled_systems
@@ -208,7 +209,7 @@ def test_what_goes_wrong_is_told_as_in_python(case: Case) -> None:
     bent = replace(case, schedule=Schedule((0.0, 3.3), (0.0, 1e9)))
     messages = []
     for engine in ("python", "native"):
-        with pytest.raises(SimulationError) as caught:
+        with pytest.raises(Stopped) as caught:
             simulate(bent, engine=engine)
         messages.append(str(caught.value))
     assert messages[0] == messages[1]

@@ -11,8 +11,9 @@ from boreprop.case import Case, Schedule, load_case
 from boreprop.core.assembly import BitRock, BottomHoleAssembly, ParameterError
 from boreprop.core.hole import Survey
 from boreprop.core.variables import INPUTS, OUTPUTS, scalar_names
+from boreprop.errors import Stopped
 from boreprop.paper import LENGTH_SCALE, paper_case
-from boreprop.simulation import SimulationError, simulate
+from boreprop.simulation import simulate
 from boreprop.summary import rows, summarize
 from reference_cases import reference
 
@@ -151,7 +152,7 @@ def test_arguments_out_of_range_are_refused(arguments: dict[str, float], message
 def test_a_failure_of_the_integrator_says_where_and_what_helps(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("boreprop.core.propagation.SMALLEST_STEP", 0.5)
     with pytest.raises(
-        SimulationError,
+        Stopped,
         match=r"after 0 m of 5 m: the steps of the integrator become too short at 0 m: raise relative_tolerance",
     ):
         simulate(paper_case(), length=5.0)

@@ -36,7 +36,6 @@ from ..core.contact import ROUNDING, Loads, Mode, Modes, Row, change, left, wall
 from ..core.drilling import check_inputs
 from ..core.linear import dot
 
-
 MOST_SWITCHES = 1000  # from mode to mode, of which there are at most 729
 
 
