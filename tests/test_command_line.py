@@ -189,7 +189,6 @@ def run_raising(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
         InputError("x: must be y, got z"),
         ParameterError("x", "must be y", 5),
         TableError("x: must be y, got z"),
-        Stopped("after 5 m: x"),
         FileNotFoundError(2, "no such file", "x"),
         ModuleNotFoundError("No module named 'rerun.x'", name="rerun.x"),
         InputError("x: must be y,\ngot z"),
@@ -203,6 +202,12 @@ def test_whatever_a_user_can_mend_is_one_line(
     shown = capsys.readouterr()
     assert (ended.value.code, shown.out, shown.err.count("\n")) == (2, "", 1)
     assert "x" in shown.err
+
+
+def test_a_run_that_stops_is_no_bad_input(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        run_raising(Stopped("after 5 m: x"), monkeypatch)
+    assert (ended.value.code, *capsys.readouterr()) == (3, "", "error: after 5 m: x\n")
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,7 @@
 """Contact forces and bit tilt: the fast path of the integrator against the paper's LCP (15)."""
 
+from math import inf, nan
+
 import numpy as np
 import pytest
 from hypothesis import example, given, settings
@@ -99,6 +101,27 @@ def test_without_clearance_a_stabilizer_is_held_on_both_sides() -> None:
         mode = Modes(Beam(scaled), scaled.y_star).settle(at, (0,))
         assert mode.delta[0](at) == pytest.approx(0.0, abs=1e-15)
         assert mode.F[0](at) == pytest.approx(-offset * 32 / 7)
+
+
+def test_where_rounding_brings_a_set_of_contacts_back_the_search_ends_with_what_holds_but_for_that() -> None:
+    """Stabilizers 0.1 mm apart: the force between them is rounding, 0.1 went round in circles under these loads."""
+    l1 = 3.66
+    scaled = Scaled((1.0, 3.6601 / l1, 3.6602 / l1, 2.0), (1e-3 / l1,) * 3, 0.16, 2e-3, 0.1, 0.03)
+    at = Loads(
+        [-0.0050000000000000044, -0.0050002732240438386, -0.005000546448087562, -0.015000000000000124], 0.0, 0.48
+    )
+    mode = Modes(Beam(scaled), scaled.y_star).settle(at, (0, 0, 0))
+    for i, contact in enumerate(mode.contact):
+        delta, F = mode.delta[i](at), mode.F[i](at)
+        assert abs(delta) <= scaled.y_star[i] + 1e-9
+        assert F * contact >= -1e-9
+
+
+@pytest.mark.parametrize("size", [1e10, 1e100, 1e300, inf, nan])
+def test_the_search_for_contacts_ends_under_any_loads(size: float) -> None:
+    scaled = Scaled((1.0, 1.004, 1.008, 2.0), (1e-3, 1e-9, 2e-3), 0.16, 2e-3, 0.1, 0.03)
+    at = Loads([size, -size / 3, size / 7, 0.0], size, 0.5)
+    assert len(Modes(Beam(scaled), scaled.y_star).settle(at, (0, 0, 0)).contact) == 3
 
 
 def test_residual_is_large_where_z_does_not_solve_the_lcp() -> None:

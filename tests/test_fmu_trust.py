@@ -253,15 +253,18 @@ def test_a_bad_parameter_stops_the_instance_until_a_reset(flavour: Flavour, fmu:
 
 @both_flavours
 def test_what_is_bad_is_named_with_the_constraint_and_the_value(fmu: Path) -> None:
+    apart = "must be at least 0.01 m from each other and from the bit"
     messages = {
         ("flexural_stiffness", -1.0): "flexural_stiffness: must be > 0, got -1.0",
         ("stabilizer_position[1]", 50.0): "stabilizer_position: must increase, got (50.0, 7.32)",
+        ("stabilizer_position[1]", 7.315): f"stabilizer_position: {apart}, got (7.315, 7.32)",
+        ("stabilizer_position[1]", 0.005): f"stabilizer_position: {apart}, got (0.0, 0.005)",
         ("relative_tolerance", nan): "relative_tolerance: must be ",
         # what a survey file is called is no format for the logger's printf
         ("survey_file", "no/%s%n.csv"): "no/%%s%%n.csv: must be a readable CSV file",
     }
-    for name, value, _, logs, _ in host("bad_parameters", fmu, json.dumps(list(messages))):
-        message = next(text for (bad, _), text in messages.items() if bad == name)
+    reports = host("bad_parameters", fmu, json.dumps(list(messages)))
+    for message, (_, value, _, logs, _) in zip(messages.values(), reports, strict=True):
         assert logs[0][0][2].startswith(message), value
 
 

@@ -8,9 +8,7 @@ from boreprop.analysis.rippling import examine_rippling
 from boreprop.analysis.tipping import drill_until_settled
 from boreprop.results import Trajectory
 from boreprop.simulation import simulate
-from near_bit import FATES, near_bit_case
-
-LENGTH = 1500.0
+from near_bit import NEAR_BIT, near_bit_case
 
 
 def up_to(run: Trajectory, length: float) -> Trajectory:
@@ -21,8 +19,8 @@ def up_to(run: Trajectory, length: float) -> Trajectory:
 def rippling_at(fate: str, lengths: tuple[float, ...]) -> Counter[float]:
     """How many of the BHAs of a fate are said to ripple after each length."""
     said: Counter[float] = Counter()
-    for entry in FATES[fate]:
-        run = simulate(near_bit_case(entry, LENGTH), engine="native")
+    for entry in NEAR_BIT[fate]:
+        run = simulate(near_bit_case(entry), engine="native")
         said.update(length for length in lengths if examine_rippling(up_to(run, length)).ripples)
     return said
 
@@ -45,7 +43,7 @@ def test_those_that_end_straight_are_said_to_be_straight_once_they_are() -> None
 @pytest.mark.slow
 @pytest.mark.parametrize("fate", ["ripples", "straight"])
 def test_an_early_verdict_on_those_in_a_vertical_hole_is_that_of_the_long_run(fate: str) -> None:
-    vertical = [entry for entry in FATES[fate] if entry["inc"] == 0.0][::2]
+    vertical = [entry for entry in NEAR_BIT[fate] if entry["inc"] == 0.0][::2]
     assert len(vertical) > 25
     for entry in vertical:
-        assert drill_until_settled(near_bit_case(entry, LENGTH))[1].ripples is (fate == "ripples"), entry
+        assert drill_until_settled(near_bit_case(entry))[1].ripples is (fate == "ripples"), entry
