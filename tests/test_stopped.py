@@ -15,7 +15,6 @@ from boreprop.simulation import simulate
 from boreprop_fmu.drive import Run
 from conftest import Command, Pack
 from flavours import Flavour, both_flavours
-from test_kernel import kernel as kernel
 
 pytestmark = pytest.mark.usefixtures("kernel")
 

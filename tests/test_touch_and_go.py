@@ -13,7 +13,6 @@ from boreprop.simulation import simulate
 from fuzz_engines import SPACES, draw, examine
 from near_bit import FIELD, NEAR_BIT, near_bit_case
 from reference_cases import start
-from test_kernel import kernel as kernel
 
 pytestmark = pytest.mark.usefixtures("kernel")
 

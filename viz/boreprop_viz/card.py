@@ -5,6 +5,7 @@ from math import degrees
 
 import rerun as rr
 
+from boreprop.analysis.modes import can_touch
 from boreprop.analysis.rippling import Rippling, State
 from boreprop.analysis.stability import critical_eta_pi
 from boreprop.case import Case
@@ -28,7 +29,9 @@ def log_card(rec: rr.RecordingStream, sources: Sequence[Source], verdicts: Seque
 def case_facts(case: Case) -> dict[str, str]:
     """What there is to know of a case, in the units people use."""
     bha, bit = case.bha, case.bit
-    critical = critical_eta_pi(bha, bit, inclination=case.survey.inclination[-1])
+    inclination = case.survey.inclination[-1]
+    contact = can_touch(bha, bit, inclination, case.schedule.rss_force)
+    critical = critical_eta_pi(bha, bit, contact=contact, inclination=inclination)
     clearances = [f"{1000 * clearance:.3g}" for clearance in bha.stabilizer_clearances]
     return {
         "stabilizers": f"{', '.join(f'{s:.4g}' for s in bha.stabilizer_positions)} m",
@@ -41,7 +44,9 @@ def case_facts(case: Case) -> dict[str, str]:
         "hole": f"{1000 * case.bit_diameter:.4g} mm",
         "weight on bit": f"{case.active_weight_on_bit / 1000:.3g} kN",
         "**ηΠ**": f"**{eta_pi(bha, bit, case.active_weight_on_bit):.4g}**",
-        "critical ηΠ": "none" if critical is None else f"{critical.eta_pi:.4g}",
+        "critical ηΠ": (
+            "none" if critical is None else f"{critical.eta_pi:.4g} ({critical.active_weight_on_bit / 1000:.3g} kN)"
+        ),
     }
 
 

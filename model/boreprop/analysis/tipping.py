@@ -30,6 +30,7 @@ from ..errors import Stopped
 from ..results import Trajectory
 from ..simulation import best_engine, follow, start
 from .design import vary
+from .modes import can_touch
 from .rippling import Rippling, State, examine_rippling, find_rippling, longest_wave, modes_of
 from .stability import critical_eta_pi
 from .waves import without_trend
@@ -243,7 +244,9 @@ def usual_map(case: Case) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     The ηΠ go from the case's, or less, up to where the BHA in contact no longer oscillates, or beyond the case's.
     """
     own = eta_pi(case.bha, case.bit, case.active_weight_on_bit)
-    critical = critical_eta_pi(case.bha, case.bit, inclination=case.survey.inclination[-1])
+    inclination = case.survey.inclination[-1]
+    contact = can_touch(case.bha, case.bit, inclination, case.schedule.rss_force)
+    critical = critical_eta_pi(case.bha, case.bit, contact=contact, inclination=inclination)
     highest = max(1.1 * critical.eta_pi if critical else 0.0, 1.5 * own)
     clearance = case.bha.stabilizer_clearances[0] if case.bha.stabilizer_clearances else 0.0
     return (
