@@ -254,6 +254,14 @@ def test_the_case_is_on_its_usual_map(case: Case) -> None:
     assert clearance[0] <= case.bha.stabilizer_clearances[0] < clearance[-1]
 
 
+def test_a_map_varies_the_first_stabilizer_that_touches() -> None:
+    bha = paper_case().bha
+    idle = replace(bha, stabilizer_positions=(1.2, 3.66, 7.32), stabilizer_clearances=(0.2, *bha.stabilizer_clearances))
+    bladed = replace(paper_case(), bha=idle)
+    assert dogleg_map(bladed, np.array([0.02]), np.array([3e-3]), tolerance=1.0, workers=1).stabilizer == 2
+    assert usual_map(bladed)[1] == pytest.approx(usual_map(paper_case())[1])
+
+
 # hysteresis
 
 
@@ -376,7 +384,7 @@ def test_the_loop_in_words(found: Hysteresis, words: str) -> None:
 
 def test_the_points_that_a_map_lacks_in_words() -> None:
     nothing, why = np.zeros(2), np.array([["", "after 3 m: the bit turns over"]])
-    found = DoglegMap(nothing, nothing[:1], np.array([[0.1, nan]]), np.ones((1, 2), dtype=bool), why)
+    found = DoglegMap(nothing, nothing[:1], 1, np.array([[0.1, nan]]), np.ones((1, 2), dtype=bool), why)
     assert left_out(found) == "; 1 of 2 points left out (the first: after 3 m: the bit turns over)"
 
 

@@ -229,7 +229,8 @@ def dogleg(
         str | None, typer.Option(metavar="A:B:N", help="The map's ηΠ: from, to, how many; if not around the case's.")
     ] = None,
     clearance_mm: Annotated[
-        str | None, typer.Option(metavar="A:B:N", help="Its clearances of the first stabilizer, mm.")
+        str | None,
+        typer.Option(metavar="A:B:N", help="Its clearances of the first stabilizer that can touch the wall, mm."),
     ] = None,
     limit_deg: Annotated[
         float, typer.Option(parser=console.positive, metavar="A", help="Largest turn that is tried, degrees.")
@@ -285,7 +286,10 @@ def hysteresis(
         str | None, typer.Option(metavar="A:B:N", help="Change the weight: ηΠ from, to, how many.")
     ] = None,
     clearance_mm: Annotated[
-        str | None, typer.Option(metavar="A:B:N", help="Change the clearance of the first stabilizer instead, mm.")
+        str | None,
+        typer.Option(
+            metavar="A:B:N", help="Change the clearance of the first stabilizer that can touch the wall instead, mm."
+        ),
     ] = None,
     dogleg_deg: Annotated[
         float,
@@ -302,6 +306,7 @@ def hysteresis(
 
     from .analysis import tipping
     from .analysis.design import parse_range
+    from .analysis.modes import first_that_touches
     from .case import InputError, load_case
     from .drawing import save
     from .tipping_figure import draw_loop
@@ -314,7 +319,8 @@ def hysteresis(
     if eta_pi is not None:
         name, values = "eta_pi", parse_range("--eta-pi", eta_pi).tolist()
     else:
-        name, values = "stabilizer_clearance[1]", (parse_range("--clearance-mm", clearance_mm or "") / 1e3).tolist()
+        name = f"stabilizer_clearance[{first_that_touches(case)}]"
+        values = (parse_range("--clearance-mm", clearance_mm or "") / 1e3).tolist()
     with console.progress("values", 2 * len(values)) as done:
         found = tipping.hysteresis(
             case, name, values, radians(dogleg_deg), relative_tolerance=tolerance or RELATIVE_TOLERANCE, progress=done

@@ -31,7 +31,7 @@ def draw_map(case: Case, found: DoglegMap, limit: float) -> Figure:
     panel = figure.subplots()
     panel.set_facecolor(NEVER)
     panel.set_xlabel("ηΠ")
-    panel.set_ylabel("clearance of the first stabilizer (mm)")
+    panel.set_ylabel(f"clearance of stabilizer {found.stabilizer} (mm)")
     weight = panel.secondary_xaxis("top", functions=_multiple(_kilonewtons(case)))
     weight.set_xlabel("active weight on bit (kN)")
     x, y = found.eta_pi, 1e3 * found.clearance
@@ -53,7 +53,10 @@ def draw_map(case: Case, found: DoglegMap, limit: float) -> Figure:
     if not found.monotonic.all():
         rows, columns = np.nonzero(~found.monotonic)
         keys += panel.plot(x[columns], y[rows], "kx", label="not every larger turn does")
-    own = eta_pi(case.bha, case.bit, case.active_weight_on_bit), 1e3 * case.bha.stabilizer_clearances[0]
+    own = (
+        eta_pi(case.bha, case.bit, case.active_weight_on_bit),
+        1e3 * case.bha.stabilizer_clearances[found.stabilizer - 1],
+    )
     if x[0] <= own[0] <= x[-1] and y[0] <= own[1] <= y[-1]:
         keys += panel.plot(*own, "w*", markersize=14, markeredgecolor="k", label="the case")
     figure.legend(handles=keys, loc="outside lower center", ncols=len(keys))
@@ -106,7 +109,7 @@ def draw_loop(case: Case, found: Hysteresis) -> Figure:
                 panel.axvspan(unit * end[0], unit * end[1], color=colour, alpha=0.4, linewidth=0)
     axis.set_ylabel("ripple of the hole axis (± mm)")
     inclination.set_ylabel("ripple of the inclination (± °)")
-    inclination.set_xlabel("clearance of the first stabilizer (mm)" if clearance else "ηΠ")
+    inclination.set_xlabel(f"clearance of stabilizer {found.name.partition('[')[2][:-1]} (mm)" if clearance else "ηΠ")
     if not clearance:
         weight = axis.secondary_xaxis("top", functions=_multiple(_kilonewtons(case)))
         weight.set_xlabel("active weight on bit (kN)")

@@ -9,6 +9,7 @@ from math import radians, sin
 
 import numpy as np
 
+from ..case import Case
 from ..core.assembly import BitRock, BottomHoleAssembly, scale
 from ..core.beam import Beam
 from ..core.contact import Loads, Modes
@@ -56,6 +57,12 @@ def contacts_met(
 def can_touch(bha: BottomHoleAssembly, bit: BitRock, inclination: float, rss_forces: Iterable[float] = ()) -> Contact:
     """The stabilizers that touch in one of `contacts_met`: all but those whose clearance no hole uses up."""
     return tuple(sorted(set().union(*contacts_met(bha, bit, inclination, rss_forces))))
+
+
+def first_that_touches(case: Case) -> int:
+    """The number of the first stabilizer that `can_touch` under the case's forces; 1 if none can."""
+    touching = can_touch(case.bha, case.bit, case.survey.inclination[-1], case.schedule.rss_force)
+    return touching[0] if touching else 1
 
 
 def held(

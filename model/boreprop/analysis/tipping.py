@@ -30,7 +30,7 @@ from ..errors import Stopped
 from ..results import Trajectory
 from ..simulation import best_engine, follow, start
 from .design import vary
-from .modes import can_touch
+from .modes import can_touch, first_that_touches
 from .rippling import Rippling, State, examine_rippling, find_rippling, longest_wave, modes_of
 from .stability import critical_eta_pi
 from .waves import without_trend
@@ -222,7 +222,9 @@ class DoglegMap:
     Parameters
     ----------
     eta_pi, clearance
-        ηΠ, shape (m,), and the clearance of the first stabilizer, m, shape (k,).
+        ηΠ, shape (m,), and the clearance of one stabilizer, m, shape (k,).
+    stabilizer
+        The number of that stabilizer, the first that can touch the wall.
     angle
         rad, shape (k, m); nan where a run could not go on.
     monotonic
@@ -233,13 +235,14 @@ class DoglegMap:
 
     eta_pi: NDArray[np.float64]
     clearance: NDArray[np.float64]
+    stabilizer: int
     angle: NDArray[np.float64]
     monotonic: NDArray[np.bool_]
     stopped: NDArray[np.str_]
 
 
 def usual_map(case: Case) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """ηΠ and clearances of the first stabilizer, m, for a map that shows where a system ripples, and the case on it.
+    """ηΠ and clearances of the first stabilizer that can touch, m, for a map that shows where a case ripples, and it.
 
     The ηΠ go from the case's, or less, up to where the BHA in contact no longer oscillates, or beyond the case's.
     """
@@ -248,7 +251,7 @@ def usual_map(case: Case) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     contact = can_touch(case.bha, case.bit, inclination, case.schedule.rss_force)
     critical = critical_eta_pi(case.bha, case.bit, contact=contact, inclination=inclination)
     highest = max(1.1 * critical.eta_pi if critical else 0.0, 1.5 * own)
-    clearance = case.bha.stabilizer_clearances[0] if case.bha.stabilizer_clearances else 0.0
+    clearance = (*case.bha.stabilizer_clearances, 0.0)[first_that_touches(case) - 1]
     return (
         np.linspace(min(own, highest / 16), highest, 16),
         np.linspace(min(0.5e-3, clearance), max(8e-3, 1.5 * clearance), 8),
@@ -267,7 +270,7 @@ def dogleg_map(
     workers: int | None = None,
     progress: Callable[[float], None] = lambda _: None,
 ) -> DoglegMap:
-    """`critical_dogleg` over ηΠ, reached by the weight on bit, and the clearance of the first stabilizer, m.
+    """`critical_dogleg` over ηΠ, reached by the weight, and the clearance, m, of the first stabilizer that can touch.
 
     It works on `workers` processes, one for each core unless told otherwise; `boreprop.analysis.study` says what a
     script must do for them. `progress` is called with the number of points done. A point of which a run cannot go on
@@ -280,7 +283,8 @@ def dogleg_map(
     """
     check_limits(limit, tolerance)
     axes = clearance.tolist(), eta_pi.tolist()
-    cases = [vary(case, {"eta_pi": x, "stabilizer_clearance[1]": y}) for y, x in product(*axes)]
+    stabilizer = first_that_touches(case)
+    cases = [vary(case, {"eta_pi": x, f"stabilizer_clearance[{stabilizer}]": y}) for y, x in product(*axes)]
     compute = partial(
         critical_dogleg_or_why, side=side, limit=limit, tolerance=tolerance, relative_tolerance=relative_tolerance
     )
@@ -294,6 +298,7 @@ def dogleg_map(
     return DoglegMap(
         eta_pi,
         clearance,
+        stabilizer,
         angle=np.array([nan if isinstance(one, str) else one.angle for one in ordered]).reshape(shape),
         monotonic=np.array([isinstance(one, str) or one.monotonic for one in ordered]).reshape(shape),
         stopped=np.array([one if isinstance(one, str) else "" for one in ordered]).reshape(shape),
