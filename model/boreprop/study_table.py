@@ -26,8 +26,8 @@ def lines(results: "Dataset", q: Iterable[float]) -> list[tuple[str, ...]]:
     table: list[tuple[str, ...]] = []
     for name, figure in values.data_vars.items():
         kind, _, number = str(name).partition("[")
-        if kind == "ripples":
-            continue  # of what is 0 or 1, quantiles say nothing
+        if kind in ("ripples", "state"):
+            continue  # of a yes or no, and of a code, quantiles say nothing
         unit, factor = SHOWN.get(figure.attrs.get("units", ""), (figure.attrs.get("units", ""), 1.0))
         what = figure.attrs.get("long_name", kind) + (f", stabilizer {number[:-1]}" if number else "")
         table.append(
