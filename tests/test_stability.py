@@ -553,6 +553,11 @@ def test_a_stabilizer_without_clearance_touches_in_every_mode() -> None:
     assert find_roots(tight, PAPER.bit, 0.1) == find_roots(PAPER.bha, PAPER.bit, 0.1, contact=[1])
 
 
+def test_more_roots_than_anybody_could_list_are_refused() -> None:
+    with pytest.raises(ParameterError, match="abscissa: must be nearer to 0"):
+        find_roots(LONG, BIT, 0.0146, contact=(1, 2, 3), abscissa=-1.0)
+
+
 @pytest.mark.parametrize("wrong", [{"eta_pi": 0.0}, {"contact": [2]}, {"contact": [0]}, {"abscissa": 0.1}])
 def test_values_out_of_range_are_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(ParameterError, match=next(iter(wrong))):

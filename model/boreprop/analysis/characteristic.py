@@ -37,7 +37,7 @@ LOW = np.logspace(-7.0, -0.2, 48)  # further samples below the first, in steps
 PARTS = 8  # into which the space between two samples is divided where crossings may hide
 REFINEMENTS = 5  # of the samples, at most
 SECANTS = 6  # after which a crossing is good enough for Newton's method
-NEWTON_STEPS = 4  # after which only rounding is left
+NEWTON_STEPS = 3  # after which only rounding is left
 IN_BETWEEN = 1e-6  # of the space between two samples: how far beyond them a crossing of theirs may be
 IS_A_ROOT = 1e-11  # |P| over the size of its terms
 
@@ -88,20 +88,29 @@ class Characteristic:
             saturated=saturated,
         )
 
-    def __call__(self, nu: Complexes, eta_pi: float | Floats) -> tuple[Complexes, Complexes]:
+    def __call__(self, nu: Complexes, eta_pi: float) -> tuple[Complexes, Complexes]:
         """P(ν) and P'(ν)."""
-        m, f, m_slope, f_slope = self._delayed(nu)
+        value, slope, _ = self.with_slopes(nu, eta_pi)
+        return value, slope
+
+    def with_slopes(self, nu: Complexes, eta_pi: float | Floats) -> tuple[Complexes, Complexes, Complexes]:
+        """P(ν), P'(ν) and ∂P/∂ηΠ, for one ηΠ or one for each ν."""
+        m, f, m_slope, f_slope = np.zeros((4, *nu.shape), complex)
+        for s_i, m_i, f_i in self._terms.tolist():
+            B, slope = lag(nu, s_i)
+            m += m_i * B
+            f += f_i * B
+            m_slope += m_i * slope
+            f_slope += f_i * slope
         drag, rest = self.epsilon * eta_pi, eta_pi - self.f_theta
         turning = drag * nu - self.m_theta
         if self.saturated:
-            return turning - m, drag - m_slope
-        return turning * (eta_pi + f) - rest * m, drag * (eta_pi + f) + turning * f_slope - rest * m_slope
-
-    def slope_over_eta_pi(self, nu: Complexes, eta_pi: Floats) -> Complexes:
-        """∂P/∂ηΠ."""
-        m, f, _, _ = self._delayed(nu)
-        drag: Complexes = self.epsilon * nu
-        return drag if self.saturated else drag * (2 * eta_pi + f) - self.m_theta - m
+            return turning - m, drag - m_slope, self.epsilon * nu
+        return (
+            turning * (eta_pi + f) - rest * m,
+            drag * (eta_pi + f) + turning * f_slope - rest * m_slope,
+            self.epsilon * nu * (eta_pi + f) + turning - m,
+        )
 
     def size(self, nu: Complexes, eta_pi: Floats) -> Floats:
         """The sum of the moduli of the terms of P: what rounding in P is measured by."""
@@ -112,17 +121,6 @@ class Characteristic:
             f += abs(f_i) * B
         turning = self.epsilon * eta_pi * abs(nu) + abs(self.m_theta)
         return turning + m if self.saturated else turning * (eta_pi + f) + (eta_pi + abs(self.f_theta)) * m
-
-    def _delayed(self, nu: Complexes) -> Complexes:
-        """m(ν), f(ν) and their slopes."""
-        rows = np.zeros((4, *nu.shape), complex)
-        for s_i, m_i, f_i in self._terms.tolist():
-            B, slope = lag(nu, s_i)
-            rows[0] += m_i * B
-            rows[1] += f_i * B
-            rows[2] += m_i * slope
-            rows[3] += f_i * slope
-        return rows
 
     @cached_property
     def _terms(self) -> Floats:
@@ -230,12 +228,12 @@ class Characteristic:
         with np.errstate(all="ignore"):  # what runs away is left out
             for _ in range(NEWTON_STEPS):  # P + iP' dω + ∂P/∂ηΠ dηΠ = 0, both changes real
                 nu = np.asarray(1j * omega, complex)
-                value, slope = self(nu, eta_pi)
-                rest, turn = np.array([value, 1j * slope]) / -self.slope_over_eta_pi(nu, eta_pi)
+                value, slope, over_eta_pi = self.with_slopes(nu, eta_pi)
+                rest, turn = np.array([value, 1j * slope]) / -over_eta_pi
                 step = -rest.imag / turn.imag
                 omega, eta_pi = omega + step, eta_pi + (rest + turn * step).real
             nu = np.asarray(1j * omega, complex)
-            residual = abs(self(nu, eta_pi)[0]) / self.size(nu, eta_pi)
+            residual = abs(self.with_slopes(nu, eta_pi)[0]) / self.size(nu, eta_pi)
         within = abs(2 * omega - a - b) <= (b - a) * (1 + IN_BETWEEN)
         return omega, np.where(within & (residual < IS_A_ROOT), eta_pi, np.nan)
 

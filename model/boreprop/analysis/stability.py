@@ -20,7 +20,7 @@ SMALLEST_ETA_PI = 1e-4  # the number of roots to the right of any abscissa grows
 ABSCISSA = -0.5  # roots are listed right of it
 DAMPING = 5.0  # nor do roots matter that shrink by e^-3 on the way from the bit to the last stabilizer
 MARGIN = 0.2  # left of the abscissa, times s_n, for a contour that keeps clear of the roots
-MOST_ROOTS = 2_000_000  # that are looked for
+MOST_ROOTS = 500_000  # that are looked for
 NEUTRAL = 1e-9  # a root this close to the imaginary axis is on it
 SMOOTH = 6.0  # times 1/s_n: e^-6 is nothing to be seen on the grid
 SPACING = 0.5  # of the grid on which roots are looked for, times s_n
@@ -213,7 +213,7 @@ def rightmost_roots(
     frequencies, rightmost = characteristic.outline(eta_pi, abscissa - MARGIN / reach)
     if frequencies[-1] * reach > 2 * pi * MOST_ROOTS:
         raise ParameterError(
-            "abscissa", f"must be nearer to 0: right of it lie millions of roots at ηΠ = {eta_pi:g}", abscissa
+            "abscissa", f"must be nearer to 0: right of it lie too many roots at ηΠ = {eta_pi:g}", abscissa
         )
     roots = find_zeros(
         lambda nu: characteristic(nu, eta_pi),
