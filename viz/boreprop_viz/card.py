@@ -44,9 +44,8 @@ def case_facts(case: Case) -> dict[str, str]:
         "hole": f"{1000 * case.bit_diameter:.4g} mm",
         "weight on bit": f"{case.active_weight_on_bit / 1000:.3g} kN",
         "**ηΠ**": f"**{eta_pi(bha, bit, case.active_weight_on_bit):.4g}**",
-        "critical ηΠ": (
-            "none" if critical is None else f"{critical.eta_pi:.4g} ({critical.active_weight_on_bit / 1000:.3g} kN)"
-        ),
+        "critical ηΠ": "none" if critical is None else f"{critical.eta_pi:.4g}",
+        "at a weight of": "–" if critical is None else f"{critical.active_weight_on_bit / 1000:.3g} kN",
     }
 
 

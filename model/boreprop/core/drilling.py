@@ -5,7 +5,7 @@ from typing import Any
 from .assembly import BitRock, BottomHoleAssembly, ParameterError, check_number, eta_pi, scale
 from .contact import bit_tilt, left, wall
 from .hole import Survey
-from .propagation import NOT_FINITE, RELATIVE_TOLERANCE, Propagation
+from .propagation import RELATIVE_TOLERANCE, Propagation
 from .variables import BY_NAME
 
 
@@ -62,7 +62,8 @@ class Drilling:
         except ParameterError:
             raise
         except (ArithmeticError, ValueError) as error:  # what other languages call inf and nan
-            raise ParameterError("parameters", "must give a finite state", NOT_FINITE.format("0 m")) from error
+            line = "the state is not finite at 0 m: check inputs and parameters"
+            raise ParameterError("parameters", "must give a finite state", line) from error
 
     def _scaled_inputs(self, rss_force: float, active_weight_on_bit: float) -> tuple[float, float]:
         """F_RSS and ηΠ; `ParameterError` if they are no numbers to go on with."""

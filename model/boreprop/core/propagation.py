@@ -32,7 +32,6 @@ ITERATIONS = 10  # on that rest; each gains two digits or more
 LAYERS = 16.0  # first step after a kink, in relaxation lengths of θ
 STRETCH = 1.3  # how much longer than planned a step may be if it then ends on the next kink
 SMOOTHEST_KINK = 3  # jumps in higher derivatives of the hole are left to the error estimate
-NOT_FINITE = "the state is not finite at {}: check inputs and parameters"
 LARGEST_INCLINATION = 2 * pi
 TURNS_OVER = (
     "its inclination grows beyond a full turn; use a smaller or shorter rss_force, a larger active_weight_on_bit, "
@@ -155,7 +154,7 @@ class Propagation:
         try:
             failure = self._drill(xi, F_rss, eta_pi)
         except (ArithmeticError, ValueError):  # what other languages call inf and nan
-            failure = NOT_FINITE.format(self._place(self.step.end))
+            failure = self._not_finite(self.step.end)
         if failure:
             self.restore(before)
         return failure
@@ -279,7 +278,7 @@ class Propagation:
         self.tilt = left(F_0 / self.eta_pi, -psi_star, psi_star)
         jump = abs(self.step.theta[0] - bit_tilt(F_0, self.eta_pi, psi_star) - Theta)
         if not (isfinite(jump) and isfinite(F_0)):
-            raise ArithmeticError(NOT_FINITE.format(self._place(self.xi)))
+            raise ArithmeticError(self._not_finite(self.xi))
         self._add_images(self.xi, 1, jump)
 
     def _law(self) -> Law:
@@ -369,13 +368,10 @@ class Propagation:
             if to_kink < 2 * h:
                 h = to_kink if to_kink <= min(stretch * h, LARGEST_STEP) else to_kink / 2
             if h < shortest:
-                return (
-                    f"the steps of the integrator become too short at {self._place(xi)}: "
-                    f"raise relative_tolerance (--tolerance), now {self.tolerance:g}"
-                )
+                return self._failed_at_tolerance("the steps of the integrator become too short", xi, "raise")
             trial = self._try(law, xi, h, theta, Y)
             if not isfinite(trial.error):
-                return NOT_FINITE.format(self._place(xi))
+                return self._not_finite(xi)
             growth = SAFETY * max(trial.error, 1e-12) ** (-1 / (radau.S + 1))
             if trial.error > 1.0:
                 planned = resumed = h * max(growth, 0.1)
@@ -392,16 +388,13 @@ class Propagation:
             planned = max(h / CLOSER, shortest)
             stretch, switches, slack = 1.0, 0, slack * CLOSER
             if slack >= MOST_SLACK:
-                return (
-                    f"no contact mode holds at {self._place(xi)}: "
-                    f"change relative_tolerance (--tolerance), now {self.tolerance:g}"
-                )
+                return self._failed_at_tolerance("no contact mode holds", xi, "change")
         if h == to_kink and event is None:
             end = xi + to_kink
         next_h = max(resumed if h < resumed else 0.0, h * min(growth, LARGEST_GROWTH))
         turned, _ = trial.step.state(end)
         if not abs(turned) <= LARGEST_INCLINATION:
-            return f"the bit turns over at {self._place(end)}: {TURNS_OVER}"
+            return self._failed("the bit turns over", end, TURNS_OVER)
         self.step = Step(xi, h, trial.step.theta, trial.step.Y, end, event, side, next_h)
         self.hole.append(xi, h, self.step.Y, Drilled(self.step.theta, self.F_rss, self.eta_pi))
         if kink is not None:
@@ -486,9 +479,17 @@ class Propagation:
             before = after
         return None
 
-    def _place(self, xi: float) -> str:
-        """A position for a message: how far the bit has drilled."""
-        return f"{xi * self.length_scale:.9g} m"
+    def _failed(self, what: str, xi: float, helps: str) -> str:
+        """The line that says what the integrator has met at `xi`, and what helps."""
+        return f"{what} at {xi * self.length_scale:.9g} m: {helps}"
+
+    def _failed_at_tolerance(self, what: str, xi: float, helps: str) -> str:
+        """The same where another tolerance helps."""
+        return self._failed(what, xi, f"{helps} relative_tolerance (--tolerance), now {self.tolerance:g}")
+
+    def _not_finite(self, xi: float) -> str:
+        """The line that says that numbers have run away."""
+        return self._failed("the state is not finite", xi, "check inputs and parameters")
 
     @staticmethod
     def _crossing(
