@@ -13,7 +13,7 @@ from boreprop import console
 from boreprop.case import InputError, load_case
 from boreprop.core.assembly import ParameterError
 from boreprop.core.tables import TableError
-from boreprop.errors import Stopped
+from boreprop.errors import RootsNotFound, Stopped
 from boreprop.results import read_trajectory
 from conftest import Command
 
@@ -189,6 +189,7 @@ def run_raising(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
         InputError("x: must be y, got z"),
         ParameterError("x", "must be y", 5),
         TableError("x: must be y, got z"),
+        RootsNotFound("the roots at ηΠ = 0.1: 2 are missing; take an ηΠ beside it (--eta-pi)"),
         FileNotFoundError(2, "no such file", "x"),
         ModuleNotFoundError("No module named 'rerun.x'", name="rerun.x"),
         InputError("x: must be y,\ngot z"),

@@ -17,7 +17,7 @@ from .case import InputError
 from .core.assembly import ParameterError
 from .core.tables import TableError
 from .core.variables import BY_NAME
-from .errors import Stopped
+from .errors import BorepropError, Stopped
 
 EXTRAS = {  # the extra that brings a package
     "typer": "cli",
@@ -128,6 +128,8 @@ def run(app: typer.Typer) -> NoReturn:
         fail(str(error))
     except Stopped as error:
         fail(str(error), STOPPED)
+    except BorepropError as error:
+        fail(str(error))
     except ModuleNotFoundError as error:
         fail_without(error)
     except OSError as error:

@@ -10,6 +10,10 @@ class BorepropError(Exception):
     """The base of the errors of this package."""
 
 
+class RootsNotFound(BorepropError):
+    """Some of the roots of a mode could not be found. The message says how many, and what helps."""
+
+
 class Stopped(BorepropError):
     """A run could not go on to its end. The message says where it stopped and what helps.
 

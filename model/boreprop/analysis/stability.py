@@ -13,6 +13,7 @@ import numpy as np
 
 from ..case import InputError
 from ..core.assembly import BitRock, BottomHoleAssembly, ParameterError, check_number, scale
+from ..errors import RootsNotFound
 from .characteristic import Characteristic
 from .zeros import Strip, find_zeros
 
@@ -206,6 +207,13 @@ def rightmost_roots(
     """All roots with Re ν >= `abscissa` (<= 0); if there are none, as far left as it takes.
 
     Rightmost first, one of each pair (imaginary part >= 0), a multiple root as often as it is one.
+
+    Raises
+    ------
+    ParameterError
+        If there are too many roots right of the abscissa.
+    RootsNotFound
+        If the argument principle counts more than are found.
     """
     reach = float(characteristic.s[-1])
     if abscissa is None:
@@ -215,15 +223,18 @@ def rightmost_roots(
         raise ParameterError(
             "abscissa", f"must be nearer to 0: right of it lie too many roots at ηΠ = {eta_pi:g}", abscissa
         )
-    roots = find_zeros(
-        lambda nu: characteristic(nu, eta_pi),
-        lambda x, y: characteristic.on_grid(x, y, eta_pi),
-        Strip(abscissa, float(rightmost[0]), float(frequencies[-1])),
-        MARGIN / reach,
-        SPACING / reach,
-        lambda y: float(rightmost[np.searchsorted(frequencies, y, side="right") - 1]),
-        SMOOTH / reach,
-    )
+    try:
+        roots = find_zeros(
+            lambda nu: characteristic(nu, eta_pi),
+            lambda x, y: characteristic.on_grid(x, y, eta_pi),
+            Strip(abscissa, float(rightmost[0]), float(frequencies[-1])),
+            MARGIN / reach,
+            SPACING / reach,
+            lambda y: float(rightmost[np.searchsorted(frequencies, y, side="right") - 1]),
+            SMOOTH / reach,
+        )
+    except ArithmeticError as error:
+        raise RootsNotFound(f"the roots at ηΠ = {eta_pi:.6g}: {error}; take an ηΠ beside it (--eta-pi)") from error
     roots = roots[roots.real >= abscissa]
     if not len(roots):
         return rightmost_roots(characteristic, eta_pi, abscissa + usual_abscissa(characteristic))
