@@ -36,16 +36,15 @@ def case_facts(case: Case) -> dict[str, str]:
     return {
         "stabilizers": f"{', '.join(f'{s:.4g}' for s in bha.stabilizer_positions)} m",
         "clearances": f"{', '.join(clearances) or '–'} mm",
-        "steering pads": f"{bha.rss_position:.3g} m",
         "weight": f"{bha.distributed_weight / 1000:.3g} kN/m",
         "stiffness EI": f"{bha.flexural_stiffness / 1e6:.3g} MN m²",
         "η, χ": f"{bit.lateral_steering_resistance:g}, {bit.angular_steering_resistance:g}",
         "tilt limit ψ*": f"{degrees(bit.tilt_limit):.3g}°",
-        "hole": f"{1000 * case.bit_diameter:.4g} mm",
+        "pads, hole": f"{bha.rss_position:.3g} m, {1000 * case.bit_diameter:.4g} mm",
         "weight on bit": f"{case.active_weight_on_bit / 1000:.3g} kN",
+        "critical weight": "none" if critical is None else f"{critical.active_weight_on_bit / 1000:.3g} kN",
         "**ηΠ**": f"**{eta_pi(bha, bit, case.active_weight_on_bit):.4g}**",
         "critical ηΠ": "none" if critical is None else f"{critical.eta_pi:.4g}",
-        "at a weight of": "–" if critical is None else f"{critical.active_weight_on_bit / 1000:.3g} kN",
     }
 
 
@@ -54,7 +53,7 @@ def in_words(wave: Rippling) -> str:
     waves = f"waves of {wave.wavelength:.2f} m, ±{degrees(wave.amplitude):.2g}°"
     return {
         State.NONE: "does not ripple",
-        State.DYING: f"does not ripple: {waves}, are dying out over {wave.fading_length:.3g} m",
+        State.DYING: f"does not ripple: {waves}, die out over {wave.fading_length:.3g} m",
         State.LASTING: f"ripples: {waves}",
         State.GROWING: f"ripples: {waves}, growing",
         State.STEERED: f"does not ripple as far as can be told: {waves}, but force or weight change too often",
