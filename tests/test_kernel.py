@@ -4,13 +4,14 @@ import ctypes
 import re
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import accumulate
 from math import pi
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 
 from boreprop.case import Case, Schedule, load_case
@@ -339,3 +340,50 @@ def test_the_command_simulates_with_the_kernel(command: Command, paper_case: Pat
     python, native = (read_trajectory(tmp_path / f"{engine}.csv") for engine in ("python", "native"))
     for name in python.columns:
         np.testing.assert_allclose(native[name], python[name], rtol=AGREEMENT, atol=1e-12, err_msg=name)
+
+
+# numbers that make no sense
+
+
+def hostile(usual: float) -> st.SearchStrategy[float]:
+    """A usual number, or one of any size."""
+    return st.one_of(st.just(usual), st.floats(-320.0, 308.0).map(lambda power: 10.0**power))
+
+
+@st.composite
+def hostile_runs(draw: st.DrawFn) -> dict[str, Any]:
+    first, *gaps = (draw(hostile(3.0)) for _ in range(draw(st.integers(1, 3))))
+    positions = tuple(accumulate([first, *gaps]))
+    try:
+        return {
+            "bha": BottomHoleAssembly(
+                positions,
+                tuple(draw(hostile(1e-3)) for _ in gaps),
+                first * draw(st.floats(0.0, 1.0)),
+                draw(hostile(1e3)),
+                draw(hostile(1e7)),
+            ),
+            "bit": BitRock(draw(hostile(10.0)), draw(hostile(1.0)), min(draw(hostile(0.02)), 1.0)),
+            "survey": Survey((0.0, draw(hostile(5.0))), (draw(hostile(0.5)), draw(hostile(0.5)))),
+            "inputs": (draw(hostile(1e3)), draw(hostile(1e4))),
+            "next_inputs": (-draw(hostile(1e3)), draw(hostile(1e4))),
+        }
+    except ParameterError:
+        reject()
+
+
+def answers(engine: Any, run: dict[str, Any]) -> str | list[str | None]:
+    force, weight = run["inputs"]
+    try:
+        drilling = engine(run["bha"], run["bit"], run["survey"], active_weight_on_bit=weight, rss_force=force)
+        length = run["bha"].length_scale
+        # in steps that may be 1e-12 ℓ₁ short
+        return [drilling.advance(1e-9 * k * length, *run["next_inputs"]) for k in range(3)]
+    except ParameterError as error:
+        return str(error)
+
+
+@settings(max_examples=200, deadline=None)
+@given(hostile_runs())
+def test_both_engines_say_the_same_of_numbers_that_make_no_sense(run: dict[str, Any]) -> None:
+    assert answers(NativeDrilling, run) == answers(Drilling, run)

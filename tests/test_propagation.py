@@ -197,6 +197,17 @@ def test_a_failed_advance_moves_nothing_and_says_what_helps(monkeypatch: pytest.
     assert propagation.advance(4.0) is None
 
 
+def test_a_way_of_too_many_steps_ends_and_moves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    propagation = start("fig7_psi_2deg")
+    propagation.advance(2.0)
+    before = json.dumps(propagation.save())
+    with monkeypatch.context() as patch:
+        patch.setattr("boreprop.core.propagation.MOST_PIECES", 400)
+        assert propagation.advance(50.0) == "step: must take at most 200 steps of the integrator, got more"
+    assert json.dumps(propagation.save()) == before
+    assert propagation.advance(50.0) is None
+
+
 @pytest.mark.parametrize("F_rss", [1e2, 1e6, 1e12, 1e300])
 def test_a_force_beyond_all_sense_fails_at_once(F_rss: float) -> None:
     propagation = start("fig7_psi_2deg")

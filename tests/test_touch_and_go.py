@@ -73,6 +73,17 @@ def test_python_passes_a_kink_nearer_than_the_shortest_step(monkeypatch: pytest.
     assert propagation.advance(9.0) is None
 
 
+def test_rows_far_apart_take_no_more_memory_than_there_is() -> None:
+    """In a steep hole the origin of Y moves every few metres, and the pieces of the hole with it."""
+    steep = near_bit_case(
+        {"pos": [0.919, 9.769, 19.19, 23.699], "y": [0.002, 0.00355, 0.00076], "rss": 0.459, "EI": 7.95e6}
+        | {"W": 680.0, "psi": 0.777, "inc": 103.0},
+        1200.0,
+    )
+    far, near = (simulate(steep, sample_interval=interval, engine="native") for interval in (1200.0, 100.0))
+    assert far["borehole_inclination"][-1] == near["borehole_inclination"][-1]
+
+
 @pytest.mark.parametrize("space", SPACES)
 def test_random_systems_do_not_fail_and_both_engines_agree(space: str) -> None:
     for number in range(120):

@@ -19,6 +19,7 @@ Floats = NDArray[np.float64]
 
 ENGINES = ("python", "native")
 PARTS = 100  # a run reports its progress about so often
+LONGEST_LEG = 50.0  # ℓ₁: an engine keeps the way back to where a leg began
 ROUNDING = 1e-9  # of a sample interval: a row this close before the end or a change of force counts as on it
 
 
@@ -70,7 +71,8 @@ def simulate(
     drilling = start(case, engine, relative_tolerance)
     names = scalar_names(OUTPUTS, len(case.bha.stabilizer_positions))
     table = np.full((int(length / sample_interval + ROUNDING) + 1, len(names)), np.nan)
-    lengths, forces, rows = _legs(case.schedule, len(table), sample_interval)
+    legs = _legs(case.schedule, len(table), sample_interval)
+    lengths, forces, rows = _in_parts(*legs, LONGEST_LEG * case.bha.length_scale)
     batch = len(lengths) // PARTS + 1 if progress else len(lengths)
     stopped = None
     for first in range(0, len(lengths), batch):
@@ -134,3 +136,16 @@ def _legs(schedule: Schedule, count: int, sample_interval: float) -> tuple[Float
     rows = np.insert(np.arange(count, dtype=np.intc), before, -1)
     changed = rows < 0
     return lengths, np.array(schedule.rss_force)[np.cumsum(changed) - changed], rows
+
+
+def _in_parts(
+    lengths: Floats, forces: Floats, rows: NDArray[np.intc], longest: float
+) -> tuple[Floats, Floats, NDArray[np.intc]]:
+    """The same legs, each in so many parts that none is longer than `longest`, m; only its last ends on a row."""
+    starts = np.concatenate([[0.0], lengths[:-1]])
+    parts = int(np.ceil((lengths - starts).max() / longest)) or 1
+    ends = starts[:, None] + np.outer(lengths - starts, np.arange(1, parts + 1) / parts)
+    ends[:, -1] = lengths
+    on_rows = np.full(ends.shape, -1, dtype=np.intc)
+    on_rows[:, -1] = rows
+    return ends.ravel(), np.repeat(forces, parts), on_rows.ravel()

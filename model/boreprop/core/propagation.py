@@ -42,6 +42,7 @@ MERGE = 1e-9  # kinks closer than this are one
 CLOSER = 8.0  # how much shorter a step is tried where each mode meets a bound before its first point,
 MOST_SLACK = 1e-6  # while a value may lie so much farther beyond its bound at the points, at last by this
 ORIGIN_LIMIT = 8.0  # |Y| beyond which the origin of Y is moved to the bit
+MOST_PIECES = 2**19  # of hole, in one way to drill
 GAUSS = [(0.5 - 0.15**0.5, 5 / 18), (0.5, 8 / 18), (0.5 + 0.15**0.5, 5 / 18)]  # nodes and weights on [0, 1]
 
 
@@ -162,7 +163,11 @@ class Propagation:
     def _drill(self, xi: float, F_rss: float, eta_pi: float) -> str | None:
         if (F_rss, eta_pi) != (self.F_rss, self.eta_pi):
             self._steer(F_rss, eta_pi)
+        pieces = len(self.hole.starts)  # that there are, and that the kernel in C would keep for the way back
         while xi > self.step.end:
+            pieces += 1
+            if pieces + len(self.hole.starts) > MOST_PIECES:
+                return f"step: must take at most {MOST_PIECES // 2} steps of the integrator, got more"
             failure = self._take_step()
             if failure:
                 return failure
