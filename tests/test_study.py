@@ -42,7 +42,7 @@ from boreprop.core.assembly import eta_pi
 from boreprop.paper import paper_case
 from boreprop.results import write_trajectory
 from boreprop.simulation import simulate
-from boreprop.study_table import lines
+from boreprop.study_table import lines, verdict
 from boreprop.summary import summarize
 from conftest import Command
 from study_functions import calls, counted, numbered, weight
@@ -209,6 +209,18 @@ def test_cases_that_fail_are_rows_with_the_message(tmp_path: Path) -> None:
     table = parquet.read_table(tmp_path / "study.parquet").to_pydict()
     assert table["error"] == [None, None, "float division by zero", None, None]
     np.testing.assert_array_equal(table["inverse"], results["inverse"])
+
+
+def test_a_study_of_which_every_case_fails_says_so() -> None:
+    for study in (
+        grid(paper_case(), {"stabilizer_clearance[1]": [-1e-3, -2e-3]}),
+        sample(paper_case(), {"stabilizer_clearance[1]": scipy.stats.uniform(-2e-3, 1e-3)}, n=2, seed=1),
+    ):
+        results = run(study, workers=1)
+        assert lines(results, [0.5]) == []
+        assert verdict(results).startswith(
+            "2 cases, 2 failed (the first: stabilizer_clearances: must be >= 0, got -0.00"
+        )
 
 
 def test_cases_out_of_range_are_rows_with_the_message() -> None:

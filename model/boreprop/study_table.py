@@ -56,6 +56,8 @@ def verdict(results: "Dataset") -> str:
     parts = [f"{errors.size} cases"]
     if failed.size:
         parts.append(f"{failed.size} failed (the first: {failed[0]})")
+        if failed.size == errors.size:
+            return ", ".join(parts)
         parts.append(f"the figures are of the other {errors.size - failed.size}")
     if "case" in results.dims:
         ripples = probability(results["ripples"])
