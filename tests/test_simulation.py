@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from boreprop.analysis.rippling import Rippling, State
 from boreprop.case import Case, Schedule, load_case
 from boreprop.core.assembly import BitRock, BottomHoleAssembly, ParameterError
 from boreprop.core.hole import Survey
@@ -14,7 +15,8 @@ from boreprop.core.variables import INPUTS, OUTPUTS, scalar_names
 from boreprop.errors import Stopped
 from boreprop.paper import LENGTH_SCALE, paper_case
 from boreprop.simulation import simulate
-from boreprop.summary import rows, summarize
+from boreprop.summary import rows, summarize, verdict
+from boreprop_viz.card import in_words
 from reference_cases import reference
 
 F_STAR = 3 * 7.2e6 / LENGTH_SCALE**2
@@ -197,6 +199,33 @@ def test_a_summary_says_which_waves_the_rows_cannot_show(interval: float, length
     summary = summarize(simulate(paper_case(), sample_interval=interval, length=length))
     assert summary.hidden_waves == hidden
     assert ("waves that would not show" in dict(rows(summary))) is bool(hidden)
+
+
+@pytest.mark.parametrize(
+    ("wave", "words", "card"),
+    [
+        (Rippling(), "no", "does not ripple"),
+        (
+            Rippling(State.DYING, 5.0, 0.01, growth=-np.log(10.0) / 80.0),
+            "no, dying out over 80 m: waves 5.00 m long",
+            "does not ripple: waves of 5.00 m, ±0.57°, die out over 80 m",
+        ),
+        (Rippling(State.LASTING, 5.0, 0.01, growth=0.0), "yes: 5.00 m long", "ripples: waves of 5.00 m, ±0.57°"),
+        (
+            Rippling(State.GROWING, 5.0, 0.01, growth=0.1),
+            "yes, growing: 5.00 m long",
+            "ripples: waves of 5.00 m, ±0.57°, growing",
+        ),
+        (
+            Rippling(State.STEERED, 5.0, 0.01, growth=0.0),
+            "no: waves 5.00 m long, but force or weight change too often to tell whether they would last",
+            "does not ripple as far as can be told: waves of 5.00 m, ±0.57°, but force or weight change too often",
+        ),
+    ],
+    ids=[*State],
+)
+def test_what_becomes_of_a_wave_in_words(wave: Rippling, words: str, card: str) -> None:
+    assert (verdict(wave), in_words(wave)) == (words, card)
 
 
 def test_a_case_of_numpy_numbers_runs_like_one_of_floats(case: Case) -> None:
