@@ -355,7 +355,7 @@ def test_a_csv_write_that_fails_changes_nothing(trajectory: Trajectory, tmp_path
 def test_a_case_that_cannot_be_written_leaves_the_old_run(
     trajectory: Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fail(case: Case, stopped: str | None) -> str:
+    def fail(*_: object) -> str:
         raise OSError("disk full")
 
     write_trajectory(trajectory, tmp_path / "run.csv")
