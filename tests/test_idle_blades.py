@@ -40,10 +40,10 @@ def with_blade(case: Case, position: float) -> Case:
 
 
 @st.composite
-def pairs(draw: st.DrawFn, length: float) -> tuple[Case, Case]:
+def pairs(draw: st.DrawFn, length: float, most: int = 4) -> tuple[Case, Case]:
     """A weightless BHA, its first stabilizer near the bit or not, and the same with an idle blade beyond the pads."""
     first = draw(st.floats(0.8, 6.0))
-    s = np.cumsum([first, *draw(st.lists(st.floats(2.0, 10.0), min_size=1, max_size=3))]).tolist()
+    s = np.cumsum([first, *draw(st.lists(st.floats(2.0, 10.0), min_size=1, max_size=most - 1))]).tolist()
     clearances = (draw(st.sampled_from((2e-3, 5e-3, 15e-3))), *(draw(st.floats(0.5e-3, 4e-3)) for _ in s[2:]))
     pads = min(0.5 * first, 0.6)
     blade = draw(st.floats(pads + 0.01, s[-1] - 0.01))
@@ -61,6 +61,11 @@ def pairs(draw: st.DrawFn, length: float) -> tuple[Case, Case]:
     return case, with_blade(case, blade)
 
 
+def a_hair_stiffer(case: Case) -> Case:
+    """`case` with a stiffness that nobody could tell from its own. Of a chaotic ripple it may change the fate."""
+    return replace(case, bha=replace(case.bha, flexural_stiffness=case.bha.flexural_stiffness * (1 + 1e-7)))
+
+
 def undecided(wave: Rippling) -> bool:
     """Whether a wave's growth is so near the limit between lasting and dying that rounding may decide."""
     return abs(wave.growth * wave.wavelength + 0.03) < 0.02
@@ -72,8 +77,9 @@ def summary(case: Case) -> Summary:
 
 @given(pairs(length=300.0))
 def test_it_changes_no_verdict_and_no_build_rate(pair: tuple[Case, Case]) -> None:
-    bare, bladed = map(summary, pair)
+    bare, bladed, stiffer = map(summary, (*pair, a_hair_stiffer(pair[0])))
     assume(not undecided(bare.rippling) and not undecided(bladed.rippling))
+    assume(bare.rippling.ripples is stiffer.rippling.ripples)
     assert bare.rippling.ripples is bladed.rippling.ripples
     assert bladed.build_rate == pytest.approx(bare.build_rate, abs=radians(0.1) / 30)
 
@@ -84,11 +90,13 @@ def test_it_changes_no_steering_response(pair: tuple[Case, Case], force: float, 
     assert bladed.build_rate == pytest.approx(bare.build_rate, rel=1e-6, abs=1e-9)
 
 
-@settings(max_examples=8, deadline=None)
-@given(pairs(length=1.0))
+@settings(max_examples=8)
+@given(pairs(length=1.0, most=2))
 def test_it_changes_no_critical_dogleg(pair: tuple[Case, Case]) -> None:
-    bare, bladed = (critical_dogleg(case) for case in pair)
-    assert bladed.angle == pytest.approx(bare.angle, rel=0.05)
+    """Of BHAs with one stabilizer that can touch: with more a ripple may be chaotic, and die after any length."""
+    bare, bladed, stiffer = (critical_dogleg(case).angle for case in (*pair, a_hair_stiffer(pair[0])))
+    assume(stiffer == pytest.approx(bare, rel=0.03))
+    assert bladed == pytest.approx(bare, rel=0.05)
 
 
 def test_it_changes_no_hysteresis() -> None:

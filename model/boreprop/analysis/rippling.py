@@ -1,9 +1,8 @@
 """Is a hole rippling, and with what wave: from the inclination over the drilled length.
 
 A hole ripples if, at the end of the run and while force and weight are steady, its inclination swings in waves that
-keep themselves up: at least five wavelengths of them, none longer than the BHA (to be exact, 0.9 times as long as the
-distance from the bit to the last stabilizer), of ±0.001° or more, that lose no more than 3 % of their size from wave to
-wave. The waves need not be equal: chaotic ripples count.
+keep themselves up: at least five of them, no longer than three BHAs, of ±0.001° or more, that lose no more than 3 %
+of their size from wave to wave. The waves need not be equal: chaotic ripples count.
 
 While no contact and no saturation changes, the equations are linear, and a wave grows or dies but cannot last. So a
 wave that lasts changes the mode of the BHA each time; one that does not, and falls however slowly, is dying out.
@@ -35,7 +34,7 @@ from .waves import (
     without_trend,
 )
 
-LONGEST = 3.0  # half lengths of the BHA: the longest wave that is looked for
+LONGEST = 6.0  # half lengths of the BHA: the longest wave that is looked for
 SHORTER = 4.0  # each window is so much shorter than the one before: small short waves are seen on long ones
 SMALLEST_AMPLITUDE = np.radians(0.001)  # far above what the integrator leaves of a straight hole, 1e-10°
 ALIKE = 0.5  # autocorrelation from which a signal is a wave
@@ -244,19 +243,18 @@ def _find(
 
 def _search(rows: _Rows, longest: float) -> _Found:
     """The wave in windows at the end of some rows, from one that holds the longest waves down to one of a few rows."""
-    best, fewest = _NOTHING, int(FEWEST_WAVES * FEWEST_ROWS)
+    found, fewest = [_NOTHING], int(FEWEST_WAVES * FEWEST_ROWS)
     if len(rows.length) < fewest:
-        return best
+        return _NOTHING
     spacing = (rows.length[-1] - rows.length[0]) / (len(rows.length) - 1)
     count = int(min(len(rows.length), FEWEST_WAVES * longest / spacing + 1))
     followed = MOST_OF_LONGEST * count * spacing / FEWEST_WAVES
     while count >= fewest:
-        found = _wave(rows, spacing, count, followed)
-        best = max(best, found, key=_weight)
+        found.append(_wave(rows, spacing, count, followed))
         count = int(count / SHORTER)
-    rippling, waves = best
+    rippling, waves = max(found, key=_weight)
     if waves is None:
-        return best
+        return _NOTHING
     least = HALF * float(waves.sizes[-AT_THE_END:].min())
     return replace(rippling, since=large_since(rows.length, rows.inclination, waves.wavelength, least)), waves
 
