@@ -335,7 +335,8 @@ def _modes(length: Floats, modes: NDArray[np.int_], starts: Floats) -> tuple[Str
     phase = np.interp(length[rows], starts, np.arange(len(starts))) % 1.0
     kinds, kind = np.unique(modes[rows], axis=0, return_inverse=True)
     away = np.abs((phase - np.arange(PHASES)[:, None] / PHASES + 0.5) % 1.0 - 0.5)
-    nearest = np.argsort(away, axis=1)[:, : len(starts) - 1]
+    waves = len(starts) - 1
+    nearest = np.argpartition(away, waves - 1, axis=1)[:, :waves]
     votes = [int(np.bincount(kind.ravel()[near]).argmax()) for near in nearest]
     stretches = [(k, len(list(group))) for k, group in groupby(votes)]
     if len(stretches) > 1 and stretches[0][0] == stretches[-1][0]:
