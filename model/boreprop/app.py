@@ -47,7 +47,6 @@ def simulate(
     """
     from .case import InputError, load_case
     from .core.assembly import check_number
-    from .core.propagation import RELATIVE_TOLERANCE
     from .errors import Stopped
     from .results import SUFFIXES, case_path, write_trajectory
 
