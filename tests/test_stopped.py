@@ -151,6 +151,8 @@ def test_a_tolerance_out_of_range_is_refused(text: str) -> None:
     [
         ["boreprop", "simulate", "CASE", "--output", "run.csv"],
         ["boreprop", "study", "CASE", "--output", "study.parquet", "--vary", "eta_pi=0.1"],
+        ["boreprop", "dogleg", "CASE"],
+        ["boreprop", "hysteresis", "CASE", "--output", "loop.png", "--eta-pi", "0.01:0.1:3"],
         ["boreprop-fmu", "run", "FMU", "--output", "run.csv"],
     ],
 )
@@ -163,6 +165,15 @@ def test_each_command_that_drills_refuses_it(
     assert "--tolerance" in done.stderr
     assert "must be 1e-12 to 0.01, got '0.1'" in done.stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_the_viewer_draws_what_there_is_of_a_case_that_stops(command: Command, pushed: Case, tmp_path: Path) -> None:
+    (tmp_path / "pushed.toml").write_text(dump_case(pushed), encoding="utf-8")
+    done = command("boreprop-view", "pushed.toml", "--save", "run.rrd")
+    assert (done.returncode, done.stderr.count("\n")) == (3, 1)
+    assert "the bit turns over" in done.stderr
+    assert done.stdout.startswith(f"run.rrd: {KEPT} rows")
+    assert (tmp_path / "run.rrd").stat().st_size > 10_000
 
 
 def test_a_study_at_another_tolerance_is_another_study(command: Command, paper_case: Path, tmp_path: Path) -> None:

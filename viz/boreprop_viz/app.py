@@ -7,6 +7,7 @@ from typing import Annotated, NoReturn
 from boreprop import console
 from boreprop.case import InputError, load_case, read_schedule, read_survey
 from boreprop.console import positive, typer
+from boreprop.errors import Stopped
 from boreprop.results import SUFFIXES, Trajectory, read_trajectory
 
 app = console.new_app("Runs to look at in Rerun: vertical section, bit frame, ripple, plots over the drilled length.")
@@ -67,12 +68,20 @@ def view(
     forces = None if schedule is None else read_schedule(schedule)
     planned = None if plan is None else read_survey(plan)
 
+    stopped: list[Stopped] = []  # runs that came to less than their end: what there is of them is drawn
+
     def open_source(name: str, path: Path) -> Source:
         if path.suffix == ".fmu":
             from boreprop_fmu.drive import Run
 
             return live(name, Run(path, forces, step=step, stop=stop), planned)
-        run = load_run(path, case, fmu)
+        try:
+            run = load_run(path, case, fmu)
+        except Stopped as error:
+            if error.trajectory is None:
+                raise
+            stopped.append(error)
+            run = error.trajectory
         try:
             return stored(name, run, planned)
         except InputError as error:
@@ -88,6 +97,8 @@ def view(
         draw(rec, opened, planned, done)
     if save is not None:
         print(f"{save}: {rows} rows, {save.stat().st_size / 1e6:.1f} MB")
+    if stopped:
+        raise stopped[0]
 
 
 def names(sources: list[Path]) -> list[str]:
