@@ -18,8 +18,9 @@ from boreprop.analysis.tipping import critical_dogleg, hysteresis
 from boreprop.case import Case, Schedule
 from boreprop.core.assembly import BitRock, BottomHoleAssembly
 from boreprop.core.hole import Survey
+from boreprop.results import Trajectory
 from boreprop.simulation import simulate
-from boreprop.summary import Summary, summarize
+from boreprop.summary import summarize
 
 IDLE = 0.2  # m of clearance
 
@@ -63,7 +64,7 @@ def pairs(draw: st.DrawFn, length: float, most: int = 4) -> tuple[Case, Case]:
 
 def a_hair_stiffer(case: Case) -> Case:
     """`case` with a stiffness that nobody could tell from its own. Of a chaotic ripple it may change the fate."""
-    return replace(case, bha=replace(case.bha, flexural_stiffness=case.bha.flexural_stiffness * (1 + 1e-7)))
+    return replace(case, bha=replace(case.bha, flexural_stiffness=case.bha.flexural_stiffness * (1 + 1e-4)))
 
 
 def undecided(wave: Rippling) -> bool:
@@ -71,13 +72,22 @@ def undecided(wave: Rippling) -> bool:
     return abs(wave.growth * wave.wavelength + 0.03) < 0.02
 
 
-def summary(case: Case) -> Summary:
-    return summarize(simulate(case, engine="native"))
+def run(case: Case) -> Trajectory:
+    return simulate(case, engine="native")
 
 
 @given(pairs(length=300.0))
+def test_it_changes_no_hole_before_a_hair_does(pair: tuple[Case, Case]) -> None:
+    """With several stabilizers a ripple may be chaotic: then what becomes of it hangs on the last digits."""
+    bare, bladed, stiffer = (run(case)["borehole_inclination"] for case in (*pair, a_hair_stiffer(pair[0])))
+    moved = np.abs(stiffer - bare) > radians(0.01)
+    same = int(np.argmax(moved)) if moved.any() else len(moved)
+    assert np.abs(bladed - bare)[:same].max() < radians(0.03)
+
+
+@given(pairs(length=300.0, most=2))
 def test_it_changes_no_verdict_and_no_build_rate(pair: tuple[Case, Case]) -> None:
-    bare, bladed, stiffer = map(summary, (*pair, a_hair_stiffer(pair[0])))
+    bare, bladed, stiffer = (summarize(run(case)) for case in (*pair, a_hair_stiffer(pair[0])))
     assume(not undecided(bare.rippling) and not undecided(bladed.rippling))
     assume(bare.rippling.ripples is stiffer.rippling.ripples)
     assert bare.rippling.ripples is bladed.rippling.ripples
@@ -93,7 +103,6 @@ def test_it_changes_no_steering_response(pair: tuple[Case, Case], force: float, 
 @settings(max_examples=8)
 @given(pairs(length=1.0, most=2))
 def test_it_changes_no_critical_dogleg(pair: tuple[Case, Case]) -> None:
-    """Of BHAs with one stabilizer that can touch: with more a ripple may be chaotic, and die after any length."""
     bare, bladed, stiffer = (critical_dogleg(case).angle for case in (*pair, a_hair_stiffer(pair[0])))
     assume(stiffer == pytest.approx(bare, rel=0.03))
     assert bladed == pytest.approx(bare, rel=0.05)
