@@ -22,6 +22,7 @@ AS_HIGH = (
 )
 FLANK = 0.15  # of a lag: how far from the top of a peak noise may make another one
 DRIFT = 0.1  # of a wavelength: how far a peak may lie from the multiple of the wavelength at which it is looked for
+ALMOST = 0.02  # of a wave: what may be missing of the last one, whose ends no rows need lie on
 LAST_LAG = 0.6  # of the rows: beyond it too few overlap
 
 Floats = NDArray[np.float64]
@@ -141,13 +142,13 @@ class LastWaves:
     @classmethod
     def of(cls, x: Floats, y: Floats, wavelength: float, most: int) -> "LastWaves":
         """Of a signal that increases in x; at most `most` of them, and perhaps none."""
-        first = int(np.searchsorted(x, x[-1] - (most + 1.01) * wavelength)) - 1
+        first = int(np.searchsorted(x, x[-1] - (most + 1 + ALMOST) * wavelength)) - 1
         x, y = x[max(first, 0) :], y[max(first, 0) :]
         inside, trend = mean_over(x, y, wavelength)
         if not inside.any():
             return cls(wavelength, trend, trend, trend, 0)
         at, deviation = x[inside], y[inside] - trend
-        count = int((at[-1] - at[0]) / wavelength + 0.02)
+        count = int((at[-1] - at[0]) / wavelength + ALMOST)
         whole = at >= at[-1] - count * wavelength
         return cls(wavelength, at[whole], deviation[whole], trend[whole], count)
 
