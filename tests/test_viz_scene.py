@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from boreprop.analysis.axis import AXIS_REACH
+from boreprop.analysis.rippling import examine_rippling
 from boreprop.case import Case, Schedule, load_case
 from boreprop.completion import path
 from boreprop.core.assembly import BitRock, BottomHoleAssembly
@@ -25,6 +27,8 @@ from boreprop_viz.scene import (
     planned_hole,
     turning,
 )
+from boreprop_viz.style import look
+from near_bit import NEAR_BIT, near_bit_case
 
 THREE = Case(
     bha=BottomHoleAssembly((3.66, 6.954, 11.712), (3.66e-3, 7.32e-3), 0.6, 1080.0, 7.2e6),
@@ -215,3 +219,17 @@ def test_in_the_vertical_section_the_bha_starts_at_the_bit_and_ends_in_the_hole(
     np.testing.assert_allclose(section[-1, -1], behind, atol=0.01)
     bends = [np.linalg.norm(after - before) for before, after in pairwise(section[-1])]
     np.testing.assert_allclose(bends, np.diff(drilled.frame.stabilizer, prepend=0.0), rtol=1e-3)
+
+
+@pytest.mark.parametrize(("fate", "number"), [("ripples", 4), ("straight", 0)])
+def test_ripple_and_lanes_show_the_last_waves_of_a_run_whatever_their_length(fate: str, number: int) -> None:
+    case = near_bit_case(NEAR_BIT[fate][number], 400.0)
+    run = simulate(case, engine="native")
+    wave, seen = examine_rippling(run), look([run], whole=True, section=bit_positions(run))
+    if wave.ripples:
+        assert wave.wavelength < case.bha.half_length / 4
+        assert seen.window == pytest.approx(11 * wave.wavelength)
+        assert seen.trend * AXIS_REACH < seen.window / 2  # the ripple is known in half of what is shown
+        assert seen.ripple > 1000 * wave.axis_amplitude
+    else:
+        assert seen.trend == case.bha.half_length

@@ -443,7 +443,7 @@ def log_tilt_limits(track: Track, shapes: Shapes) -> None:
 
 def log_ripple(track: Track, stretch: Stretch, rippled: float) -> float:
     """The ripple of the hole, mm, in the drilled hole as far as its trend is known; returns how far that is."""
-    width = track.case.bha.half_length
+    width = track.look.trend
     hole = stretch.hole.since(max(rippled, 0.0) - (AXIS_REACH + 1.0) * width)
     length, ripple = axis_ripple(hole.length, hole.position, width)
     new = (length > rippled) & (length >= 0.0)

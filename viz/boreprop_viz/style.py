@@ -7,6 +7,7 @@ from math import degrees, floor, log10, pi
 
 import numpy as np
 
+from boreprop.analysis.rippling import examine_rippling
 from boreprop.case import Case
 from boreprop.completion import case_of
 from boreprop.core.variables import BY_NAME
@@ -149,6 +150,7 @@ class Look:
     newtons_per_metre: float  # of an arrow
     window: float  # m of hole up to the cursor that ripple and lanes show
     ripple: float  # mm, the largest that its plot shows
+    trend: float  # m, the width of the trend that the ripple is less
     start: float | None  # m, the measured depth where drilling starts, if it is the same for all
     ranges: dict[str, tuple[float, float] | None]  # of the plots that there are, in their unit; None: as the rows come
 
@@ -158,8 +160,10 @@ class Look:
         return replace(self, section=section_bounds(shown, around=float(np.ptp(shown, axis=0).max()) / 2))
 
 
-WAVES_LENGTH = 16.0  # half lengths of the BHA in view at once: some ten waves
-FULL_RIPPLE = 0.35  # ψ* times half the BHA, a little more than a hole has that ripples from limit to limit
+WAVES = 11.0  # in view at once
+USUAL_WAVELENGTH = 1.4  # half lengths of the BHA: of a ripple that is not there yet
+TREND = 0.75  # wavelengths, and no more than half the BHA: the trend keeps nothing of the wave
+FULL_RIPPLE = 0.25  # ψ* times the wavelength: what a hole has whose bit tilts from limit to limit
 
 
 def look(runs: Sequence[Trajectory], *, whole: bool, section: Array) -> Look:
@@ -177,6 +181,7 @@ def look(runs: Sequence[Trajectory], *, whole: bool, section: Array) -> Look:
         Positions that the vertical section should show, (N, 2).
     """
     cases = [case_of(run) for run in runs]
+    wavelength = likely_wavelength(runs, cases, whole)
     reach = max(case.bha.stabilizer_positions[-1] for case in cases)
     largest = max(largest_force(run) for run in runs) if whole else max(likely_force(case) for case in cases)
     curves = {name: plot.curves(runs) for name, plot in PLOTS.items()}
@@ -189,11 +194,19 @@ def look(runs: Sequence[Trajectory], *, whole: bool, section: Array) -> Look:
         frame=frame_bounds(reach),
         lateral=max(1.0, round_down(0.6 * reach / max(case.bit_diameter for case in cases))),
         newtons_per_metre=max(largest, 1.0) / (reach / 7),
-        window=WAVES_LENGTH * max(case.bha.half_length for case in cases),
-        ripple=1000 * FULL_RIPPLE * max(case.bit.tilt_limit * case.bha.half_length for case in cases),
+        window=WAVES * wavelength,
+        ripple=1000 * FULL_RIPPLE * wavelength * max(case.bit.tilt_limit for case in cases),
+        trend=min(TREND * wavelength, *(case.bha.half_length for case in cases)),
         start=starts.pop() if len(starts) == 1 else None,
         ranges=ranges | {"bit_tilt": (-limit, limit)},
     )
+
+
+def likely_wavelength(runs: Sequence[Trajectory], cases: Sequence[Case], whole: bool) -> float:
+    """The longest wave with which one of the runs, if they are whole, ripples; else that which one may come to, m."""
+    waves = [examine_rippling(run) for run in runs] if whole else []
+    found = [wave.wavelength for wave in waves if wave.ripples]
+    return max(found or [USUAL_WAVELENGTH * case.bha.half_length for case in cases])
 
 
 ARROWS = ("stabilizer_force", "bit_lateral_force", "rss_force")
