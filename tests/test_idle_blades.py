@@ -12,9 +12,10 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from boreprop.analysis.hysteresis import hysteresis
 from boreprop.analysis.rippling import Rippling
 from boreprop.analysis.steering import steady_response
-from boreprop.analysis.tipping import critical_dogleg, hysteresis
+from boreprop.analysis.tipping import critical_dogleg
 from boreprop.case import Case, Schedule
 from boreprop.core.assembly import BitRock, BottomHoleAssembly
 from boreprop.core.hole import Survey

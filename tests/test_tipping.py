@@ -10,15 +10,14 @@ from matplotlib.image import imread
 
 from boreprop.analysis import tipping
 from boreprop.analysis.design import vary
+from boreprop.analysis.hysteresis import Hysteresis, hysteresis
 from boreprop.analysis.rippling import Rippling, State, examine_rippling
 from boreprop.analysis.tipping import (
     CriticalDogleg,
     DoglegMap,
-    Hysteresis,
     critical_dogleg,
     dogleg_map,
     drill_until_settled,
-    hysteresis,
     usual_map,
     with_dogleg,
 )

@@ -303,7 +303,7 @@ def hysteresis(
     """Draw where an ongoing ripple dies out as weight or clearance goes up, and where it comes back on the way down."""
     from math import radians
 
-    from .analysis import tipping
+    from .analysis import hysteresis as loops
     from .analysis.design import parse_range
     from .analysis.modes import first_that_touches
     from .case import InputError, load_case
@@ -321,7 +321,7 @@ def hysteresis(
         name = f"stabilizer_clearance[{first_that_touches(case)}]"
         values = (parse_range("--clearance-mm", clearance_mm or "") / 1e3).tolist()
     with console.progress("values", 2 * len(values)) as done:
-        found = tipping.hysteresis(
+        found = loops.hysteresis(
             case, name, values, radians(dogleg_deg), relative_tolerance=tolerance or RELATIVE_TOLERANCE, progress=done
         )
     save(draw_loop(case, found), output)

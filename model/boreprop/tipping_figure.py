@@ -13,8 +13,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, NullLocator
 
+from .analysis.hysteresis import Hysteresis
 from .analysis.rippling import Rippling
-from .analysis.tipping import DoglegMap, Hysteresis
+from .analysis.tipping import DoglegMap
 from .case import Case
 from .core.assembly import eta_pi
 from .drawing import COLOURS

@@ -3,8 +3,9 @@
 from collections.abc import Callable, Mapping
 from math import degrees, inf
 
+from .analysis.hysteresis import Bracket, Hysteresis
 from .analysis.rippling import Rippling
-from .analysis.tipping import Bracket, CriticalDogleg, DoglegMap, Hysteresis
+from .analysis.tipping import CriticalDogleg, DoglegMap
 from .case import Case
 from .summary import BUILD_LENGTH
 
