@@ -196,6 +196,14 @@ def test_a_hole_that_ripples_straight_but_not_after_small_turns_is_told(monkeypa
     assert amount == "none needed: it ripples from a straight hole, but not after a turn of 0.0098° to 0.62°"
 
 
+def test_a_straight_hole_that_the_smallest_turn_tips_is_not_said_to_ripple(monkeypatch: pytest.MonkeyPatch) -> None:
+    tipping_where(monkeypatch, [(0.0005, 90.0)])
+    found = critical_dogleg(paper_case())
+    assert found.angle == 0.0
+    assert dict(found.tried)[0.0] is False
+    assert [amount for _, amount in rows(paper_case(), {1: found}, radians(10.0))] == ["any from 0.001° on"]
+
+
 def test_an_inclined_hole_that_ripples_by_itself_does_not_after_a_small_turn_down() -> None:
     inclined = replace(paper_case(), survey=Survey((0.0,), (radians(4.0),)))
     found = critical_dogleg(inclined, side=-1)

@@ -5,7 +5,7 @@ from math import degrees, inf
 
 from .analysis.hysteresis import Bracket, Hysteresis
 from .analysis.rippling import Rippling
-from .analysis.tipping import CriticalDogleg, DoglegMap
+from .analysis.tipping import FINEST, CriticalDogleg, DoglegMap
 from .case import Case
 from .summary import BUILD_LENGTH
 
@@ -26,7 +26,10 @@ def rows(case: Case, found: Mapping[int, CriticalDogleg | str], limit: float) ->
 def _amount(found: CriticalDogleg, length: float, limit: float) -> str:
     if found.angle == inf:
         return f"none up to {degrees(limit):.3g}°"
+    exception = "" if found.monotonic else ", but not every larger one"
     straight = [turn for turn, ripples in found.tried if not ripples]
+    if found.angle == 0.0 and 0.0 in straight:
+        return f"any from {degrees(FINEST):g}° on{exception}"
     if found.angle == 0.0 and straight:
         least, most = (f"{degrees(turn):.2g}°" for turn in (straight[0], straight[-1]))
         turns = least if least == most else f"{least} to {most}"
@@ -34,7 +37,6 @@ def _amount(found: CriticalDogleg, length: float, limit: float) -> str:
     if found.angle == 0.0:
         return "any: it ripples from a straight hole"
     severity = f"{degrees(found.curvature) * BUILD_LENGTH:.1f} °/{BUILD_LENGTH:g} m"
-    exception = "" if found.monotonic else ", but not every larger one"
     return f"{degrees(found.angle):.2f}° over {length:.4g} m ({severity}){exception}"
 
 
