@@ -23,6 +23,8 @@ from boreprop.results import Trajectory
 from boreprop.simulation import simulate
 from boreprop.summary import summarize
 
+pytestmark = pytest.mark.usefixtures("kernel")
+
 IDLE = 0.2  # m of clearance
 
 

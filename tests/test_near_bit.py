@@ -10,6 +10,8 @@ from boreprop.results import Trajectory
 from boreprop.simulation import simulate
 from near_bit import NEAR_BIT, near_bit_case
 
+pytestmark = pytest.mark.usefixtures("kernel")
+
 
 def up_to(run: Trajectory, length: float) -> Trajectory:
     drilled = run["drilled_length"] <= length + 1e-6

@@ -221,6 +221,7 @@ def test_in_the_vertical_section_the_bha_starts_at_the_bit_and_ends_in_the_hole(
     np.testing.assert_allclose(bends, np.diff(drilled.frame.stabilizer, prepend=0.0), rtol=1e-3)
 
 
+@pytest.mark.usefixtures("kernel")
 @pytest.mark.parametrize(("fate", "number"), [("ripples", 4), ("straight", 0)])
 def test_ripple_and_lanes_show_the_last_waves_of_a_run_whatever_their_length(fate: str, number: int) -> None:
     case = near_bit_case(NEAR_BIT[fate][number], 400.0)
