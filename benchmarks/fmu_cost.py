@@ -46,8 +46,8 @@ BARS = {
 
 def build(folder: Path) -> dict[str, Path]:
     """The three FMUs."""
-    from boreprop.case import load_case
-    from boreprop_fmu.build import build_fmu
+    from boreprop.case.file import load_case
+    from boreprop_fmu.pack.build import build_fmu
 
     fmus = {"Borehole": build_fmu(load_case(CASE), folder / "Borehole.fmu")}
     for name, body in BODIES.items():

@@ -29,8 +29,8 @@ import numpy as np
 from jitcdde import jitcdde, t, y
 from symengine import Abs, Symbol, sin
 
-from boreprop.core.assembly import Scaled
 from boreprop.core.beam import Beam
+from boreprop.core.system import Scaled
 
 TOLERANCE = 1.5e-9  # error in Y below 1e-6
 WEIGHT = 0.03  # of θ; of Y: 1

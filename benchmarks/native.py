@@ -21,12 +21,12 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from boreprop.analysis.study import grid, key_figures, run
-from boreprop.case import Case
+from boreprop.analysis.study.run import grid, key_figures, run
+from boreprop.case.case import Case
+from boreprop.case.paper import LENGTH_SCALE, paper_case
 from boreprop.core.drilling import Drilling
 from boreprop.core.propagation import RELATIVE_TOLERANCE
 from boreprop.kernel.binding import NativeDrilling
-from boreprop.paper import LENGTH_SCALE, paper_case
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from reference_cases import CASES, reference
@@ -96,7 +96,7 @@ def host() -> Table:
     """What calls of the native FMU cost in a C host."""
     import fmpy
 
-    from boreprop_fmu.build import build_fmu
+    from boreprop_fmu.pack.build import build_fmu
 
     compiler = shutil.which("cc") or shutil.which("gcc") or "cc"
     headers = Path(fmpy.__file__).parent / "c-code"

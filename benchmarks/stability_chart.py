@@ -20,10 +20,19 @@ from rich.console import Console
 from rich.table import Table
 from scipy.ndimage import maximum_filter, minimum_filter
 
-from boreprop.analysis.chart import DRIFT, OSCILLATORY, STABLE, Chart, Panel, respaced, stability_chart, usual_grid
-from boreprop.analysis.stability import rightmost_roots
-from boreprop.core.assembly import eta_pi, scale
-from boreprop.paper import paper_case
+from boreprop.analysis.stability.chart import (
+    DRIFT,
+    OSCILLATORY,
+    STABLE,
+    Chart,
+    Panel,
+    respaced,
+    stability_chart,
+    usual_grid,
+)
+from boreprop.analysis.stability.roots import rightmost_roots
+from boreprop.case.paper import paper_case
+from boreprop.core.system import eta_pi, scale
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from pseudospectral import LinearMode

@@ -19,10 +19,10 @@ from time import perf_counter, process_time
 
 import numpy as np
 
-from boreprop.analysis.study import Study, grid, run, vary
-from boreprop.case import Case
-from boreprop.paper import LENGTH_SCALE, paper_case
-from boreprop.simulation import simulate
+from boreprop.analysis.study.run import Study, grid, run, vary
+from boreprop.case.case import Case
+from boreprop.case.paper import LENGTH_SCALE, paper_case
+from boreprop.run.simulate import simulate
 
 CASES, PAIRS = 200, 5
 LENGTH = 25 * LENGTH_SCALE  # m: some tenth of a second

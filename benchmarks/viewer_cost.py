@@ -19,7 +19,7 @@ CASES = Path(__file__).parents[1] / "examples"
 LIVE = """
 import sys, psutil
 from time import perf_counter
-from boreprop_fmu.drive import Run
+from boreprop_fmu.host.drive import Run
 from boreprop_viz.record import record
 
 fmu, step, rrd = sys.argv[1], float(sys.argv[2]), sys.argv[3]
@@ -40,10 +40,10 @@ print(rate, sizes[-1][1] - next(size for done, size in sizes if done > len(run) 
 
 def main() -> None:
     """Print seconds and megabytes of the file, and the samples per second of both live runs, pair by pair."""
-    from boreprop.case import load_case
-    from boreprop.results import write_trajectory
-    from boreprop.simulation import simulate
-    from boreprop_fmu.build import build_fmu
+    from boreprop.case.file import load_case
+    from boreprop.run.results import write_trajectory
+    from boreprop.run.simulate import simulate
+    from boreprop_fmu.pack.build import build_fmu
 
     with TemporaryDirectory() as name:
         folder = Path(name)

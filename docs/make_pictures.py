@@ -11,11 +11,12 @@ from tempfile import TemporaryDirectory
 
 from PIL import Image, ImageChops
 
-from boreprop.case import load_case, read_survey
-from boreprop.results import replacing
-from boreprop.simulation import simulate
-from boreprop_fmu.build import build_fmu
-from boreprop_fmu.drive import Run
+from boreprop.case.file import load_case
+from boreprop.case.tables import read_survey
+from boreprop.replacing import replacing
+from boreprop.run.simulate import simulate
+from boreprop_fmu.host.drive import Run
+from boreprop_fmu.pack.build import build_fmu
 from boreprop_viz.picture import Viewer, viewer
 from boreprop_viz.record import record
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import nbformat
 from nbclient import NotebookClient
 
-from boreprop.results import replacing
+from boreprop.replacing import replacing
 
 WIDGET = "application/vnd.jupyter.widget-view+json"
 

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 from scipy.optimize import brentq
 
-from boreprop.case import load_case, read_survey
+from boreprop.case.file import load_case
+from boreprop.case.tables import read_survey
 from boreprop.core.drilling import Drilling
 
 HERE = Path(__file__).parent

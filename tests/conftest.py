@@ -12,11 +12,14 @@ import hypothesis
 import pytest
 from hypothesis.internal.conjecture import providers
 
-from boreprop.case import Case, InputError, load_case
+from boreprop.case.case import Case
+from boreprop.case.file import load_case
+from boreprop.errors import InputError
 from boreprop.kernel import binding
 from boreprop.kernel.compiler import NoCompilerError, build_library
-from boreprop_fmu.build import build_fmu
+from boreprop_fmu.pack.build import build_fmu
 from flavours import PYTHON, Flavour
+from places import EXAMPLES
 
 # The suite tries the same examples everywhere, on machines slow and fast; `make soak` tries new ones. Hypothesis would
 # also draw numbers that it finds in the modules that happen to be loaded.
@@ -32,7 +35,6 @@ providers._get_local_constants = lambda: providers._local_constants
 for name in ("CI", "COLUMNS", "FORCE_COLOR", "GITHUB_ACTIONS", "LINES", "NO_COLOR", "PY_COLORS", "TTY_COMPATIBLE"):
     os.environ.pop(name, None)
 
-EXAMPLES = Path(__file__).parents[1] / "examples"
 
 Command = Callable[..., subprocess.CompletedProcess[str]]
 Pack = Callable[[Case, Flavour], Path]
@@ -125,3 +127,11 @@ def command(tmp_path: Path) -> Command:
         )
 
     return run
+
+
+def assert_refused(result: subprocess.CompletedProcess[str], *named: str) -> None:
+    """Exit status 2, nothing on stdout, one line on stderr that names everything in `named`."""
+    assert (result.returncode, result.stdout) == (2, "")
+    assert len(result.stderr.splitlines()) == 1, result.stderr
+    for name in named:
+        assert name in result.stderr

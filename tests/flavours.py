@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from boreprop.case import Case
-from boreprop_fmu.build import build_fmu
+from boreprop.case.case import Case
+from boreprop_fmu.pack.build import build_fmu
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ PYTHON = Flavour(
     any_folder=False,
     heavy=Change("boreprop/core/beam.py", "self.F0_g = 5 / 8", "self.F0_g = 7 / 8"),
     loud=Change(
-        "boreprop_fmu/slave.py",
+        "boreprop_fmu/python/slave.py",
         "values[index] = self._outputs[name]",
         'values[index] = self._outputs[name] * (10 if kind == "Real" else 1)',
     ),

@@ -28,13 +28,14 @@ from time import monotonic
 import numpy as np
 from numpy.typing import NDArray
 
-from boreprop.case import Case, Schedule, dump_case
-from boreprop.core.assembly import LEAST_SPAN, BitRock, BottomHoleAssembly
-from boreprop.core.hole import Survey
+from boreprop.case.case import Case, Schedule
+from boreprop.case.file import dump_case
 from boreprop.core.propagation import RELATIVE_TOLERANCE
+from boreprop.core.survey import Survey
+from boreprop.core.system import LEAST_SPAN, BitRock, BottomHoleAssembly
 from boreprop.errors import Stopped
-from boreprop.results import Trajectory
-from boreprop.simulation import simulate
+from boreprop.run.simulate import simulate
+from boreprop.run.trajectory import Trajectory
 
 COMPARED = 50.0  # m at the start of a run, over which both engines are compared
 AGREEMENT = 1e-6  # of the largest value of a column

@@ -5,9 +5,9 @@ from math import radians
 from pathlib import Path
 from typing import Any
 
-from boreprop.case import Case
-from boreprop.core.assembly import BitRock, BottomHoleAssembly
-from boreprop.core.hole import Survey
+from boreprop.case.case import Case
+from boreprop.core.survey import Survey
+from boreprop.core.system import BitRock, BottomHoleAssembly
 
 FIELD = Path(__file__).parent / "field"
 NEAR_BIT: dict[str, Any] = json.loads((FIELD / "near_bit.json").read_text(encoding="utf-8"))

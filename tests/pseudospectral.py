@@ -12,7 +12,7 @@ from math import cos
 
 import numpy as np
 
-from boreprop.core.assembly import Scaled
+from boreprop.core.system import Scaled
 
 
 @dataclass(frozen=True)

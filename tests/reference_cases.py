@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from boreprop.core.assembly import Scaled
-from boreprop.core.contact import bit_tilt
-from boreprop.core.hole import Survey
+from boreprop.core.modes import bit_tilt
 from boreprop.core.propagation import RELATIVE_TOLERANCE, Propagation
+from boreprop.core.survey import Survey
+from boreprop.core.system import Scaled
 
 FOLDER = Path(__file__).parent / "reference"
 CASES: dict[str, dict[str, Any]] = json.loads((FOLDER / "cases.json").read_text(encoding="utf-8"))

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from boreprop.kernel.compiler import compile_library, host_platform
-from boreprop_fmu import native
+from boreprop_fmu.pack import native
 
 
 def compile_here(source: Path, output: Path, *, platform: str | None = None) -> Path:

@@ -6,9 +6,9 @@ import sys
 import time
 from pathlib import Path
 
-from boreprop.analysis.study import Study, grid, run
-from boreprop.case import Case
-from boreprop.paper import paper_case
+from boreprop.analysis.study.run import Study, grid, run
+from boreprop.case.case import Case
+from boreprop.case.paper import paper_case
 
 
 def numbered(n: int) -> Study:

@@ -14,7 +14,7 @@ from pathlib import Path
 from distributed import Client, LocalCluster
 
 import study_functions
-from boreprop.analysis.study import Row, run
+from boreprop.analysis.study.run import Row, run
 
 
 def main() -> None:

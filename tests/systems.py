@@ -4,8 +4,8 @@ from itertools import accumulate
 
 from hypothesis import strategies as st
 
-from boreprop.core.assembly import Scaled
-from boreprop.core.contact import Loads
+from boreprop.core.modes import Loads
+from boreprop.core.system import Scaled
 
 spans = st.floats(0.3, 1.5)
 

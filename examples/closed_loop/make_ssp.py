@@ -8,11 +8,11 @@ from typing import Annotated
 
 from pythonfmu.builder import FmuBuilder
 
-from boreprop import console
-from boreprop.case import load_case
-from boreprop.console import typer
-from boreprop.results import replacing
-from boreprop_fmu.build import build_fmu
+from boreprop.case.file import load_case
+from boreprop.cli import console
+from boreprop.cli.console import typer
+from boreprop.replacing import replacing
+from boreprop_fmu.pack.build import build_fmu
 
 HERE = Path(__file__).parent
 

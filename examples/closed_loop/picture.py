@@ -6,11 +6,12 @@ from typing import Annotated
 import numpy as np
 from matplotlib.figure import Figure
 
-from boreprop import console
-from boreprop.case import read_survey
-from boreprop.console import typer
-from boreprop.figures import COLOURS
-from boreprop.results import read_trajectory, replacing
+from boreprop.case.tables import read_survey
+from boreprop.cli import console
+from boreprop.cli.console import typer
+from boreprop.replacing import replacing
+from boreprop.report.figures.paper import COLOURS
+from boreprop.run.results import read_trajectory
 
 PLAN = Path(__file__).parents[1] / "build_section_plan.csv"
 TOLERANCE = 0.5  # deg, to be kept after the first SETTLING m

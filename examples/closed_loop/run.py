@@ -22,12 +22,13 @@ from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave
 from fmpy.ssp.ssd import read_ssd
 
-from boreprop import console
-from boreprop.case import InputError
-from boreprop.console import positive, typer
-from boreprop.core.variables import INPUTS, OUTPUTS, scalar_names
-from boreprop.results import SUFFIXES, Trajectory, write_trajectory
-from boreprop_fmu.drive import read_packed_case
+from boreprop.cli import console
+from boreprop.cli.console import positive, typer
+from boreprop.core.quantities import INPUTS, OUTPUTS, scalar_names
+from boreprop.errors import InputError
+from boreprop.run.results import SUFFIXES, write_trajectory
+from boreprop.run.trajectory import Trajectory
+from boreprop_fmu.host.drive import read_packed_case
 
 BOREHOLE = "borehole"  # the component that is disturbed and recorded
 WEIGHT = "active_weight_on_bit"

@@ -1,1 +1,97 @@
-"""The model of borehole propagation, its runs and files. Start with `case.load_case` and `simulation.simulate`."""
+"""Borehole propagation of a directional drilling system: a delay complementarity model, and what it says of a hole.
+
+Start with a case and simulate it::
+
+    from boreprop import load_case, simulate, summarize
+
+    run = simulate(load_case("case.toml"))
+    print(summarize(run).build_rate)
+
+Everything a script needs has a name here. The rest of the package is private and may move.
+"""
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .analysis.hysteresis import hysteresis as hysteresis
+    from .analysis.rippling import examine_rippling as examine_rippling
+    from .analysis.rippling import find_rippling as find_rippling
+    from .analysis.stability.chart import stability_chart as stability_chart
+    from .analysis.stability.roots import critical_eta_pi as critical_eta_pi
+    from .analysis.stability.roots import find_roots as find_roots
+    from .analysis.steering import steady_response as steady_response
+    from .analysis.study.design import grid as grid
+    from .analysis.study.design import sample as sample
+    from .analysis.study.design import vary as vary
+    from .analysis.study.run import run as study
+    from .analysis.summary import summarize as summarize
+    from .analysis.tipping import critical_dogleg as critical_dogleg
+    from .case.case import Case as Case
+    from .case.case import Schedule as Schedule
+    from .case.file import load_case as load_case
+    from .case.paper import paper_case as paper_case
+    from .core.errors import BorepropError as BorepropError
+    from .core.survey import Survey as Survey
+    from .core.system import BitRock as BitRock
+    from .core.system import BottomHoleAssembly as BottomHoleAssembly
+    from .errors import Stopped as Stopped
+    from .run.engines import engine as engine
+    from .run.results import read_trajectory as read_trajectory
+    from .run.results import write_trajectory as write_trajectory
+    from .run.simulate import simulate as simulate
+    from .run.trajectory import Trajectory as Trajectory
+
+_HOMES = {  # public name → module, and the name there where it is another
+    "BitRock": "core.system",
+    "BorepropError": "core.errors",
+    "BottomHoleAssembly": "core.system",
+    "Case": "case.case",
+    "Schedule": "case.case",
+    "Stopped": "errors",
+    "Survey": "core.survey",
+    "Trajectory": "run.trajectory",
+    "critical_dogleg": "analysis.tipping",
+    "critical_eta_pi": "analysis.stability.roots",
+    "engine": "run.engines",
+    "examine_rippling": "analysis.rippling",
+    "find_rippling": "analysis.rippling",
+    "find_roots": "analysis.stability.roots",
+    "grid": "analysis.study.design",
+    "hysteresis": "analysis.hysteresis",
+    "load_case": "case.file",
+    "paper_case": "case.paper",
+    "read_trajectory": "run.results",
+    "sample": "analysis.study.design",
+    "simulate": "run.simulate",
+    "stability_chart": "analysis.stability.chart",
+    "steady_response": "analysis.steering",
+    "study": "analysis.study.run.run",
+    "summarize": "analysis.summary",
+    "vary": "analysis.study.design",
+    "write_trajectory": "run.results",
+}
+__all__ = [*_HOMES, "__version__"]
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name when it is first asked for: a command pays for what it uses."""
+    from importlib import import_module
+
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("boreprop")
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    home = _HOMES[name]
+    try:
+        value = getattr(import_module(f"{__name__}.{home}"), name)
+    except ModuleNotFoundError:
+        module, _, other = home.rpartition(".")
+        value = getattr(import_module(f"{__name__}.{module}"), other)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,13 +1,18 @@
 """What goes wrong in a way that a user can do something about."""
 
+from reprlib import Repr
 from typing import TYPE_CHECKING
 
+from .core.errors import BorepropError as BorepropError
+from .core.errors import ParameterError as ParameterError
+from .core.errors import TableError as TableError
+
 if TYPE_CHECKING:
-    from .results import Trajectory
+    from .run.trajectory import Trajectory
 
 
-class BorepropError(Exception):
-    """The base of the errors of this package."""
+class InputError(BorepropError, ValueError):
+    """What a user gave cannot be used. The message is one line: file, key, constraint, value."""
 
 
 class RootsNotFound(BorepropError):
@@ -28,3 +33,11 @@ class Stopped(BorepropError):
     def __init__(self, message: str, trajectory: "Trajectory | None" = None) -> None:
         super().__init__(message)
         self.trajectory = trajectory
+
+
+def shown(value: object) -> str:
+    """`value` for an error message: a table by its keys, anything long by its beginning."""
+    short = Repr()
+    short.maxlist = short.maxtuple = 8
+    short.maxstring = short.maxother = 80
+    return short.repr(list(value) if isinstance(value, dict) else value)

@@ -5,11 +5,11 @@ from math import degrees
 
 import rerun as rr
 
-from boreprop.analysis.modes import can_touch
 from boreprop.analysis.rippling import Rippling, State
-from boreprop.analysis.stability import critical_eta_pi
-from boreprop.case import Case
-from boreprop.core.assembly import eta_pi
+from boreprop.analysis.stability.contacts import can_touch
+from boreprop.analysis.stability.roots import critical_eta_pi
+from boreprop.case.case import Case
+from boreprop.core.system import eta_pi
 
 from .source import Source
 

@@ -6,9 +6,9 @@ Rerun and what draws with it are imported when they are needed, so that `import 
 from collections.abc import Mapping
 from typing import Literal
 
-from boreprop.case import InputError
-from boreprop.core.hole import Survey
-from boreprop.results import Trajectory
+from boreprop.core.survey import Survey
+from boreprop.errors import InputError
+from boreprop.run.trajectory import Trajectory
 
 
 def show(

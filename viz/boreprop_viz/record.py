@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import rerun as rr
 
-from boreprop.core.hole import Survey
-from boreprop.results import Trajectory
-from boreprop_fmu.drive import Run
+from boreprop.core.survey import Survey
+from boreprop.run.trajectory import Trajectory
+from boreprop_fmu.host.drive import Run
 
 from .card import log_card
 from .layout import blueprint

@@ -13,12 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from boreprop.case import Case, InputError
-from boreprop.completion import path
-from boreprop.core.assembly import scale
+from boreprop.case.case import Case
 from boreprop.core.beam import Beam
-from boreprop.core.hole import Survey
-from boreprop.results import Trajectory
+from boreprop.core.survey import Survey
+from boreprop.core.system import scale
+from boreprop.errors import InputError
+from boreprop.run.completion import path
+from boreprop.run.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 

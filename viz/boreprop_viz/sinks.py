@@ -22,9 +22,9 @@ from urllib.parse import quote, urlsplit
 import rerun as rr
 from rerun.experimental import ViewerClient
 
-from boreprop.case import InputError
-from boreprop.console import warn
-from boreprop.results import replacing
+from boreprop.cli.console import warn
+from boreprop.errors import InputError
+from boreprop.replacing import replacing
 
 APPLICATION = "boreprop"
 LOOPBACK = "127.0.0.1"  # Rerun's own default is every network that the machine is in

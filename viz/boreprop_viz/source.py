@@ -8,12 +8,13 @@ from time import monotonic
 import numpy as np
 
 from boreprop.analysis.axis import AXIS_REACH
-from boreprop.case import Case, InputError
-from boreprop.completion import case_of, complete
-from boreprop.core.hole import Survey
-from boreprop.results import Trajectory
-from boreprop.summary import BUILD_LENGTH
-from boreprop_fmu.drive import Run
+from boreprop.case.case import Case
+from boreprop.core.survey import Survey
+from boreprop.errors import InputError
+from boreprop.run.completion import case_of, complete
+from boreprop.run.trajectory import Trajectory
+from boreprop.units import BUILD_LENGTH
+from boreprop_fmu.host.drive import Run
 
 from .scene import REACH_ABOVE_BHA, Array, Hole, bit_positions, existing_hole, turning
 

@@ -13,9 +13,9 @@ import rerun as rr
 
 from boreprop.analysis.axis import AXIS_REACH, axis_ripple
 from boreprop.analysis.rippling import examine_rippling
-from boreprop.case import Case
-from boreprop.core.variables import BY_NAME
-from boreprop.results import Trajectory
+from boreprop.case.case import Case
+from boreprop.core.quantities import BY_NAME
+from boreprop.run.trajectory import Trajectory
 
 from .card import in_words
 from .scene import AHEAD, Array, BitFrame, Hole, Shapes, bit_positions

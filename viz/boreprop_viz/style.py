@@ -8,11 +8,11 @@ from math import degrees, floor, log10, pi
 import numpy as np
 
 from boreprop.analysis.rippling import examine_rippling
-from boreprop.case import Case
-from boreprop.completion import case_of
-from boreprop.core.variables import BY_NAME
-from boreprop.results import Trajectory
-from boreprop.summary import BUILD_LENGTH
+from boreprop.case.case import Case
+from boreprop.core.quantities import BY_NAME
+from boreprop.run.completion import case_of
+from boreprop.run.trajectory import Trajectory
+from boreprop.units import BUILD_LENGTH
 
 from .scene import Array, Bounds, frame_bounds, section_bounds
 

@@ -6,13 +6,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..case import Case
-from ..core.hole import Survey
+from ..case.case import Case
 from ..core.propagation import RELATIVE_TOLERANCE
+from ..core.survey import Survey
 from ..errors import Stopped
-from ..results import Trajectory
-from .design import vary
+from ..run.trajectory import Trajectory
 from .rippling import Rippling
+from .study.design import vary
 from .tipping import LARGEST_DOGLEG, SCAN, drill_until_settled, with_dogleg
 
 END = 0.01  # to which part of the parameter the ends of a loop are found

@@ -20,12 +20,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.assembly import BottomHoleAssembly
-from ..results import Trajectory
+from ..arrays import Floats
+from ..core.system import BottomHoleAssembly
+from ..run.trajectory import Trajectory
 from .waves import (
     FEWEST_ROWS,
     FEWEST_WAVES,
-    Floats,
     LastWaves,
     large_since,
     likeness,

@@ -30,11 +30,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import cos, inf, sin
 
-from ..core.assembly import BitRock, BottomHoleAssembly, ParameterError, Scaled, check_number, eta_pi, scale
 from ..core.beam import Beam
-from ..core.contact import ROUNDING, Loads, Mode, Modes, Row, change, left, wall
+from ..core.checks import check_number
 from ..core.drilling import check_inputs
+from ..core.errors import ParameterError
 from ..core.linear import dot
+from ..core.modes import ROUNDING, Loads, Mode, Modes, Row, change, left, wall
+from ..core.system import BitRock, BottomHoleAssembly, Scaled, eta_pi, scale
 
 MOST_SWITCHES = 1000  # from mode to mode, of which there are at most 729
 

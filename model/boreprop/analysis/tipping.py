@@ -20,20 +20,21 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ..case import Case
-from ..core.assembly import check_number, eta_pi
-from ..core.hole import Survey
+from ..case.case import Case
+from ..core.checks import check_number
 from ..core.propagation import RELATIVE_TOLERANCE
-from ..core.variables import OUTPUTS, scalar_names
+from ..core.quantities import OUTPUTS, scalar_names
+from ..core.survey import Survey
+from ..core.system import eta_pi
 from ..errors import Stopped
-from ..results import Trajectory
-from ..simulation import best_engine, follow, start
-from .design import vary
-from .modes import can_touch, first_that_touches
+from ..run.engines import engine, follow, start
+from ..run.trajectory import Trajectory
+from ..run.workers import WorkerLost, work
 from .rippling import Rippling, State, examine_rippling, find_rippling, longest_wave, modes_of
-from .stability import critical_eta_pi
+from .stability.contacts import can_touch, first_that_touches
+from .stability.roots import critical_eta_pi
+from .study.design import vary
 from .waves import without_trend
-from .workers import WorkerLost, work
 
 ROWS = 50  # per half BHA, …
 LARGEST_INTERVAL = 0.1  # … but no further apart than this, m: a wave of near-bit stabilizers is a metre long
@@ -75,7 +76,7 @@ def drill_until_settled(case: Case, *, relative_tolerance: float = RELATIVE_TOLE
     """
     half = case.bha.half_length
     interval = min(half / ROWS, LARGEST_INTERVAL)
-    drilling = start(case, best_engine(), relative_tolerance)
+    drilling = start(case, engine(), relative_tolerance)
     names = scalar_names(OUTPUTS, len(case.bha.stabilizer_positions))
     rows, target = np.empty((0, len(names))), FIRST_LOOK * half
     while True:

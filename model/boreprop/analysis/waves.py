@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
+from ..arrays import Floats
+
 FEWEST_ROWS = 8  # of a wave
 FEWEST_WAVES = (
     5.0  # of a stretch in which waves are looked for: four whole ones, and a half at each end for their trend
@@ -25,7 +27,6 @@ DRIFT = 0.1  # of a wavelength: how far a peak may lie from the multiple of the 
 ALMOST = 0.02  # of a wave: what may be missing of the last one, whose ends no rows need lie on
 LAST_LAG = 0.6  # of the rows: beyond it too few overlap
 
-Floats = NDArray[np.float64]
 Integers = NDArray[np.intp]
 
 

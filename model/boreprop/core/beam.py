@@ -8,8 +8,8 @@ of the bit's own axis from the hole axis at the stabilizers, the RSS force, the 
 sums over ⟨Θ⟩_k − θ in (14), (17) and (21) depend on these offsets only, so the coefficients below belong to e_i.
 """
 
-from .assembly import Scaled
 from .linear import dot
+from .system import Scaled
 
 
 def flexibility(s: float, p: float, lambda_: float) -> float:

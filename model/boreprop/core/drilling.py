@@ -2,11 +2,13 @@
 
 from typing import Any
 
-from .assembly import BitRock, BottomHoleAssembly, ParameterError, check_number, eta_pi, scale
-from .contact import bit_tilt, left, wall
-from .hole import Survey
+from .checks import check_number
+from .errors import ParameterError
+from .modes import bit_tilt, left, wall
 from .propagation import RELATIVE_TOLERANCE, Propagation
-from .variables import BY_NAME
+from .quantities import BY_NAME
+from .survey import Survey
+from .system import BitRock, BottomHoleAssembly, eta_pi, scale
 
 
 def check_inputs(rss_force: float, active_weight_on_bit: float) -> None:

@@ -9,9 +9,9 @@ touch which wall, tilt saturated or not) only sin⟨Θ⟩_1 is not linear.
 from math import inf
 from typing import NamedTuple
 
-from .assembly import Scaled
-from .contact import Mode, Modes, Row
 from .linear import dot, ratio, total
+from .modes import Mode, Modes, Row
+from .system import Scaled
 
 
 class Linear(NamedTuple):

@@ -13,11 +13,12 @@ from math import cos, factorial, inf, isfinite, perm, pi, sin
 from typing import Any, NamedTuple
 
 from . import radau
-from .assembly import Scaled
 from .beam import Beam
-from .contact import ROUNDING, Loads, Mode, Modes, bit_tilt, change, left
-from .hole import Drilled, Hole, Survey
+from .hole import Drilled, Hole
 from .law import Bound, Law
+from .modes import ROUNDING, Loads, Mode, Modes, bit_tilt, change, left
+from .survey import Survey
+from .system import Scaled
 
 RELATIVE_TOLERANCE = 1e-7
 

@@ -6,18 +6,18 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..core.assembly import MAX_STABILIZERS, BitRock, BottomHoleAssembly, ParameterError, check_number
+from ..arrays import Floats
+from ..core.checks import check_number
 from ..core.drilling import check_inputs, check_tolerance
-from ..core.hole import Survey
+from ..core.errors import ParameterError
 from ..core.propagation import RELATIVE_TOLERANCE
-from ..core.variables import OUTPUTS, scalar_names
+from ..core.quantities import OUTPUTS, scalar_names
+from ..core.survey import Survey
+from ..core.system import MAX_STABILIZERS, BitRock, BottomHoleAssembly
 from .compiler import library_path, sources_digest
 
 MESSAGE = 512
-
-Floats = NDArray[np.float64]
 
 
 class KernelError(RuntimeError):

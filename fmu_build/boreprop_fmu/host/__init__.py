@@ -1,0 +1,1 @@
+"""Drives an FMU through fmpy."""

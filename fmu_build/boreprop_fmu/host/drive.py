@@ -1,0 +1,315 @@
+"""Steps an FMU that uses the names of our table through fmpy, under a force schedule."""
+
+import zipfile
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from signal import SIGINT, raise_signal, signal
+from tempfile import TemporaryDirectory
+from threading import current_thread, main_thread
+from typing import Any
+
+import fmpy
+import numpy as np
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import (
+    FMU2Slave,
+    defaultCallbacks,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+    fmi2Fatal,
+)
+
+from boreprop.case.case import Case, Schedule
+from boreprop.case.file import parse_case
+from boreprop.core.checks import check_number
+from boreprop.core.quantities import INPUTS, OUTPUTS
+from boreprop.errors import InputError, Stopped
+from boreprop.kernel.compiler import host_platform
+from boreprop.run.trajectory import Trajectory
+
+from ..pack.build import CASE_FILE
+
+MAX_ROWS = 10_000_000
+CLOSE = 1e-9  # of a step: times closer than this are one
+
+
+class Run:
+    """A run of an FMU. Iterate over it for its rows, one at each communication point start + k·step, k = 0, 1, …
+
+    Parameters
+    ----------
+    fmu
+        An FMI 2.0 co-simulation FMU with an input rss_force and an output drilled_length.
+    schedule
+        The force over the drilled length; a step in which it changes is split there. None: the schedule of the case
+        that is packed in the FMU, without one the FMU's own start value.
+    step, stop
+        Communication step and last communication point, s. None: those of the FMU's default experiment.
+    relative_tolerance
+        The FMU's parameter of that name. None: as it is packed.
+
+    Attributes
+    ----------
+    columns
+        What a row holds: time, then the FMU's inputs and outputs that are in our table, in its order.
+    case
+        The case packed in the FMU, with the schedule of this run; None if there is none.
+    start, step, stop
+        s.
+
+    Raises
+    ------
+    InputError, ParameterError
+        If the FMU or a value cannot be used; while iterating, if a call fails: then the FMU's own message.
+    """
+
+    def __init__(
+        self,
+        fmu: str | Path,
+        schedule: Schedule | None = None,
+        *,
+        step: float | None = None,
+        stop: float | None = None,
+        relative_tolerance: float | None = None,
+    ) -> None:
+        self.fmu = Path(fmu)
+        self._description = _read_description(self.fmu)
+        self.case = read_packed_case(self.fmu)
+        if self.case is not None:
+            self.case = replace(self.case, schedule=schedule or self.case.schedule)
+            schedule = self.case.schedule
+        self._schedule = schedule
+        experiment = self._description.defaultExperiment
+        self.start = float(getattr(experiment, "startTime", None) or 0.0)
+        self.step = self._choose("step", step, getattr(experiment, "stepSize", None))
+        self.stop = self._choose("stop", stop, getattr(experiment, "stopTime", None))
+        check_number("step", self.step, above=0.0)
+        check_number("stop", self.stop, at_least=self.start)
+        self._variables = {variable.name: variable for variable in self._description.modelVariables}
+        self._tolerance = relative_tolerance
+        for name in ("rss_force", "drilled_length") + ("relative_tolerance",) * (relative_tolerance is not None):
+            if name not in self._variables:
+                raise InputError(f"{fmu}: must have a variable {name!r}, got {', '.join(self._variables) or 'none'}")
+        n = sum(name.startswith("average_inclination[") for name in self._variables)
+        ours = [name for variable in INPUTS + OUTPUTS for name in variable.names(n) if name in self._variables]
+        self.columns = ["time", *ours]
+
+    def __len__(self) -> int:
+        return int((self.stop - self.start) / self.step + CLOSE) + 1
+
+    def __iter__(self) -> Iterator[list[float]]:
+        messages: deque[str] = deque(maxlen=1)
+        time = self.start
+        try:
+            with self._instance(messages) as slave:
+                if self._tolerance is not None:
+                    slave.setReal([self._variables["relative_tolerance"].valueReference], [self._tolerance])
+                changes = self._changes(slave)
+                read = self._reader(slave)
+                self._advance(slave, time, time, changes)
+                slave.exitInitializationMode()
+                for k in range(len(self)):
+                    point = self.start + k * self.step
+                    with _uninterrupted():
+                        self._advance(slave, time, point, changes)
+                        time = point
+                        row = [time, *read()]
+                    yield row
+        except FMICallException as error:
+            raise InputError(f"{self.fmu}: at {time:.9g} s: {' '.join(messages) or error}") from error
+
+    def trajectory(self, progress: Callable[[float], None] | None = None) -> Trajectory:
+        """All rows, with the case; `progress` is called with the time, s, after each row.
+
+        Raises `Stopped`, with the rows so far, if a call fails after the first row.
+        """
+        if len(self) > MAX_ROWS:
+            raise InputError(f"step: must give at most {MAX_ROWS} rows up to {self.stop:g} s, got {self.step:g} s")
+        rows, done, stopped = np.empty((len(self), len(self.columns))), 0, None
+        try:
+            for row in self:
+                rows[done] = row
+                done += 1
+                if progress:
+                    progress(row[0])
+        except InputError as error:
+            if not done:
+                raise
+            stopped = str(error)
+        columns = dict(zip(self.columns, rows[:done].T.copy(), strict=True))
+        trajectory = Trajectory(columns, self.case, stopped)
+        if stopped:
+            raise Stopped(stopped, trajectory)
+        return trajectory
+
+    def _choose(self, name: str, given: float | None, default: str | float | None) -> float:
+        if given is None and default is None:
+            raise InputError(f"{self.fmu}: {name}: must be given, the FMU has no default experiment")
+        return float(default if given is None else given)  # type: ignore[arg-type]
+
+    def _library(self, directory: str) -> str | None:
+        """The binary for this machine in the folder that FMI 2.0.4 names: on Arm fmpy looks into that of x86."""
+        platform = host_platform()
+        folder = Path(directory, "binaries", platform or "")
+        library = folder / f"{self._description.coSimulation.modelIdentifier}{fmpy.sharedLibraryExtension}"
+        return str(library) if platform and library.exists() else None
+
+    @contextmanager
+    def _instance(self, messages: deque[str]) -> Iterator[Any]:
+        """The FMU in initialization mode; what it logs goes to `messages`."""
+
+        def log(*arguments: Any) -> None:  # environment, instance, status, category, message
+            messages.append(arguments[4].decode(errors="replace").replace("%%", "%"))
+
+        callbacks = fmi2CallbackFunctions(
+            logger=fmi2CallbackLoggerTYPE(log),
+            allocateMemory=defaultCallbacks.allocateMemory,
+            freeMemory=defaultCallbacks.freeMemory,
+        )
+        with TemporaryDirectory(prefix="boreprop-fmu-") as directory:
+            fmpy.extract(self.fmu, directory)
+            if Path(directory, "resources", "slavemodule.txt").exists():
+                _check_readable(directory)
+            try:
+                slave = FMU2Slave(
+                    instanceName=self.fmu.stem,
+                    guid=self._description.guid,
+                    modelIdentifier=self._description.coSimulation.modelIdentifier,
+                    unzipDirectory=directory,
+                    libraryPath=self._library(directory),
+                )
+                slave.instantiate(callbacks=callbacks, loggingOn=True)
+            except Exception as error:  # fmpy raises just that, where there is no binary for this platform, say
+                raise InputError(f"{self.fmu}: must load here, got: {' '.join(messages) or error}") from error
+            dead = False
+            try:
+                slave.setupExperiment(startTime=self.start, stopTime=self.stop)
+                slave.enterInitializationMode()
+                yield slave
+                slave.terminate()
+            except FMICallException as error:
+                dead = error.status == fmi2Fatal  # then nothing may be called any more
+                raise
+            finally:
+                if not dead:
+                    slave.fmi2FreeInstance(slave.component)
+                    _release_runtime(slave.dll)
+                    slave.freeLibrary()
+
+    def _changes(self, slave: Any) -> deque[tuple[float, float]]:
+        """Times at which the force changes, and to what. The rate of penetration stays what the FMU starts with."""
+        if self._schedule is None:
+            return deque()
+        rate = 1.0
+        if "rate_of_penetration" in self._variables:
+            [rate] = slave.getReal([self._variables["rate_of_penetration"].valueReference])
+        first, *later = zip(self._schedule.drilled_length, self._schedule.rss_force, strict=True)
+        return deque(
+            [(self.start, first[1])] + [(self.start + length / rate, force) for length, force in later if rate > 0]
+        )
+
+    def _advance(self, slave: Any, time: float, point: float, changes: deque[tuple[float, float]]) -> None:
+        """Step from `time` to `point`, the force changing on the way and at its end."""
+        close = CLOSE * self.step
+        while changes and changes[0][0] <= point + close:
+            change, force = changes.popleft()
+            end = change if change < point - close else point
+            if time < end:
+                slave.doStep(time, end - time)
+                time = end
+            slave.setReal([self._variables["rss_force"].valueReference], [force])
+        if time < point:
+            slave.doStep(time, point - time)
+
+    def _reader(self, slave: Any) -> Callable[[], list[float]]:
+        """A function that reads the values of all columns but the time."""
+        variables = [self._variables[name] for name in self.columns[1:]]
+        integer = [variable.type == "Integer" for variable in variables]
+        reals = [v.valueReference for v, is_integer in zip(variables, integer, strict=True) if not is_integer]
+        integers = [v.valueReference for v, is_integer in zip(variables, integer, strict=True) if is_integer]
+
+        def read() -> list[float]:
+            values = {True: iter(slave.getInteger(integers)), False: iter(slave.getReal(reals))}
+            return [next(values[is_integer]) for is_integer in integer]
+
+        return read
+
+
+def drive(
+    fmu: str | Path,
+    schedule: Schedule | None = None,
+    *,
+    step: float | None = None,
+    stop: float | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Trajectory:
+    """Run an FMU: `Run.trajectory`.
+
+    Parameters
+    ----------
+    fmu, schedule, step, stop
+        See `Run`.
+    progress
+        Called with the time, s, after each row.
+
+    Raises
+    ------
+    InputError, ParameterError, Stopped
+        See `Run` and `Run.trajectory`.
+    """
+    return Run(fmu, schedule, step=step, stop=stop).trajectory(progress)
+
+
+def read_packed_case(fmu: str | Path) -> Case | None:
+    """The case that `build_fmu` packed in an FMU; None if it is not one of ours, `InputError` if it is no archive."""
+    try:
+        with zipfile.ZipFile(fmu) as archive:
+            if CASE_FILE not in archive.namelist():
+                return None
+            return parse_case(archive.read(CASE_FILE).decode(), Path(fmu, CASE_FILE))
+    except zipfile.BadZipFile as error:
+        raise InputError(f"{fmu}: must be an FMU, got: {error}") from error
+
+
+@contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Let Ctrl-C wait until the end: an FMU with Python in it would take it for an error of its own."""
+    if current_thread() is not main_thread():  # which alone is interrupted
+        yield
+        return
+    pressed: list[int] = []
+    before = signal(SIGINT, lambda number, _: pressed.append(number))
+    try:
+        yield
+    finally:
+        signal(SIGINT, before)
+    if pressed:
+        raise_signal(SIGINT)
+
+
+def _check_readable(directory: str) -> None:
+    """Raise `InputError` if pythonfmu would not find the FMU in `directory`, and crash: it decodes but spaces."""
+    if "%" in Path(directory).as_uri().replace("%20", " "):
+        raise InputError(f"the temporary directory (TMPDIR) must have a plain ASCII name, got {directory}")
+
+
+def _release_runtime(library: Any) -> None:
+    """Let pythonfmu's library drop its static state now: at exit it drops it twice, which may abort the process."""
+    if hasattr(library, "finalizePythonInterpreter"):  # does not finalize the interpreter of a host that is Python
+        library.finalizePythonInterpreter()
+
+
+def _read_description(fmu: Path) -> Any:
+    """modelDescription.xml of an FMI 2.0 co-simulation FMU."""
+    try:
+        description = fmpy.read_model_description(fmu)
+    except Exception as error:  # fmpy raises what its parsers raise
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{fmu}: must be an FMI 2.0 co-simulation FMU, got: {reason}") from error
+    if description.fmiVersion != "2.0" or description.coSimulation is None:
+        kind = f"FMI {description.fmiVersion}" + " without co-simulation" * (description.coSimulation is None)
+        raise InputError(f"{fmu}: must be an FMI 2.0 co-simulation FMU, got: {kind}")
+    return description

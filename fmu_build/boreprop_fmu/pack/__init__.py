@@ -1,0 +1,1 @@
+"""Packs a case as an FMU."""

@@ -1,0 +1,162 @@
+"""Packs the model as machine code: the kernel behind the functions of FMI 2.0, for hosts without Python.
+
+What goes into `sources/` builds with any C compiler; what goes into `binaries/` is built from just that.
+"""
+
+from collections.abc import Callable, Sequence
+from importlib.resources import files
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from boreprop.case.case import Case
+from boreprop.core.quantities import INPUTS, VARIABLES
+from boreprop.errors import InputError
+from boreprop.kernel.compiler import PLATFORMS, CompilerError, NoCompilerError, compile_library, host_platform
+
+from .build import IDENTIFIER, describe, identify, pack_manual, start_values
+
+SOURCE_FILE = "fmi2.c"
+FMI_HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
+CASE_HEADER = """\
+/* What this FMU is made for and starts from: written when it was packed. */
+#define GUID "{guid}"
+
+enum {{ STABILIZERS = {stabilizers}, VARIABLES = {variables}, INPUTS = {inputs}, STATIONS = {stations} }};
+
+/* Value references; of a stacked variable the first. */
+enum {{
+{references}
+}};
+
+static const Variable VARIABLE[VARIABLES] = {{
+{table}
+}};
+
+/* The existing hole: m, rad. */
+static const double MEASURED_DEPTH[STATIONS] = {{
+{measured_depth}
+}};
+static const double INCLINATION[STATIONS] = {{
+{inclination}
+}};
+"""
+
+
+def pack_native(
+    case: Case, platforms: Sequence[str] | None = None, progress: Callable[[float], None] | None = None
+) -> dict[str, bytes]:
+    """The FMU that needs no Python; see `build_fmu`."""
+    check_platforms(platforms)
+    code = pack_sources()
+
+    def numbers(guid: str) -> dict[str, bytes]:
+        description = describe(case, guid, interpolates=True, source_files=[SOURCE_FILE])
+        return {**description, "sources/case.h": case_header(case, guid)}
+
+    guid = identify({**code, **numbers(guid="")})
+    packed = {**numbers(guid), **code}
+    sources = {name: content for name, content in packed.items() if name.startswith("sources/")}
+    return {**packed, **compile_binaries(sources, platforms, progress), **pack_manual(case, "native")}
+
+
+def pack_sources() -> dict[str, bytes]:
+    """The C code, which is the same for every case."""
+    own, kernel, fmi = files("boreprop_fmu") / "native", files("boreprop.kernel"), files("fmpy") / "c-code"
+    code = [path for folder in (own, kernel) for path in folder.iterdir() if path.name.endswith(".h")]
+    code += [own / SOURCE_FILE, *(fmi / name for name in FMI_HEADERS)]
+    return {f"sources/{path.name}": path.read_bytes() for path in code}
+
+
+def case_header(case: Case, guid: str) -> bytes:
+    """The numbers, and the table of variables, as a C header."""
+    start = start_values(case)
+    n = len(case.bha.stabilizer_positions)
+    scalars = [(name, variable) for variable in VARIABLES for name in variable.names(n)]
+    references, reference = [], 0
+    for variable in VARIABLES:
+        references.append(f"    {variable.name.upper()} = {reference},")
+        reference += len(variable.names(n))
+    table = [
+        f'    {{"{name}", {variable.role.upper()}, {variable.kind.upper()}, {_real(start.get(name, 0.0))}}},'
+        for name, variable in scalars
+    ]
+    return CASE_HEADER.format(
+        guid=guid,
+        stabilizers=n,
+        variables=len(scalars),
+        inputs=len(INPUTS),
+        stations=len(case.survey.measured_depth),
+        references="\n".join(references),
+        table="\n".join(table),
+        measured_depth=_lines(case.survey.measured_depth),
+        inclination=_lines(case.survey.inclination),
+    ).encode()
+
+
+def _real(value: float | str) -> str:
+    return "0.0" if isinstance(value, str) else repr(float(value))
+
+
+def _lines(values: Sequence[float]) -> str:
+    return "\n".join(f"    {float(value)!r}," for value in values)
+
+
+def check_platforms(platforms: Sequence[str] | None) -> None:
+    """Raise `InputError` unless every one is a platform that a compiler can build for; None is this machine."""
+    for platform in platforms or ():
+        if platform not in PLATFORMS:
+            raise InputError(f"platforms: must be among {', '.join(PLATFORMS)}, got {platform!r}")
+
+
+def compile_binaries(
+    sources: dict[str, bytes], platforms: Sequence[str] | None, progress: Callable[[float], None] | None = None
+) -> dict[str, bytes]:
+    """The binaries of `sources`.
+
+    Parameters
+    ----------
+    sources
+        What is in the folder sources/, by its path in the FMU.
+    platforms
+        For which of `PLATFORMS`. None: this machine, by ziglang where it is there, else by its own compiler.
+    progress
+        Called with the number of binaries done, after each.
+
+    Raises
+    ------
+    InputError
+        If there is no compiler for a platform, or it fails.
+    """
+    archive = {}
+    with TemporaryDirectory(prefix="boreprop-fmu-") as folder:
+        for name, content in sources.items():
+            Path(folder, Path(name).name).write_bytes(content)
+        source = Path(folder, SOURCE_FILE)
+        for done, platform in enumerate(_targets(platforms), 1):
+            library = Path(folder, f"{IDENTIFIER}{PLATFORMS[platform].suffix}")
+            _compile(source, library, platform, own=platforms is None)
+            archive[f"binaries/{platform}/{library.name}"] = library.read_bytes()
+            if progress:
+                progress(done)
+    return archive
+
+
+def _targets(platforms: Sequence[str] | None) -> Sequence[str]:
+    if platforms is not None:
+        return list(dict.fromkeys(platforms))
+    host = host_platform()
+    if host is None:
+        raise InputError(f"platforms: must be given on this machine, which is none of {', '.join(PLATFORMS)}")
+    return [host]
+
+
+def _compile(source: Path, library: Path, platform: str, *, own: bool) -> None:
+    try:
+        try:
+            compile_library(source, library, platform=platform)
+        except NoCompilerError:
+            if not own:
+                raise
+            compile_library(source, library)
+    except CompilerError as error:
+        raise InputError(str(error)) from error

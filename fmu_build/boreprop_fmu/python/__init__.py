@@ -1,0 +1,1 @@
+"""What runs inside the FMU on pythonfmu's runtime."""

@@ -1,0 +1,295 @@
+"""The slave inside the FMU: values in, `Drilling` on, values out. No physics.
+
+`build_fmu` packs this file into the core and renames that package after its content: the embedded interpreter finds
+modules by name, process-wide, and an FMU must run its own code only. Everything is imported here, at the top: the
+directory an FMU was unpacked in may be gone before the process ends.
+
+pythonfmu makes fmi2Fatal of an exception in any callback. So none leaves a callback: bad input is logged, the step
+discarded, nothing has moved, and the next step with good input works.
+"""
+
+import json
+from collections.abc import Callable
+from math import isclose, nan, radians
+from pathlib import Path
+from typing import Any
+from zlib import crc32
+
+from pythonfmu.enums import Fmi2Status
+from pythonfmu.fmi2slave import Fmi2Slave
+
+from boreprop.core.checks import check_number
+from boreprop.core.columns import read_columns
+from boreprop.core.drilling import Drilling
+from boreprop.core.errors import ParameterError, TableError
+from boreprop.core.quantities import BY_NAME, VARIABLES, Variable
+from boreprop.core.survey import Survey
+from boreprop.core.system import BitRock, BottomHoleAssembly
+
+STATE_FORMAT = "boreprop-fmu-state-2"
+NOTHING: dict[str, Any] = {"Real": nan, "Integer": 0, "Boolean": False, "String": ""}  # the value of what has none
+FMI_NAME = {  # of what the model calls otherwise
+    "tilt_limit": "bit_tilt_limit",
+    "stabilizer_positions": "stabilizer_position",
+    "stabilizer_clearances": "stabilizer_clearance",
+}
+
+
+class SlaveError(ValueError):
+    """The slave cannot do what it was asked. One line that says why."""
+
+
+class Borehole(Fmi2Slave):  # type: ignore[misc]
+    """A borehole being drilled: the RSS force, the weight on bit and the rate of penetration in, `OUTPUTS` out.
+
+    Value references count the scalar names of `VARIABLES`. ``resources/fmu.json`` gives the start value of every input
+    and parameter, the packed survey and the FMU's guid.
+    """
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        packed = json.loads(Path(self.resources, "fmu.json").read_text(encoding="utf-8"))
+        self.guid: str = packed["guid"]
+        self._n: int = packed["stabilizers"]
+        self._survey = Survey(**{name: tuple(values) for name, values in packed["survey"].items()})
+        self._scalars = [(name, variable) for variable in VARIABLES for name in variable.names(self._n)]
+        self._given: dict[str, Any] = packed["start"]  # inputs and parameters
+        self._outputs = self._nothing()
+        self._stale = True  # the outputs are not those of the present hole under the present inputs
+        self._initialized = False
+        self._drilling: Drilling | None = None
+        self._fault = ""  # why the state is not to be trusted until a good one is set
+        self._time = 0.0  # where the last step ended
+        self._anchor = (0.0, 0.0, -1.0)  # since this time, from this drilled length, at this rate of penetration
+
+    # What a master calls
+
+    def setup_experiment(self, start_time: float, *_: float | None) -> None:
+        """Start at this time. The tolerance is the parameter `relative_tolerance`, whatever a master suggests."""
+        self._time = start_time
+
+    def exit_initialization_mode(self) -> None:
+        """From here on parameters are fixed."""
+        self._safely(self._refresh)
+        self._initialized = True
+
+    def do_step(self, current_time: float, step_size: float) -> bool:
+        """Drill on for `step_size` seconds. False (fmi2Discard): nothing has moved, the log says why."""
+        return self._safely(self._step, current_time, step_size)
+
+    def get_real(self, vrs: list[int]) -> list[float]:
+        """Values of Real variables; NaN where there is none."""
+        return self._get(vrs, "Real")
+
+    def get_integer(self, vrs: list[int]) -> list[int]:
+        """Values of Integer variables; 0 where there is none."""
+        return self._get(vrs, "Integer")
+
+    def get_boolean(self, vrs: list[int]) -> list[bool]:
+        """There are no Boolean variables."""
+        return self._get(vrs, "Boolean")
+
+    def get_string(self, vrs: list[int]) -> list[str]:
+        """Values of String variables."""
+        return self._get(vrs, "String")
+
+    def set_real(self, vrs: list[int], values: list[float]) -> None:
+        """Take inputs and parameters over; they are checked when they are used."""
+        self._safely(self._set, vrs, values, "Real")
+
+    def set_integer(self, vrs: list[int], values: list[int]) -> None:
+        """There are no Integer inputs and parameters."""
+        self._safely(self._set, vrs, values, "Integer")
+
+    def set_boolean(self, vrs: list[int], values: list[bool]) -> None:
+        """There are no Boolean variables."""
+        self._safely(self._set, vrs, values, "Boolean")
+
+    def set_string(self, vrs: list[int], values: list[str]) -> None:
+        """Take parameters over."""
+        self._safely(self._set, vrs, values, "String")
+
+    def _get_fmu_state(self) -> bytes:
+        """Everything that evolves, in its serialized form: a copy by nature."""
+        kept: list[bytes] = []
+        self._safely(lambda: kept.append(self._save()))
+        return kept[0] if kept else b""
+
+    def _set_fmu_state(self, state: bytes) -> None:
+        """Go back to `state`. After a state that is not this FMU's, every step is discarded until a good one comes."""
+        if not self._safely(self._restore, state):
+            self._distrust("got a bad one before")
+
+    @staticmethod
+    def _fmu_state_to_bytes(state: bytes) -> bytes:
+        return state
+
+    @staticmethod
+    def _fmu_state_from_bytes(state: bytes) -> bytes:
+        return state
+
+    # What is done then; these raise
+
+    def _nothing(self) -> dict[str, Any]:
+        return {name: NOTHING[variable.kind] for name, variable in self._scalars if variable.role == "output"}
+
+    def _build(self, survey: Survey) -> Drilling:
+        def stack(name: str) -> tuple[float, ...]:
+            return tuple(given[scalar] for scalar in BY_NAME[name].names(self._n))
+
+        given = self._given
+        return Drilling(
+            BottomHoleAssembly(
+                stabilizer_positions=stack("stabilizer_position"),
+                stabilizer_clearances=stack("stabilizer_clearance"),
+                rss_position=given["rss_position"],
+                distributed_weight=given["distributed_weight"],
+                flexural_stiffness=given["flexural_stiffness"],
+            ),
+            BitRock(
+                lateral_steering_resistance=given["lateral_steering_resistance"],
+                angular_steering_resistance=given["angular_steering_resistance"],
+                tilt_limit=given["bit_tilt_limit"],
+            ),
+            survey,
+            active_weight_on_bit=given["active_weight_on_bit"],
+            rss_force=given["rss_force"],
+            relative_tolerance=given["relative_tolerance"],
+        )
+
+    def _read_survey(self) -> Survey:
+        path = self._given["survey_file"]
+        if not path:
+            return self._survey
+        try:
+            measured_depth, inclination_deg = read_columns(path, ("measured_depth", "inclination_deg"))
+            return Survey(measured_depth, tuple(map(radians, inclination_deg)))
+        except TableError as error:  # begins with the path
+            raise SlaveError(f"{error} (survey_file)") from error
+        except ParameterError as error:
+            raise SlaveError(f"{path}: {error} (survey_file)") from error
+
+    def _ready(self) -> Drilling:
+        """The drilling system, made when it is first needed."""
+        if self._fault:
+            raise SlaveError(self._fault)
+        if self._drilling is None:
+            try:
+                self._drilling = self._build(self._read_survey())
+            except ParameterError as error:
+                raise ParameterError(FMI_NAME.get(error.name, error.name), error.constraint, error.value) from error
+        return self._drilling
+
+    def _advance(self, drilling: Drilling, drilled_length: float) -> None:
+        fault = drilling.advance(drilled_length, self._given["rss_force"], self._given["active_weight_on_bit"])
+        if fault:
+            raise SlaveError(fault)
+
+    def _step(self, current_time: float, step_size: float) -> None:
+        check_number("current_time", current_time)
+        check_number("step_size", step_size, above=0.0)
+        rate, anchor = self._given["rate_of_penetration"], self._anchor
+        check_number("rate_of_penetration", rate, at_least=0.0)
+        drilling = self._ready()
+        continues = isclose(current_time, self._time, rel_tol=1e-12, abs_tol=1e-9 * step_size)
+        if rate != anchor[2] or not continues:
+            anchor = (current_time, drilling.drilled_length, rate)
+        # from the anchor, so that rounding does not add up from step to step
+        drilled_length = anchor[1] + rate * (current_time + step_size - anchor[0])
+        self._advance(drilling, max(drilled_length, drilling.drilled_length))
+        self._time, self._anchor, self._stale = current_time + step_size, anchor, True
+
+    def _refresh(self) -> None:
+        """Outputs of the present hole under the present inputs."""
+        drilling = self._ready()
+        self._advance(drilling, drilling.drilled_length)
+        self._outputs = drilling.outputs()
+        self._stale = False
+
+    def _scalar(self, reference: int, kind: str) -> tuple[str, Variable]:
+        if not 0 <= reference < len(self._scalars):
+            raise ParameterError("value reference", f"must be 0 to {len(self._scalars) - 1}", reference)
+        name, variable = self._scalars[reference]
+        if variable.kind != kind:
+            raise ParameterError(name, f"must be used as {variable.kind}", kind)
+        return name, variable
+
+    def _get(self, references: list[int], kind: str) -> list[Any]:
+        values = [NOTHING[kind]] * len(references)
+        self._safely(self._read, references, kind, values)
+        return values
+
+    def _read(self, references: list[int], kind: str, values: list[Any]) -> None:
+        for index, reference in enumerate(references):
+            name, variable = self._scalar(reference, kind)
+            if variable.role == "output":
+                if self._stale:
+                    self._stale = False  # whether it goes well or not: the log says it once
+                    self._safely(self._refresh)
+                values[index] = self._outputs[name]
+            else:
+                values[index] = self._given[name]
+
+    def _set(self, references: list[int], values: list[Any], kind: str) -> None:
+        for reference, value in zip(references, values, strict=True):
+            name, variable = self._scalar(reference, kind)
+            if variable.role == "output":
+                raise ParameterError(name, "must not be set, it is an output", value)
+            if value == self._given[name]:
+                continue
+            if variable.role == "parameter" and self._initialized:
+                raise ParameterError(name, "must not change after initialization", value)
+            self._given[name] = value
+            self._stale = True
+            if not self._initialized:
+                self._drilling = None
+
+    def _save(self) -> bytes:
+        state = {
+            "given": self._given,
+            "initialized": self._initialized,
+            "fault": self._fault,
+            "time": self._time,
+            "anchor": self._anchor,
+            "drilling": self._drilling and self._drilling.save(),
+        }
+        return self._seal(json.dumps(state, separators=(",", ":")).encode())
+
+    def _seal(self, state: bytes) -> bytes:
+        return f"{STATE_FORMAT} {self.guid} {crc32(state):08x}\n".encode() + state
+
+    def _restore(self, sealed: bytes) -> None:
+        state_bytes = sealed.partition(b"\n")[2]
+        if sealed != self._seal(state_bytes):
+            raise SlaveError(f"state: must be one of this FMU, {STATE_FORMAT} {self.guid}, got {sealed[:80]!r}")
+        state = json.loads(state_bytes)
+        self._given = state["given"]
+        self._initialized, self._fault = state["initialized"], state["fault"]
+        self._outputs, self._stale = self._nothing(), True
+        self._time, self._anchor = state["time"], tuple(state["anchor"])
+        self._drilling = None
+        if state["drilling"]:
+            self._drilling = self._build(self._survey)  # any: the hole is in the state
+            self._drilling.restore(state["drilling"])
+
+    def _safely(self, action: Callable[..., None], *arguments: Any) -> bool:
+        """Do it; log why not."""
+        try:
+            action(*arguments)
+        except (ParameterError, SlaveError) as error:
+            self._log_error(str(error))
+            return False
+        except Exception as error:  # nobody foresaw it, so nobody knows what has moved
+            self._distrust(f"got {type(error).__name__}: {error}")
+            self._log_error(self._fault)
+            return False
+        return True
+
+    def _distrust(self, reason: str) -> None:
+        """Discard every step from now on, until a good state is set or the instance reset."""
+        self._fault = f"state: must be set to a good one or reset, {reason}"
+        self._outputs = self._nothing()
+
+    def _log_error(self, message: str) -> None:
+        # a logger formats its message like printf
+        self.log(message.replace("%", "%%"), Fmi2Status.error, "logStatusError")

@@ -1,0 +1,1 @@
+"""Straight holes: the roots of their modes, and where they lose stability."""

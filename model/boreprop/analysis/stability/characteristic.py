@@ -1,0 +1,357 @@
+"""The characteristic function of one mode of a straight hole, section V, and where its roots cross the imaginary axis.
+
+In a mode (which stabilizers touch, tilt saturated or not) a small perturbation of a straight hole of inclination Θ₀
+is a sum of terms e^{νξ}. With Θ ~ e^{νξ} the lateral coordinate gives Y(ξ) − Y(ξ−s_i) = B_i(ν) Θ with
+B_i = (1 − e^{−ν s_i})/ν, and sin⟨Θ⟩_1 becomes cos Θ₀ B_1 Θ, so
+
+    M = m_θ θ + m(ν) Θ ,   F_0 = f_θ θ + f(ν) Θ ,   m = Σ m_i B_i ,   f = Σ f_i B_i ,
+
+and ν is a root of
+
+    unsaturated:   P = (εηΠν − m_θ)(ηΠ + f) − (ηΠ − f_θ) m
+    saturated:     P = εηΠν − m_θ − m .
+
+B_i is entire: that the hole may be moved sideways makes no root.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from math import cos, pi
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Complexes, Floats
+from ...core.beam import Beam
+from ...core.linear import dot
+from ...core.modes import Mode
+from ...core.system import Scaled
+
+NEAR_ZERO = 1e-4  # |ν s| below which B'(ν) is the start of its series
+FREQUENCIES = np.concatenate([[0.0], np.logspace(-3.0, 9.0, 300)])  # where bounds on the roots are looked for
+LADDER = 4.0 ** np.arange(12)  # likewise of ηΠ, over the smallest
+ABSCISSAS = np.concatenate([np.linspace(0.0, 5.0, 101) ** 2, np.logspace(1.45, 5.0, 30)])
+SAMPLES = 36  # per period of the fastest wave in P, where crossings are looked for
+LOW = np.logspace(-7.0, -0.2, 48)  # further samples below the first, in steps
+PARTS = 8  # into which the space between two samples is divided where crossings may hide
+REFINEMENTS = 5  # of the samples, at most
+SECANTS = 6  # after which a crossing is good enough for Newton's method
+NEWTON_STEPS = 3  # after which only rounding is left
+IN_BETWEEN = 1e-6  # of the space between two samples: how far beyond them a crossing of theirs may be
+IS_A_ROOT = 1e-11  # |P| over the size of its terms
+
+
+class Crossings(NamedTuple):
+    """Where P(iω) = 0 with ω > 0: arrays of one length, ηΠ increasing."""
+
+    eta_pi: Floats
+    omega: Floats
+    direction: Floats  # 1 where the pair moves into the right half plane as ηΠ grows, −1 where out of it
+
+
+@dataclass(frozen=True)
+class Characteristic:
+    """The characteristic function P of one mode, over arrays of ν of any shape."""
+
+    s: Floats  # s_1 … s_n
+    m: Floats  # m_1 … m_n, the first with m_g
+    f: Floats  # f_1 … f_n, the first with f_g
+    m_g: float  # the weight's part
+    f_g: float
+    m_theta: float
+    f_theta: float
+    epsilon: float
+    saturated: bool
+
+    @classmethod
+    def of(
+        cls, scaled: Scaled, contact: tuple[int, ...], saturated: bool, inclination: float = 0.0
+    ) -> "Characteristic":
+        """Of the mode with `contact` (0 where a stabilizer is free) in a straight hole of `inclination`, rad."""
+        mode = Mode(Beam(scaled), scaled.y_star, contact)
+        s = list(scaled.s)
+        weight = round(cos(inclination), 15)  # none in a horizontal hole
+        m_g, f_g = mode.M.g * weight, mode.F_0.g * weight
+        return cls(
+            s=np.array(s),
+            m=np.array([mode.M.e[0] + m_g, *mode.M.e[1:]]),
+            f=np.array([mode.F_0.e[0] + f_g, *mode.F_0.e[1:]]),
+            m_g=m_g,
+            f_g=f_g,
+            m_theta=-dot(mode.M.e, s),
+            f_theta=-dot(mode.F_0.e, s),
+            epsilon=scaled.epsilon,
+            saturated=saturated,
+        )
+
+    def __call__(self, nu: Complexes, eta_pi: float) -> tuple[Complexes, Complexes]:
+        """P(ν) and P'(ν)."""
+        value, slope, _ = self.with_slopes(nu, eta_pi)
+        return value, slope
+
+    def with_slopes(self, nu: Complexes, eta_pi: float | Floats) -> tuple[Complexes, Complexes, Complexes]:
+        """P(ν), P'(ν) and ∂P/∂ηΠ, for one ηΠ or one for each ν."""
+        m, f, m_slope, f_slope = np.zeros((4, *nu.shape), complex)
+        for s_i, m_i, f_i in self._terms.tolist():
+            B, slope = lag(nu, s_i)
+            m += m_i * B
+            f += f_i * B
+            m_slope += m_i * slope
+            f_slope += f_i * slope
+        drag, rest = self.epsilon * eta_pi, eta_pi - self.f_theta
+        turning = drag * nu - self.m_theta
+        if self.saturated:
+            return turning - m, drag - m_slope, self.epsilon * nu
+        return (
+            turning * (eta_pi + f) - rest * m,
+            drag * (eta_pi + f) + turning * f_slope - rest * m_slope,
+            self.epsilon * nu * (eta_pi + f) + turning - m,
+        )
+
+    def size(self, nu: Complexes, eta_pi: Floats) -> Floats:
+        """The sum of the moduli of the terms of P: what rounding in P is measured by."""
+        m, f = np.zeros(nu.shape), np.zeros(nu.shape)
+        for s_i, m_i, f_i in self._terms.tolist():
+            B = abs(lag(nu, s_i)[0])
+            m += abs(m_i) * B
+            f += abs(f_i) * B
+        turning = self.epsilon * eta_pi * abs(nu) + abs(self.m_theta)
+        return turning + m if self.saturated else turning * (eta_pi + f) + (eta_pi + abs(self.f_theta)) * m
+
+    @cached_property
+    def _terms(self) -> Floats:
+        """s_i, m_i, f_i of the stabilizers that matter in this mode, a row for each."""
+        terms = np.column_stack([self.s, self.m, self.f])
+        return terms[terms[:, 1:].any(axis=1)]
+
+    def on_grid(self, x: Floats, y: Floats, eta_pi: float) -> Complexes:
+        """νP at ν = x + iy, shape (len(y), len(x)): cheap, as e^{−ν s} is a product."""
+        nu = np.asarray(x + 1j * y[:, None], complex)
+        m, f = np.full(nu.shape, self.m.sum(), complex), np.full(nu.shape, self.f.sum(), complex)
+        for s_i, m_i, f_i in self._terms.tolist():
+            delayed = np.exp(-1j * y * s_i)[:, None] * np.exp(-s_i * x)
+            m -= m_i * delayed
+            f -= f_i * delayed
+        turning = self.epsilon * eta_pi * nu - self.m_theta
+        value: Complexes = turning * nu - m
+        if not self.saturated:
+            value = turning * (eta_pi * nu + f) - (eta_pi - self.f_theta) * m
+        return value
+
+    def at_zero(self) -> tuple[float, float]:
+        """P(0) = b ηΠ + c: b and c, both zero without weight and in a horizontal hole, where turning is neutral."""
+        if self.saturated:
+            return 0.0, -self.m_g
+        return -self.m_g, self.f_theta * self.m_g - self.m_theta * self.f_g
+
+    def on_real_axis(self, nu: Floats) -> tuple[Floats, Floats, Floats]:
+        """P = a ηΠ² + b ηΠ + c at real ν > 0: a, b and c."""
+        m, f = np.zeros((2, *nu.shape))
+        for s_i, m_i, f_i in self._terms.tolist():
+            B = -np.expm1(-nu * s_i) / nu
+            m += m_i * B
+            f += f_i * B
+        drag = self.epsilon * nu
+        if self.saturated:
+            return np.zeros_like(nu), drag, -self.m_theta - m
+        return drag, drag * f - self.m_theta - m, self.f_theta * m - self.m_theta * f
+
+    def on_imaginary_axis(self, omega: Floats, waves: tuple[Floats, Floats] | None = None) -> Complexes:
+        """The ηΠ at which iω is a root, ω > 0: complex, two for each ω (one if saturated), shape (2, k) or (1, k).
+
+        P is quadratic in ηΠ. A pair of roots ±iω lies on the imaginary axis where one of these ηΠ is real and positive.
+        `waves` are sin ωs and cos ωs, if known.
+        """
+        s, rows = self._terms[:, :1], self._terms[:, 1:].T
+        sine, cosine = waves or (np.sin(s * omega), np.cos(s * omega))
+        m, f = (rows @ sine + 1j * (rows @ (cosine - 1))) / omega
+        drag = 1j * self.epsilon * omega
+        if self.saturated:
+            one: Complexes = ((self.m_theta + m) / drag)[None]
+            return one
+        b, c = drag * f - self.m_theta - m, self.f_theta * m - self.m_theta * f
+        root = np.sqrt(b * b - 4 * drag * c)
+        sum_ = b + np.where((b * root.conj()).real < 0, -root, root)
+        return np.stack([-sum_ / (2 * drag), -2 * c / sum_])
+
+    def crossings(self, smallest: float) -> Crossings:
+        """All crossings of the imaginary axis at ηΠ >= `smallest`, but for those at ω = 0.
+
+        Let x(ω) be the complex ηΠ at which iω is a root. A pair crosses where Im x changes its sign, and moves right as
+        ηΠ grows if Im x grows with ω, since dν/dηΠ = i/x'(ω). What is returned are roots to rounding.
+        """
+        omega, x = self._sampled(smallest)
+        branch, at = np.nonzero((x[:, 1:].imag > 0) != (x[:, :-1].imag > 0))
+        near = np.maximum(x[branch, at].real, x[branch, at + 1].real) > smallest / 2
+        branch, at = branch[near], at[near]
+        direction = np.sign((x[branch, at + 1] - x[branch, at]).imag)
+        omega, eta_pi = self._polished(omega[at], omega[at + 1], x[branch, at], x[branch, at + 1])
+        wanted = eta_pi >= smallest
+        order = np.argsort(eta_pi[wanted])
+        return Crossings(*(column[wanted][order] for column in (eta_pi, omega, direction)))
+
+    def _sampled(self, smallest: float) -> tuple[Floats, Complexes]:
+        """ω, increasing, and x(ω) along each branch, dense enough that no crossing hides between two samples."""
+        step = 2 * pi / float(self.s[-1]) / SAMPLES
+        number = int(self.highest_on_axis(smallest) / step) + 2
+        omega = np.concatenate([step * LOW, step * np.arange(1.0, number + 1)])
+        waves = even_waves(step * self._terms[:, :1], number)
+        x = np.hstack([self.on_imaginary_axis(step * LOW), self.on_imaginary_axis(omega[len(LOW) :], waves)])
+        for _ in range(REFINEMENTS):
+            follow(x)
+            large = (np.maximum(x[:, 1:].real, x[:, :-1].real) > smallest / 2).any(axis=0)
+            coarse = np.flatnonzero(doubtful(x) & large)
+            if not len(coarse):
+                break
+            between = omega[coarse, None] + np.diff(omega)[coarse, None] * (np.arange(1.0, PARTS) / PARTS)
+            where = np.repeat(coarse + 1, PARTS - 1)
+            omega = np.insert(omega, where, between.ravel())
+            x = np.insert(x, where, self.on_imaginary_axis(between.ravel()), axis=1)
+        follow(x)
+        return omega, x
+
+    def _polished(self, a: Floats, b: Floats, x_a: Complexes, x_b: Complexes) -> tuple[Floats, Floats]:
+        """ω and ηΠ of the crossings between a and b, where x is x_a and x_b; ηΠ is nan where there is no root."""
+
+        def on_branch(omega: Floats) -> Complexes:
+            x = self.on_imaginary_axis(omega)
+            expected = x_a + (x_b - x_a) * (omega - a) / (b - a)
+            nearest: Complexes = x[np.argmin(abs(x - expected), axis=0), np.arange(len(omega))]
+            return nearest
+
+        omega = zero(lambda omega: on_branch(omega).imag, a, b, x_a.imag, x_b.imag)
+        eta_pi = on_branch(omega).real
+        with np.errstate(all="ignore"):  # what runs away is left out
+            for _ in range(NEWTON_STEPS):  # P + iP' dω + ∂P/∂ηΠ dηΠ = 0, both changes real
+                nu = np.asarray(1j * omega, complex)
+                value, slope, over_eta_pi = self.with_slopes(nu, eta_pi)
+                rest, turn = np.array([value, 1j * slope]) / -over_eta_pi
+                step = -rest.imag / turn.imag
+                omega, eta_pi = omega + step, eta_pi + (rest + turn * step).real
+            nu = np.asarray(1j * omega, complex)
+            residual = abs(self.with_slopes(nu, eta_pi)[0]) / self.size(nu, eta_pi)
+        within = abs(2 * omega - a - b) <= (b - a) * (1 + IN_BETWEEN)
+        return omega, np.where(within & (residual < IS_A_ROOT), eta_pi, np.nan)
+
+    # νP = Q_0 + Σ Q_i e^{−ν s_i} with polynomials Q, so there is no root where Σ |Q_i e^{−ν s_i}| < |Q_0|. The ratio of
+    # the two has no maximum within a region that holds no zero of Q_0: what it is on the edge decides.
+
+    def highest_on_axis(self, smallest: float) -> float:
+        """A bound on |Im ν| of the roots on the imaginary axis at any ηΠ >= `smallest`."""
+        eta_pi = np.asarray(smallest * LADDER, float)
+        may = self._delayed_share(1j * FREQUENCIES, eta_pi[:, None]) >= 1
+        for zero in self._free_roots(eta_pi):
+            may |= (zero.real >= 0)[:, None] & (FREQUENCIES <= abs(zero.imag)[:, None])
+        return float(FREQUENCIES[np.flatnonzero(may.any(axis=0))[-1] + 1])
+
+    def outline(self, eta_pi: float, abscissa: float) -> tuple[Floats, Floats]:
+        """A bound on the roots with Re ν >= `abscissa`: frequencies, increasing, and abscissas, decreasing.
+
+        A root with |Im ν| above frequency k has Re ν below abscissa k, and no root is above the last frequency.
+        """
+        abscissas = abscissa + ABSCISSAS
+        may = self._delayed_share(abscissas[:, None] + 1j * FREQUENCIES, np.array(eta_pi)) >= 1
+        may = np.logical_or.accumulate(may[::-1, ::-1], axis=0)  # there or further right
+        may = np.logical_or.accumulate(may, axis=1)[::-1, ::-1]  # or further up
+        for zero in self._free_roots(np.array(eta_pi)):
+            may |= (abscissas <= zero.real)[:, None] & (FREQUENCIES <= abs(zero.imag))
+        columns = np.count_nonzero(may, axis=0)
+        rows = np.flatnonzero(columns)[-1] + 1
+        return FREQUENCIES[: rows + 1], abscissas[columns[: rows + 1]]
+
+    def _free(self, eta_pi: Floats) -> tuple[Floats, Floats, Floats]:
+        """The coefficients of the quadratic Q_0."""
+        drag, m, f = self.epsilon * eta_pi, self.m.sum(), self.f.sum()
+        if self.saturated:
+            return drag, -self.m_theta + 0 * drag, -m + 0 * drag
+        return drag * eta_pi, drag * f - self.m_theta * eta_pi, -self.m_theta * f - (eta_pi - self.f_theta) * m
+
+    def _free_roots(self, eta_pi: Floats) -> tuple[Complexes, Complexes]:
+        """The zeros of Q_0."""
+        a, b, c = self._free(eta_pi)
+        root = np.sqrt(b * b - 4 * a * c + 0j)
+        return (-b + root) / (2 * a), (-b - root) / (2 * a)
+
+    def _delayed_share(self, nu: Complexes, eta_pi: Floats) -> Floats:
+        """Σ |Q_i e^{−ν s_i}| / |Q_0|."""
+        turning = 0.0 if self.saturated else self.epsilon * eta_pi * nu - self.m_theta
+        rest = 1.0 if self.saturated else eta_pi - self.f_theta
+        delayed = np.zeros(np.broadcast_shapes(nu.shape, eta_pi.shape))
+        for s_i, m_i, f_i in self._terms.tolist():
+            delayed += abs(rest * m_i - turning * f_i) * np.exp(-nu.real * s_i)
+        a, b, c = self._free(eta_pi)
+        with np.errstate(divide="ignore"):  # at a zero of Q_0
+            share: Floats = delayed / abs((a * nu + b) * nu + c)
+        return share
+
+
+def even_waves(turn: Floats, number: int) -> tuple[Floats, Floats]:
+    """Sine and cosine of kx for k = 1 … number and x in `turn`, shape (rows, 1): cheap, as e^{ikx} is a product."""
+    short = int(number**0.5) + 1
+    fine, coarse = np.exp(1j * turn * np.arange(1, short + 1)), np.exp(1j * turn * short * np.arange(short))
+    product = (coarse[:, :, None] * fine[:, None, :]).reshape(len(turn), -1)[:, :number]
+    return product.imag.copy(), product.real.copy()
+
+
+def follow(x: Complexes) -> None:
+    """Put the two values at each sample, x of shape (2, k), in the order in which they follow those before; one: as is.
+
+    Each pair goes on where it moves least.
+    """
+    if len(x) == 2:
+        stay, change = moves(x)
+        odd = np.flatnonzero(np.logical_xor.accumulate(np.append(False, change < stay)))
+        x[:, odd] = x[::-1, odd]
+
+
+def moves(x: Complexes) -> tuple[Floats, Floats]:
+    """How far two values move from each sample to the next in their order, and if they changed places."""
+    return abs(x[:, 1:] - x[:, :-1]).max(axis=0), abs(x[::-1, 1:] - x[:, :-1]).max(axis=0)
+
+
+def doubtful(x: Complexes) -> NDArray[np.bool_]:
+    """Between which samples Im x may have two zeros more, or the order of the two branches is not sure.
+
+    Beside a sample where |Im x| is least, and less than its second difference: a parabola dips by an eighth of that.
+    """
+    size = abs(x.imag)
+    bend = size[:, 2:] - 2 * size[:, 1:-1] + size[:, :-2]
+    least = (size[:, 1:-1] <= size[:, 2:]) & (size[:, 1:-1] <= size[:, :-2]) & (size[:, 1:-1] < bend)
+    low = least.any(axis=0)
+    found: NDArray[np.bool_] = np.append(low, False) | np.append(False, low)
+    if len(x) == 2:
+        stay, change = moves(x)
+        found |= stay > change / 2
+    return found
+
+
+def lag(nu: Complexes, s: float) -> tuple[Complexes, Complexes]:
+    """B(ν) = (1 − e^{−νs})/ν and its slope."""
+    safe = np.where(abs(nu) < NEAR_ZERO, NEAR_ZERO, nu)
+    less = -np.expm1(-safe * s)
+    B, decay = less / safe, 1 - less
+    near = -nu * s
+    return (
+        np.where(safe == nu, B, s * (1 + near / 2 * (1 + near / 3 * (1 + near / 4)))),
+        np.where(safe == nu, (s * decay - B) / safe, -(s**2) * (1 / 2 + near / 3 * (1 + near * 3 / 8))),
+    )
+
+
+def zero(function: Callable[[Floats], Floats], a: Floats, b: Floats, f_a: Floats, f_b: Floats) -> Floats:
+    """Zeros of `function` between a and b, where it has the values f_a and f_b of different sign.
+
+    Regula falsi with the weights of Anderson and Björck.
+    """
+    c = b
+    with np.errstate(divide="ignore", invalid="ignore"):  # where f_b is zero to the last bit
+        for _ in range(SECANTS if len(b) else 0):
+            c = np.where(f_b == 0, b, (a * f_b - b * f_a) / (f_b - f_a))
+            f_c = function(c)
+            stays = (f_c > 0) == (f_b > 0)
+            weight = 1 - f_c / f_b
+            f_a = np.where(stays, f_a * np.where(weight > 0, weight, 0.5), f_b)
+            a = np.where(stays, a, b)
+            b, f_b = c, f_c
+    return c

@@ -1,0 +1,236 @@
+"""The stability chart, figure 6: the verdict of each mode over ηΠ and λ₂, by D-decomposition.
+
+For one mode and one λ₂ the number of roots in the right half plane is known for ηΠ → ∞, and it changes only where roots
+cross the imaginary axis. Those ηΠ have a closed form, so no root is ever looked for.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from math import log
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Floats
+from ...core.checks import check_increasing, check_number
+from ...core.errors import ParameterError
+from ...core.system import BitRock, BottomHoleAssembly, Scaled, scale
+from .characteristic import Characteristic
+from .contacts import Contact, charted
+from .roots import SMALLEST_ETA_PI, Verdict, touching_stabilizers
+
+VERDICTS = tuple(Verdict)  # by their codes in a chart
+STABLE, DRIFT, OSCILLATORY = range(3)
+REAL_AXIS = np.concatenate([np.logspace(-7.0, -2.0, 16), np.arange(0.02, 3.0, 0.03), np.logspace(0.5, 4.0, 60)])
+SMALLEST_LAMBDA2 = 0.05
+
+Integers = NDArray[np.int64]
+
+
+class Band(NamedTuple):
+    """What there is along ηΠ: increasing ends, and the codes before, between and after them."""
+
+    ends: Floats
+    codes: Integers
+
+
+@dataclass(frozen=True)
+class Panel:
+    """The verdicts of one mode.
+
+    Parameters
+    ----------
+    contact
+        The stabilizers that touch, by number.
+    saturated
+        Whether the bit tilt is at its limit.
+    verdicts
+        Indices into `VERDICTS`, shape (len(lambda2), len(eta_pi)).
+    bands
+        For each λ₂ where the verdict changes.
+    doubling
+        The drilled length in which a drift doubles, m, shape (len(lambda2), len(eta_pi)); nan where it does not drift.
+    characteristics
+        The characteristic function for each λ₂.
+    """
+
+    contact: Contact
+    saturated: bool
+    verdicts: Integers
+    bands: tuple[Band, ...]
+    doubling: Floats
+    characteristics: tuple[Characteristic, ...]
+
+
+@dataclass(frozen=True)
+class Chart:
+    """Modes over ηΠ (increasing) and λ₂: for each contact one with the bit tilt not saturated and one with it so."""
+
+    eta_pi: Floats
+    lambda2: Floats
+    inclination: float  # of the straight hole, rad
+    panels: tuple[Panel, ...]
+
+
+def usual_grid(bha: BottomHoleAssembly, eta_pi: float, critical: float = 0.15) -> tuple[Floats, Floats]:
+    """ηΠ and λ₂ of a chart that shows what matters: the case, at `eta_pi`, and the `critical` ηΠ well inside."""
+    lambda2 = lambda_2(bha)
+    highest = max(4.0 * critical, 1.5 * eta_pi, 300 * SMALLEST_ETA_PI)
+    return (
+        np.linspace(highest / 300, highest, 300),
+        np.linspace(max(min(0.4, lambda2 / 1.5), SMALLEST_LAMBDA2), max(2.4, 1.5 * lambda2), 200),
+    )
+
+
+def lambda_2(bha: BottomHoleAssembly) -> float:
+    """λ₂, the distance from the first to the second stabilizer over ℓ₁.
+
+    Raises
+    ------
+    ParameterError
+        If there is no second one.
+    """
+    first, *others = bha.stabilizer_positions
+    if not others:
+        raise ParameterError("stabilizer_positions", "must hold at least 2 for a chart over λ₂", (first,))
+    return (others[0] - first) / first
+
+
+def stability_chart(
+    bha: BottomHoleAssembly,
+    bit: BitRock,
+    eta_pi: Floats,
+    lambda2: Floats,
+    inclination: float = 0.0,
+    progress: Callable[[float], None] = lambda _: None,
+    contacts: Sequence[Contact] | None = None,
+) -> Chart:
+    """The verdicts of modes over ηΠ and λ₂, the distance from the first to the second stabilizer over ℓ₁.
+
+    Stabilizers beyond the second keep their distances from it. Those without clearance touch in every mode.
+
+    Parameters
+    ----------
+    bha, bit
+        The drilling system, of two stabilizers or more.
+    eta_pi, lambda2
+        The grid, both increasing.
+    inclination
+        Of the straight hole, rad.
+    progress
+        Called with the fraction done.
+    contacts
+        The stabilizers that touch, by number: two panels for each. Without it those of `modes.charted`.
+
+    Raises
+    ------
+    ParameterError
+        If there is one stabilizer only, or the grid breaks a constraint.
+    """
+    lambda_2(bha)
+    check_increasing("eta_pi", tuple(eta_pi.tolist()))
+    check_number("eta_pi", float(eta_pi[0]), at_least=SMALLEST_ETA_PI)
+    check_increasing("lambda2", tuple(lambda2.tolist()))
+    check_number("lambda2", float(lambda2[0]), at_least=SMALLEST_LAMBDA2)
+    check_number("inclination", inclination)
+    scaled = scale(bha, bit)
+    modes = [
+        (numbers, saturated)
+        for numbers in (charted(bha, bit, inclination) if contacts is None else contacts)
+        for saturated in (False, True)
+    ]
+    panels = []
+    for done, (numbers, saturated) in enumerate(modes):
+        touching = touching_stabilizers(bha, numbers)
+        characteristics, rows = [], []
+        for distance in lambda2.tolist():
+            characteristics.append(Characteristic.of(respaced(scaled, distance), touching, saturated, inclination))
+            rows.append(chart_row(characteristics[-1], eta_pi))
+            progress((done + len(rows) / len(lambda2)) / len(modes))
+        codes, bands, growth = zip(*rows, strict=True)
+        with np.errstate(divide="ignore"):
+            doubling = log(2) / np.array(growth) * bha.length_scale
+        panels.append(Panel(numbers, saturated, np.array(codes), bands, doubling, tuple(characteristics)))
+    return Chart(eta_pi, lambda2, inclination, tuple(panels))
+
+
+def respaced(scaled: Scaled, lambda2: float) -> Scaled:
+    """`scaled` with the second stabilizer, and all beyond it, moved to λ₂ from the first."""
+    shift = 1.0 + lambda2 - scaled.s[1]
+    return replace(scaled, s=(1.0, *(s_i + shift for s_i in scaled.s[1:])))
+
+
+def all_crossings(characteristic: Characteristic, smallest: float) -> tuple[Floats, Floats]:
+    """ηΠ >= `smallest` where roots cross the imaginary axis, increasing, and how many more are to the right beyond."""
+    pairs = characteristic.crossings(smallest)
+    at, change = pairs.eta_pi, 2 * pairs.direction
+    b, c = characteristic.at_zero()
+    if b and -c / b >= smallest:
+        _, slope = characteristic(np.zeros(1, complex), -c / b)
+        at, change = np.append(at, -c / b), np.append(change, -np.sign(b * slope.real))
+    order = np.argsort(at)
+    return at[order], change[order]
+
+
+def unstable_roots(characteristic: Characteristic, eta_pi: Floats) -> tuple[Integers, Integers]:
+    """The number of roots in the right half plane, and of real ones among them, for each ηΠ (increasing)."""
+    total = all_roots(characteristic, eta_pi, *all_crossings(characteristic, float(eta_pi[0])))
+    return total, real_roots(characteristic, eta_pi, total)[0]
+
+
+def all_roots(characteristic: Characteristic, eta_pi: Floats, at: Floats, change: Floats) -> Integers:
+    """The number of roots in the right half plane for each ηΠ (increasing), given `all_crossings`."""
+    to_come = np.append(np.cumsum(change[::-1])[::-1], 0.0)
+    b, c = characteristic.at_zero()
+    # ηΠ → ∞ leaves one root near zero, on the side that the sign of P(0) tells
+    number: Integers = np.rint(((b or c) < 0) - to_come[np.searchsorted(at, eta_pi)]).astype(int)
+    return number
+
+
+def real_roots(characteristic: Characteristic, eta_pi: Floats, total: Integers) -> tuple[Integers, Floats]:
+    """The number of positive roots, and roughly the largest (nan if there is none), for each ηΠ.
+
+    `total` is the number of roots in the right half plane: if that is odd, one at least is real.
+    """
+    number, largest = total.copy(), np.full(len(eta_pi), np.nan)
+    some = np.flatnonzero(total)
+    if len(some):
+        a, b, c = characteristic.on_real_axis(REAL_AXIS[:, None])
+        value = (a * eta_pi[some] + b) * eta_pi[some] + c
+        b_0, c_0 = characteristic.at_zero()
+        if b_0 or c_0:
+            value = np.vstack([b_0 * eta_pi[some] + c_0, value])
+            nu = np.append(0.0, REAL_AXIS)
+        else:
+            nu = REAL_AXIS
+        changes = (value[1:] > 0) != (value[:-1] > 0)
+        count = np.count_nonzero(changes, axis=0)
+        number[some] = np.where(total[some] == 1, 1, count)
+        last, column = len(nu) - 2 - np.argmax(changes[::-1], axis=0), np.arange(len(some))
+        before, after = value[last, column], value[last + 1, column]
+        root = nu[last] + (nu[last + 1] - nu[last]) * before / (before - after)
+        largest[some] = np.where(count > 0, root, np.where(total[some] == 1, 0.0, np.nan))
+    return number, largest
+
+
+def chart_row(characteristic: Characteristic, eta_pi: Floats) -> tuple[Integers, Band, Floats]:
+    """The verdict at each ηΠ (increasing), as an index into `VERDICTS`, where it changes, and the growth of a drift.
+
+    The growth is per ℓ₁, and nan where the verdict is another one.
+    """
+    at, change = all_crossings(characteristic, float(eta_pi[0]))
+    between = np.clip(at, eta_pi[0], eta_pi[-1])
+    every = np.append(eta_pi, (between[1:] + between[:-1]) / 2)  # no band between two crossings is passed over
+    order = np.argsort(every, kind="stable")
+    x = every[order]
+    total = all_roots(characteristic, x, at, change)
+    real, growth = real_roots(characteristic, x, total)
+    codes = np.where(total > real, OSCILLATORY, np.where(real > 0, DRIFT, STABLE))
+    before = np.flatnonzero(codes[1:] != codes[:-1])
+    # a crossing brings the change, but for a pair that becomes two real roots
+    nearest = np.append(at, np.inf)[np.searchsorted(at, x[before])]
+    ends = np.where(nearest <= x[before + 1], nearest, (x[before] + x[before + 1]) / 2)
+    on_grid = order < len(eta_pi)
+    bands = Band(ends, np.append(codes[before], codes[-1]))
+    return codes[on_grid], bands, np.where(codes == DRIFT, growth, np.nan)[on_grid]

@@ -1,0 +1,247 @@
+"""Local stability of a straight hole, section V: the roots of a mode, what they mean, and the critical ηΠ.
+
+`rightmost_roots` and `crossings` of a `Characteristic` are dimensionless; `find_roots` and `critical_eta_pi` take the
+drilling system in SI.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import StrEnum
+from math import pi
+
+import numpy as np
+
+from ...core.checks import check_number
+from ...core.errors import ParameterError
+from ...core.system import BitRock, BottomHoleAssembly, scale
+from ...errors import InputError, RootsNotFound
+from .characteristic import Characteristic
+from .zeros import Strip, find_zeros
+
+SMALLEST_ETA_PI = 1e-4  # the number of roots to the right of any abscissa grows as 1/ηΠ
+ABSCISSA = -0.5  # roots are listed right of it
+DAMPING = 5.0  # nor do roots matter that shrink by e^-3 on the way from the bit to the last stabilizer
+MARGIN = 0.2  # left of the abscissa, times s_n, for a contour that keeps clear of the roots
+MOST_ROOTS = 500_000  # that are looked for
+NEUTRAL = 1e-9  # a root this close to the imaginary axis is on it
+SMOOTH = 6.0  # times 1/s_n: e^-6 is nothing to be seen on the grid
+SPACING = 0.5  # of the grid on which roots are looked for, times s_n
+
+
+class Verdict(StrEnum):
+    """What becomes of a small perturbation."""
+
+    STABLE = "stable"  # no root in the right half plane
+    DRIFT = "drift"  # real ones only
+    OSCILLATORY = "oscillatory"  # a complex pair
+
+
+@dataclass(frozen=True)
+class Roots:
+    """The roots of a mode right of an abscissa, all of them: the argument principle counted them.
+
+    Parameters
+    ----------
+    eta_pi
+        ηΠ.
+    contact
+        The stabilizers that touch, by number.
+    saturated
+        Whether the bit tilt is at its limit.
+    roots
+        Per ℓ₁, rightmost first, one of each pair (imaginary part >= 0), a multiple root as often as it is one.
+    """
+
+    eta_pi: float
+    contact: tuple[int, ...]
+    saturated: bool
+    roots: tuple[complex, ...]
+
+    @property
+    def verdict(self) -> Verdict:
+        """What the roots in the right half plane make of a small perturbation."""
+        return verdict(self.roots)
+
+
+@dataclass(frozen=True)
+class CriticalEtaPi:
+    """The largest ηΠ with a complex pair on the imaginary axis, and the wave that the pair makes.
+
+    Parameters
+    ----------
+    eta_pi
+        ηΠ.
+    active_weight_on_bit
+        The same as a force, N.
+    frequency
+        ω, per ℓ₁.
+    wavelength
+        2π/ω, m.
+    """
+
+    eta_pi: float
+    active_weight_on_bit: float
+    frequency: float
+    wavelength: float
+
+
+def find_roots(
+    bha: BottomHoleAssembly,
+    bit: BitRock,
+    eta_pi: float,
+    *,
+    contact: Iterable[int] = (),
+    saturated: bool = False,
+    inclination: float = 0.0,
+    abscissa: float | None = None,
+) -> Roots:
+    """All roots of a mode right of an abscissa, or the nearest beyond it if there are none.
+
+    Parameters
+    ----------
+    bha, bit
+        The drilling system.
+    eta_pi
+        ηΠ, at least `SMALLEST_ETA_PI`.
+    contact
+        Numbers of the stabilizers that touch, from 1; those without clearance always do.
+    saturated
+        Whether the bit tilt is at its limit.
+    inclination
+        Of the straight hole, rad.
+    abscissa
+        Per ℓ₁, at most 0.
+
+    Raises
+    ------
+    ParameterError
+        If a value is out of range.
+    """
+    check_number("eta_pi", eta_pi, at_least=SMALLEST_ETA_PI)
+    check_number("inclination", inclination)
+    check_number("abscissa", abscissa or 0.0, at_most=0.0)
+    touching = touching_stabilizers(bha, contact)
+    characteristic = Characteristic.of(scale(bha, bit), touching, saturated, inclination)
+    roots = rightmost_roots(characteristic, eta_pi, abscissa)
+    return Roots(eta_pi, stabilizer_numbers(touching), saturated, roots)
+
+
+def critical_eta_pi(
+    bha: BottomHoleAssembly,
+    bit: BitRock,
+    *,
+    contact: Iterable[int] | None = None,
+    saturated: bool = False,
+    inclination: float = 0.0,
+) -> CriticalEtaPi | None:
+    """The largest ηΠ at which a complex pair of a mode lies on the imaginary axis.
+
+    Above it the mode does not oscillate; None if it never does, for any ηΠ >= `SMALLEST_ETA_PI`.
+
+    Parameters
+    ----------
+    bha, bit
+        The drilling system.
+    contact
+        Numbers of the stabilizers that touch; without it all non-ideal ones, the mode that makes a hole ripple.
+    saturated
+        Whether the bit tilt is at its limit.
+    inclination
+        Of the straight hole, rad.
+
+    Raises
+    ------
+    ParameterError
+        If a value is out of range.
+    """
+    check_number("inclination", inclination)
+    touching = touching_stabilizers(bha, range(1, len(bha.stabilizer_positions)) if contact is None else contact)
+    characteristic = Characteristic.of(scale(bha, bit), touching, saturated, inclination)
+    for smallest in (0.1, 0.01, 0.001, SMALLEST_ETA_PI):  # the smaller, the more of them there are
+        crossings = characteristic.crossings(smallest)
+        if len(crossings.eta_pi):
+            eta_pi, frequency = float(crossings.eta_pi[-1]), float(crossings.omega[-1])
+            weight = eta_pi * bha.force_scale / bit.lateral_steering_resistance
+            return CriticalEtaPi(eta_pi, weight, frequency, 2 * pi / frequency * bha.length_scale)
+    return None
+
+
+def touching_stabilizers(bha: BottomHoleAssembly, numbers: Iterable[int]) -> tuple[int, ...]:
+    """1 for each non-ideal stabilizer with one of `numbers` or without clearance, 0 for the others.
+
+    Raises
+    ------
+    ParameterError
+        If a number is not that of a non-ideal stabilizer.
+    """
+    wanted, last = set(numbers), len(bha.stabilizer_clearances)
+    for number in wanted:
+        if not 1 <= number <= last:
+            raise ParameterError("contact", f"must be non-ideal stabilizers, here {last} from the bit up", number)
+    return tuple(int(i in wanted or not clearance) for i, clearance in enumerate(bha.stabilizer_clearances, 1))
+
+
+def parse_contact(text: str) -> tuple[int, ...]:
+    """The stabilizer numbers in a list such as "1,2"; `InputError` if it is none."""
+    try:
+        return tuple(int(number) for number in text.split(",")) if text else ()
+    except ValueError:
+        raise InputError(f"--contact: must be numbers of stabilizers with commas between, got {text!r}") from None
+
+
+def stabilizer_numbers(touching: tuple[int, ...]) -> tuple[int, ...]:
+    """The numbers of the stabilizers that touch."""
+    return tuple(i for i, touches in enumerate(touching, 1) if touches)
+
+
+def verdict(roots: Iterable[complex]) -> Verdict:
+    """The verdict on roots that hold all of the right half plane."""
+    unstable = [root for root in roots if root.real > NEUTRAL]
+    if any(root.imag for root in unstable):
+        return Verdict.OSCILLATORY
+    return Verdict.DRIFT if unstable else Verdict.STABLE
+
+
+def rightmost_roots(
+    characteristic: Characteristic, eta_pi: float, abscissa: float | None = None
+) -> tuple[complex, ...]:
+    """All roots with Re ν >= `abscissa` (<= 0); if there are none, as far left as it takes.
+
+    Rightmost first, one of each pair (imaginary part >= 0), a multiple root as often as it is one.
+
+    Raises
+    ------
+    ParameterError
+        If there are too many roots right of the abscissa.
+    RootsNotFound
+        If the argument principle counts more than are found.
+    """
+    reach = float(characteristic.s[-1])
+    if abscissa is None:
+        abscissa = usual_abscissa(characteristic)
+    frequencies, rightmost = characteristic.outline(eta_pi, abscissa - MARGIN / reach)
+    if frequencies[-1] * reach > 2 * pi * MOST_ROOTS:
+        raise ParameterError(
+            "abscissa", f"must be nearer to 0: right of it lie too many roots at ηΠ = {eta_pi:g}", abscissa
+        )
+    try:
+        roots = find_zeros(
+            lambda nu: characteristic(nu, eta_pi),
+            lambda x, y: characteristic.on_grid(x, y, eta_pi),
+            Strip(abscissa, float(rightmost[0]), float(frequencies[-1])),
+            MARGIN / reach,
+            SPACING / reach,
+            lambda y: float(rightmost[np.searchsorted(frequencies, y, side="right") - 1]),
+            SMOOTH / reach,
+        )
+    except ArithmeticError as error:
+        raise RootsNotFound(f"the roots at ηΠ = {eta_pi:.6g}: {error}; take an ηΠ beside it (--eta-pi)") from error
+    roots = roots[roots.real >= abscissa]
+    if not len(roots):
+        return rightmost_roots(characteristic, eta_pi, abscissa + usual_abscissa(characteristic))
+    return tuple(roots[np.lexsort([roots.imag, -roots.real])].tolist())
+
+
+def usual_abscissa(characteristic: Characteristic) -> float:
+    """Right of which roots are listed, if nobody says another one."""
+    return max(ABSCISSA, -DAMPING / float(characteristic.s[-1]))

@@ -1,0 +1,1 @@
+"""Many cases: how they are chosen, computed and kept."""

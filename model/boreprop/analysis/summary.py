@@ -1,0 +1,132 @@
+"""A run in a dozen numbers."""
+
+from dataclasses import dataclass
+from math import ceil
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.survey import Survey
+from ..core.system import BottomHoleAssembly
+from ..run.completion import case_of
+from ..run.trajectory import Trajectory
+from ..units import BUILD_LENGTH
+from .rippling import Rippling, State, examine_rippling, visible_waves
+
+SHORT_WAVE, LONG_WAVE = 0.25, 1.8  # half BHAs: what ripples are between
+CHORD_POINTS = 200  # of the existing hole under a chord
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What an engineer asks of a run first. Inclinations are means over the `averaging_length` behind the bit.
+
+    Parameters
+    ----------
+    drilled_length
+        m.
+    averaging_length
+        Length of hole that inclinations are means over, m.
+    start_inclination, end_inclination
+        rad.
+    build_rate, largest_build_rate
+        Over the whole run, and the largest in size over any 30 m (nan in a shorter run), rad/m; positive builds.
+    largest_contact_force
+        For each non-ideal stabilizer, in size, N, shape (n − 1,).
+    contact_share
+        Share of the length each non-ideal stabilizer touches a wall, shape (n − 1,).
+    saturation_share
+        Share of the length the bit tilt is at its limit.
+    rippling
+        Whether it ends rippling, with what wave.
+    hidden_waves
+        Why waves that this BHA may make would not show, "" if they would.
+    stopped
+        Why the run ended before its end, if it did.
+    """
+
+    drilled_length: float
+    averaging_length: float
+    start_inclination: float
+    end_inclination: float
+    build_rate: float
+    largest_build_rate: float
+    largest_contact_force: NDArray[np.float64]
+    contact_share: NDArray[np.float64]
+    saturation_share: float
+    rippling: Rippling
+    hidden_waves: str
+    stopped: str | None = None
+
+
+def summarize(trajectory: Trajectory) -> Summary:
+    """Sum up a run.
+
+    Parameters
+    ----------
+    trajectory
+        With its case, of at least two rows.
+
+    Raises
+    ------
+    InputError
+        If the run lacks its case or a column.
+    """
+    case = case_of(trajectory)
+    length = trajectory["drilled_length"]
+    rippling = examine_rippling(trajectory)
+    over = averaging_length(case.bha, rippling)
+    inclination = mean_inclination(trajectory, case.survey, over)
+    weights = np.gradient(length)
+    weights[[0, -1]] /= 2
+    later = np.interp(length + BUILD_LENGTH, length, inclination, right=np.nan)
+    rates = (later - inclination)[~np.isnan(later)] / BUILD_LENGTH
+    drilled = float(length[-1] - length[0])
+    return Summary(
+        drilled_length=drilled,
+        averaging_length=over,
+        start_inclination=float(inclination[0]),
+        end_inclination=float(inclination[-1]),
+        build_rate=float(inclination[-1] - inclination[0]) / drilled,
+        largest_build_rate=float(rates[np.argmax(np.abs(rates))]) if len(rates) else float("nan"),
+        largest_contact_force=np.abs(trajectory.stack("stabilizer_force")).max(axis=0),
+        contact_share=np.average(trajectory.stack("stabilizer_contact") != 0, axis=0, weights=weights),
+        saturation_share=float(np.average(trajectory["bit_tilt_saturation"] != 0, weights=weights)),
+        rippling=rippling,
+        hidden_waves=hidden_waves(length, case.bha),
+        stopped=trajectory.stopped,
+    )
+
+
+def averaging_length(bha: BottomHoleAssembly, wave: Rippling) -> float:
+    """The length of hole that a summary averages inclinations over, m.
+
+    Half the BHA, whichever of its blades touch; where a wave lasts, the next whole number of wavelengths.
+    """
+    if wave.state in (State.NONE, State.DYING):
+        return bha.half_length
+    return wave.wavelength * ceil(bha.half_length / wave.wavelength)
+
+
+def hidden_waves(length: NDArray[np.float64], bha: BottomHoleAssembly) -> str:
+    """Which waves the rows of a run are too far apart, or the run is too short, to show; "" if none that matter."""
+    shortest, longest = visible_waves(length)
+    hidden = [f"under {shortest:.2g} m: take rows closer together"] * (shortest > SHORT_WAVE * bha.half_length)
+    hidden += [f"over {longest:.3g} m: drill further"] * (longest < LONG_WAVE * bha.half_length)
+    return ", ".join(hidden)
+
+
+def mean_inclination(run: Trajectory, survey: Survey, over: float) -> NDArray[np.float64]:
+    """The inclination of the chord over the last `over`, m, of the hole at each row of a run, rad, shape (rows,).
+
+    The run starts at the end of the survey, above which the hole goes on straight.
+    """
+    before = np.linspace(-over, 0.0, CHORD_POINTS)
+    stations = np.array(survey.measured_depth) - survey.measured_depth[-1]
+    direction = np.exp(1j * np.interp((before[1:] + before[:-1]) / 2, stations, survey.inclination))
+    existing = np.cumsum(direction * np.diff(before))  # down + i sideways
+    length, drilled = run["drilled_length"], run["true_vertical_depth"] + 1j * run["displacement"]
+    at = np.concatenate((before, length))
+    axis = np.concatenate(([0.0], existing, existing[-1] + drilled))
+    chord = axis[-len(length) :] - np.interp(length - over, at, axis)
+    return np.unwrap(np.angle(chord))

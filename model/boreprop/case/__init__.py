@@ -1,0 +1,1 @@
+"""Cases: what is drilled, and the files that say so."""

@@ -1,0 +1,48 @@
+"""Tables that people keep in files of their own: surveys and force schedules, as CSV."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from math import radians
+from pathlib import Path
+
+from ..core.columns import read_columns
+from ..core.errors import ParameterError, TableError
+from ..core.survey import Survey
+from ..errors import InputError, shown
+from .case import Schedule
+
+
+def read_survey(path: str | Path) -> Survey:
+    """Read a survey: a CSV file with columns measured_depth (m) and inclination_deg.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or the depths do not increase.
+    """
+    with _naming(path):
+        measured_depth, inclination_deg = read_columns(path, ("measured_depth", "inclination_deg"))
+        return Survey(measured_depth, tuple(map(radians, inclination_deg)))
+
+
+def read_schedule(path: str | Path) -> Schedule:
+    """Read a force schedule: a CSV file with columns drilled_length (m) and force (N).
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, does not start at 0, or the lengths do not increase.
+    """
+    with _naming(path):
+        return Schedule(*read_columns(path, ("drilled_length", "force")))
+
+
+@contextmanager
+def _naming(path: str | Path) -> Iterator[None]:
+    """Turn what is wrong with the columns of a file into an `InputError` that names the file."""
+    try:
+        yield
+    except TableError as error:
+        raise InputError(str(error)) from error
+    except ParameterError as error:
+        raise InputError(f"{path}: {error.name}: {error.constraint}, got {shown(error.value)}") from error

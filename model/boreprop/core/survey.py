@@ -1,0 +1,36 @@
+"""The existing hole."""
+
+from dataclasses import dataclass
+
+from .checks import check_increasing, check_number
+from .errors import ParameterError
+
+
+@dataclass(frozen=True)
+class Survey:
+    """The existing hole: inclination at measured depths, linear in between, straight above the first station.
+
+    Parameters
+    ----------
+    measured_depth
+        Stations along the hole, m, increasing, at least one. The last one is the bit at the start of the run.
+    inclination
+        Inclination at each station, rad.
+
+    Raises
+    ------
+    ParameterError
+        If a value is not finite, the depths do not increase, or the counts differ.
+    """
+
+    measured_depth: tuple[float, ...]
+    inclination: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        if not self.measured_depth:
+            raise ParameterError("measured_depth", "must hold at least one station", self.measured_depth)
+        check_increasing("measured_depth", self.measured_depth)
+        if len(self.inclination) != len(self.measured_depth):
+            raise ParameterError("inclination", f"must hold {len(self.measured_depth)} values", self.inclination)
+        for value in self.inclination:
+            check_number("inclination", value)

@@ -1,0 +1,157 @@
+"""The drilling system in SI units, and the paper's dimensionless numbers made from it."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from math import pi
+
+from .checks import check_increasing, check_number
+from .errors import ParameterError
+
+MAX_STABILIZERS = 6
+LEAST_SPAN = 0.01  # m between stabilizers: none is shorter, and the force between closer ones is rounding
+
+
+@dataclass(frozen=True)
+class BottomHoleAssembly:
+    """The elastic beam between the bit and the last stabilizer.
+
+    Parameters
+    ----------
+    stabilizer_positions
+        Distance of stabilizers 1…n from the bit, m, increasing by at least 0.01 m, 1 <= n <= 6. The last one is
+        ideal (centred and hinged).
+    stabilizer_clearances
+        Clearance y*_i between blade and wall on each side of a centred stabilizer, m, one for each of the
+        n − 1 non-ideal stabilizers.
+    rss_position
+        Distance of the steering pads from the bit, m, between the bit and the first stabilizer.
+    distributed_weight
+        Buoyant weight per length, N/m.
+    flexural_stiffness
+        EI, N·m².
+
+    Raises
+    ------
+    ParameterError
+        If a value breaks one of these constraints.
+    """
+
+    stabilizer_positions: tuple[float, ...]
+    stabilizer_clearances: tuple[float, ...]
+    rss_position: float
+    distributed_weight: float
+    flexural_stiffness: float
+
+    def __post_init__(self) -> None:
+        n = len(self.stabilizer_positions)
+        if not 1 <= n <= MAX_STABILIZERS:
+            raise ParameterError(
+                "stabilizer_positions",
+                f"must hold 1 to {MAX_STABILIZERS} positions",
+                self.stabilizer_positions,
+            )
+        check_number("stabilizer_positions", self.stabilizer_positions[0], above=0.0)
+        check_increasing("stabilizer_positions", self.stabilizer_positions)
+        for before, after in pairwise((0.0, *self.stabilizer_positions)):
+            if after - before < LEAST_SPAN * (1 - 1e-9):  # 4.34 and 4.35 are that far apart, but for rounding
+                constraint = f"must be at least {LEAST_SPAN:g} m from each other and from the bit"
+                raise ParameterError("stabilizer_positions", constraint, (before, after))
+        if len(self.stabilizer_clearances) != n - 1:
+            raise ParameterError(
+                "stabilizer_clearances",
+                f"must hold one value per non-ideal stabilizer, here {n - 1}",
+                self.stabilizer_clearances,
+            )
+        for clearance in self.stabilizer_clearances:
+            check_number("stabilizer_clearances", clearance, at_least=0.0)
+        check_number("rss_position", self.rss_position, at_least=0.0, at_most=self.stabilizer_positions[0])
+        check_number("distributed_weight", self.distributed_weight, at_least=0.0)
+        check_number("flexural_stiffness", self.flexural_stiffness, above=0.0)
+
+    @property
+    def length_scale(self) -> float:
+        """ℓ₁, m: the distance from the bit to the first stabilizer."""
+        return self.stabilizer_positions[0]
+
+    @property
+    def half_length(self) -> float:
+        """Half the distance from the bit to the last stabilizer, m.
+
+        The length of hole that what is said of a hole is about: unlike ℓ₁, no blade that never touches changes it.
+        """
+        return self.stabilizer_positions[-1] / 2
+
+    @property
+    def force_scale(self) -> float:
+        """F* = 3EI/ℓ₁², N."""
+        return 3.0 * self.flexural_stiffness / (self.length_scale * self.length_scale)
+
+
+@dataclass(frozen=True)
+class BitRock:
+    """The bit–rock interaction law, eqs. (9) to (11).
+
+    Parameters
+    ----------
+    lateral_steering_resistance
+        η = H₂/H₁: lateral against axial drilling resistance, dimensionless.
+    angular_steering_resistance
+        χ = H₃/H₁, dimensionless.
+    tilt_limit
+        ψ*: the tilt at which the bit gauge meets the hole wall, rad.
+
+    Raises
+    ------
+    ParameterError
+        If a value is not positive, or the tilt limit exceeds a right angle.
+    """
+
+    lateral_steering_resistance: float
+    angular_steering_resistance: float
+    tilt_limit: float
+
+    def __post_init__(self) -> None:
+        check_number("lateral_steering_resistance", self.lateral_steering_resistance, above=0.0)
+        check_number("angular_steering_resistance", self.angular_steering_resistance, above=0.0)
+        check_number("tilt_limit", self.tilt_limit, above=0.0, at_most=pi / 2)
+
+
+@dataclass(frozen=True)
+class Scaled:
+    """The drilling system in the paper's numbers: lengths over ℓ₁, forces over F*, moments over F*ℓ₁."""
+
+    s: tuple[float, ...]  # s_1 … s_n, distance of the stabilizers from the bit; s_1 = 1
+    y_star: tuple[float, ...]  # y*_1 … y*_{n-1}
+    Delta: float  # distance of the RSS from the bit
+    w: float  # w̃ = w ℓ₁ / F*
+    epsilon: float  # ε = χ/η
+    psi_star: float  # ψ*, rad
+
+    @property
+    def lambda_(self) -> tuple[float, ...]:
+        """λ_1 … λ_n: distance from stabilizer i−1 (0 is the bit) to stabilizer i."""
+        return tuple(after - before for before, after in pairwise((0.0, *self.s)))
+
+
+def scale(bha: BottomHoleAssembly, bit: BitRock) -> Scaled:
+    """The dimensionless numbers of a drilling system, section II of the paper; `ParameterError` if one is none."""
+    l1 = bha.length_scale
+    check_number("F*", bha.force_scale, above=0.0)
+    scaled = Scaled(
+        s=tuple(position / l1 for position in bha.stabilizer_positions),
+        y_star=tuple(clearance / l1 for clearance in bha.stabilizer_clearances),
+        Delta=bha.rss_position / l1,
+        w=bha.distributed_weight * l1 / bha.force_scale,
+        epsilon=bit.angular_steering_resistance / bit.lateral_steering_resistance,
+        psi_star=bit.tilt_limit,
+    )
+    check_number("s_n / l_1", scaled.s[-1])
+    check_number("w l_1 / F*", scaled.w)
+    check_number("epsilon", scaled.epsilon, above=0.0)
+    check_number("1 / epsilon", 1 / scaled.epsilon)
+    return scaled
+
+
+def eta_pi(bha: BottomHoleAssembly, bit: BitRock, active_weight_on_bit: float) -> float:
+    """ηΠ, the active weight on bit (N) over F*, times the lateral steering resistance."""
+    return bit.lateral_steering_resistance * active_weight_on_bit / bha.force_scale

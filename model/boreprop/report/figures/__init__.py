@@ -1,0 +1,1 @@
+"""Results in pictures: one module for each analysis."""

@@ -1,0 +1,1 @@
+"""Results in tables and sentences: one module for each analysis."""

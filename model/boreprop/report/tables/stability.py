@@ -1,0 +1,107 @@
+"""The roots of a mode for a person to read."""
+
+from collections.abc import Container
+from math import degrees, log, pi
+
+from ...analysis.stability.roots import CriticalEtaPi, Roots, Verdict
+
+HEADINGS = ("growth, per ℓ₁", "frequency, per ℓ₁", "what it does", "wavelength")
+MODE_HEADINGS = ("in contact", "bit tilt", "verdict", "what it does", "wavelength", "the case")
+NOT_MET = "not met: the case does not come to this contact, in no hole that turns by up to 10° over 30 m"
+MOST_ROWS = 20
+
+
+def as_plain(found: Roots) -> dict[str, object]:
+    """The roots of a mode as JSON has them: real and imaginary parts, rightmost first."""
+    return {
+        "eta_pi": found.eta_pi,
+        "mode": {"contact": found.contact, "saturated": found.saturated},
+        "roots": [[root.real, root.imag] for root in found.roots],
+        "verdict": found.verdict,
+    }
+
+
+def title(found: Roots, active_weight_on_bit: float) -> str:
+    """Which mode at which weight, N, and the verdict."""
+    tilt = "bit tilt saturated" if found.saturated else "bit tilt not saturated"
+    at = f"ηΠ = {found.eta_pi:.4g} ({weight(active_weight_on_bit)})"
+    return f"{at}, {contact_text(found.contact)}, {tilt}: {found.verdict}"
+
+
+def modes_title(eta_pi: float, active_weight_on_bit: float, inclination: float) -> str:
+    """At which weight, N, and inclination, rad, the modes are looked at."""
+    return (
+        f"ηΠ = {eta_pi:.4g} ({weight(active_weight_on_bit)}), straight hole at {degrees(inclination):.4g}° inclination"
+    )
+
+
+def mode_row(
+    found: Roots, length_scale: float, here: tuple[tuple[int, ...], bool], met: Container[tuple[int, ...]]
+) -> tuple[str, ...]:
+    """A mode in a line, under `MODE_HEADINGS`: its verdict and the root that makes it.
+
+    `here` is the mode that the case is held in, `met` are the contacts that occur.
+    """
+    pairs = [root for root in found.roots if root.imag]
+    root = pairs[0] if found.verdict is Verdict.OSCILLATORY else found.roots[0]
+    place = "held here" if (found.contact, found.saturated) == here else "" if found.contact in met else "not met"
+    return (
+        ", ".join(map(str, found.contact)) or "none",
+        "saturated" if found.saturated else "not saturated",
+        found.verdict,
+        change(root, length_scale),
+        wavelength(root, length_scale),
+        place,
+    )
+
+
+def contact_text(contact: tuple[int, ...]) -> str:
+    """Which stabilizers touch."""
+    numbers = ", ".join(map(str, contact))
+    return f"stabilizer{'s' * (len(contact) > 1)} {numbers} in contact" if contact else "no contact"
+
+
+def rows(found: Roots, length_scale: float) -> list[tuple[str, str, str, str]]:
+    """A line for each of the rightmost roots, under `HEADINGS`; `length_scale` is ℓ₁, m."""
+    return [
+        (f"{root.real:.6f}", f"{root.imag:.6f}", change(root, length_scale), wavelength(root, length_scale))
+        for root in found.roots[:MOST_ROWS]
+    ]
+
+
+def change(root: complex, length_scale: float) -> str:
+    """Over how many metres what a root makes doubles or halves."""
+    if not root.real:
+        return "stays"
+    return f"{'doubles' if root.real > 0 else 'halves'} in {metres(log(2) / abs(root.real) * length_scale)}"
+
+
+def wavelength(root: complex, length_scale: float) -> str:
+    """Of the wave that a pair of roots makes, m."""
+    return metres(2 * pi / root.imag * length_scale) if root.imag else ""
+
+
+def metres(length: float) -> str:
+    """A length in three digits."""
+    return f"{float(f'{length:.3g}'):.15g} m"
+
+
+def caption(found: Roots) -> str | None:
+    """How many roots are not shown."""
+    more = len(found.roots) - MOST_ROWS
+    return f"{more} more with a growth above {found.roots[-1].real:.2g} per ℓ₁" if more > 0 else None
+
+
+def stability_limit(contact: tuple[int, ...], critical: CriticalEtaPi | None) -> str:
+    """Up to where a straight hole oscillates with a contact, the bit tilt not saturated."""
+    if critical is None:
+        return f"{contact_text(contact)}: never oscillatory"
+    return (
+        f"{contact_text(contact)}: oscillatory up to ηΠ = {critical.eta_pi:.6g} "
+        f"({weight(critical.active_weight_on_bit)}; waves of {metres(critical.wavelength)})"
+    )
+
+
+def weight(active_weight_on_bit: float) -> str:
+    """An active weight on bit, N, in kN."""
+    return f"{active_weight_on_bit / 1000:.4g} kN"

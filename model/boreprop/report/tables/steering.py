@@ -1,0 +1,193 @@
+"""The steering response of a case, in the units people use: the lines of two tables."""
+
+from dataclasses import dataclass
+from itertools import groupby
+from math import degrees, isfinite
+
+from ...analysis.steering import (
+    Piece,
+    SteadyResponse,
+    build_rate_curve,
+    holding_forces,
+    largest_build_rate,
+    steady_response,
+)
+from ...case.case import Case
+from ...core.system import eta_pi
+from ...units import BUILD_LENGTH
+
+USUAL_FORCE = 30e3  # N: what the pads of a large tool can do
+READABLE = 0.01  # ° per `BUILD_LENGTH`: no survey sees less
+NEAR_REVERSAL = 0.8  # of the ηΠ at which the response changes sign: its numerator has lost four fifths
+HEADINGS = (
+    "force\n(kN)",
+    f"build rate\n(°/{BUILD_LENGTH:g} m)",
+    "per kN\n",
+    "bit tilt\n(°)",
+    "on a wall\n",
+    "reverses at\nkN (ηΠ)",
+)
+WALLS = {1: "low", -1: "high"}
+
+
+@dataclass(frozen=True)
+class SteeringSummary:
+    """What an engineer asks of the steering of a case.
+
+    Parameters
+    ----------
+    inclination
+        At which the weight of the BHA acts: ⟨Θ⟩_1 of the equations, rad.
+    active_weight_on_bit, eta_pi
+        N; and ηΠ.
+    curve, without_gravity
+        The response to each force up to the limit, see `build_rate_curve`.
+    free, highest, lowest
+        The response without force, and those with the highest and the lowest build rate.
+    holding
+        Those that hold the inclination, the smallest force first.
+    """
+
+    inclination: float
+    active_weight_on_bit: float
+    eta_pi: float
+    curve: tuple[Piece, ...]
+    without_gravity: tuple[Piece, ...]
+    free: SteadyResponse
+    highest: SteadyResponse
+    lowest: SteadyResponse
+    holding: tuple[SteadyResponse, ...]
+
+
+def summarize(case: Case, inclination: float | None = None, force_limit: float | None = None) -> SteeringSummary:
+    """The steering of a case.
+
+    Parameters
+    ----------
+    case
+        What is drilled.
+    inclination
+        At which the weight of the BHA acts, rad; without it, that of the end of the existing hole, which does not
+        depend on where the first stabilizer is.
+    force_limit
+        N; without it, the largest force of the case's schedule, or 30 kN if that has none.
+
+    Raises
+    ------
+    ParameterError
+        If a value is out of range.
+    """
+    if inclination is None:
+        inclination = case.survey.inclination[-1]
+    if force_limit is None:
+        force_limit = max(map(abs, case.schedule.rss_force)) or USUAL_FORCE
+    system = case.bha, case.bit, case.active_weight_on_bit
+    highest, lowest = largest_build_rate(*system, inclination, force_limit)
+    return SteeringSummary(
+        inclination=inclination,
+        active_weight_on_bit=case.active_weight_on_bit,
+        eta_pi=eta_pi(*system),
+        curve=build_rate_curve(*system, inclination, force_limit),
+        without_gravity=build_rate_curve(*system, inclination, force_limit, gravity=False),
+        free=steady_response(*system, 0.0, inclination),
+        highest=highest,
+        lowest=lowest,
+        holding=holding_forces(*system, inclination, force_limit),
+    )
+
+
+def rows(summary: SteeringSummary) -> list[tuple[str, str]]:
+    """The lines of a table, the warnings last: what, and how much in the units people use."""
+    limit = kilonewtons(summary.curve[-1].end.rss_force)
+    held = " or ".join(
+        kilonewtons(response.rss_force, "+") + " (tilt at its limit)" * bool(response.bit_tilt_saturation)
+        for response in summary.holding
+    )
+    error = per_build_length(
+        max(abs(end.build_rate_error) for piece in summary.curve for end in (piece.start, piece.end))
+    )
+    left_out = f"less than {READABLE:g}" if error < READABLE else f"up to {error:.2f}"
+    return [
+        ("inclination at which the weight acts", f"{degrees(summary.inclination):.2f} °"),
+        ("active weight on bit", f"{kilonewtons(summary.active_weight_on_bit)}, ηΠ = {summary.eta_pi:.3g}"),
+        ("force limit", f"±{limit}"),
+        ("build rate without force", f"{rate(summary.free.build_rate)}, on a wall: {touching(summary.free)}"),
+        ("force that holds the inclination", held or f"none up to ±{limit}"),
+        ("highest build rate", at_force(summary.highest)),
+        ("lowest build rate", at_force(summary.lowest)),
+        ("left out: gravity changes along the arc", f"{left_out} °/{BUILD_LENGTH:g} m"),
+        *(("warning", text) for text in warnings(summary.curve, summary.eta_pi)),
+    ]
+
+
+def piece_rows(curve: tuple[Piece, ...]) -> list[tuple[str, ...]]:
+    """A line for each piece of the curve, with a cell for each of `HEADINGS`."""
+    return [
+        (
+            forces(piece.start, piece.end),
+            f"{per_build_length(piece.start.build_rate):+z.2f}…{per_build_length(piece.end.build_rate):+z.2f}",
+            f"{per_build_length(piece.gain * 1e3):+z.3f}",
+            (
+                f"{degrees(piece.start.bit_tilt):+z.2f} (limit)"
+                if piece.start.bit_tilt_saturation
+                else f"{degrees(piece.start.bit_tilt):+z.2f}…{degrees(piece.end.bit_tilt):+z.2f}"
+            ),
+            touching(piece.start, piece.end),
+            (
+                "–"
+                if piece.start.bit_tilt_saturation
+                else f"{piece.reversal_weight / 1e3:.4g} ({piece.reversal_eta_pi:.3g})"
+                if isfinite(piece.reversal_eta_pi)
+                else "never"
+            ),
+        )
+        for piece in curve
+    ]
+
+
+def warnings(curve: tuple[Piece, ...], eta_pi: float) -> list[str]:
+    """Where a larger force builds less, or almost so."""
+    stretches = [(text, list(pieces)) for text, pieces in groupby(curve, lambda piece: _warning(piece, eta_pi))]
+    return [f"{forces(pieces[0].start, pieces[-1].end)} kN: {text}" for text, pieces in stretches if text]
+
+
+def _warning(piece: Piece, eta_pi: float) -> str:
+    if piece.start.bit_tilt_saturation:
+        return "with the bit tilt at its limit, more force to the high side builds less" if piece.gain < 0 else ""
+    if eta_pi < NEAR_REVERSAL * piece.reversal_eta_pi:
+        return ""
+    where = "above" if eta_pi > piece.reversal_eta_pi else "close to"
+    reversal = f"{piece.reversal_eta_pi:.3g} ({kilonewtons(piece.reversal_weight)} of active weight on bit)"
+    return f"ηΠ is {where} {reversal}, beyond which a push to the high side drops the hole"
+
+
+def forces(start: SteadyResponse, end: SteadyResponse) -> str:
+    """From which force to which, in kN."""
+    return f"{start.rss_force / 1e3:+z.2f}…{end.rss_force / 1e3:+z.2f}"
+
+
+def touching(*responses: SteadyResponse) -> str:
+    """Which stabilizers touch which wall; both, if one without clearance goes from one to the other."""
+    contacts = zip(*(response.stabilizer_contact for response in responses), strict=True)
+    walls = [list(dict.fromkeys(WALLS[contact] for contact in at if contact)) for at in contacts]
+    return ", ".join(f"{i} {'/'.join(touched)}" for i, touched in enumerate(walls, 1) if touched) or "none"
+
+
+def per_build_length(build_rate: float) -> float:
+    """Degrees per `BUILD_LENGTH` of a build rate in rad/m."""
+    return degrees(build_rate) * BUILD_LENGTH
+
+
+def rate(build_rate: float) -> str:
+    """A build rate, rad/m, with its sign and unit."""
+    return f"{per_build_length(build_rate):+z.2f} °/{BUILD_LENGTH:g} m"
+
+
+def at_force(response: SteadyResponse) -> str:
+    """The build rate of a response, and its force."""
+    return f"{rate(response.build_rate)} at {kilonewtons(response.rss_force, '+')}"
+
+
+def kilonewtons(force: float, sign: str = "") -> str:
+    """A force, N, in kN."""
+    return f"{force / 1e3:{sign}z.2f} kN"

@@ -1,0 +1,70 @@
+"""A run in a table."""
+
+from math import degrees
+
+import numpy as np
+
+from ...analysis.rippling import Rippling, State, Stretch
+from ...analysis.summary import Summary
+from ...units import BUILD_LENGTH
+
+
+def rows(summary: Summary) -> list[tuple[str, str]]:
+    """The lines of a table: what, and how much in the units people use."""
+    mean = f"mean over {summary.averaging_length:.3g} m"
+    stabilizers = enumerate(zip(summary.largest_contact_force, summary.contact_share, strict=True), 1)
+    return [
+        ("drilled length", f"{summary.drilled_length:.1f} m"),
+        *([("stopped", summary.stopped)] if summary.stopped else []),
+        (f"inclination at the start, {mean}", f"{np.degrees(summary.start_inclination):.2f} °"),
+        (f"inclination at the end, {mean}", f"{np.degrees(summary.end_inclination):.2f} °"),
+        ("build rate, mean", _rate(summary.build_rate)),
+        (f"build rate, largest over {BUILD_LENGTH:g} m", _rate(summary.largest_build_rate)),
+        *(
+            line
+            for i, (force, share) in stabilizers
+            for line in (
+                (f"stabilizer {i}: largest contact force", f"{force / 1e3:.1f} kN"),
+                (f"stabilizer {i}: in contact", f"{share:.0%} of the length"),
+            )
+        ),
+        ("bit tilt saturated", f"{summary.saturation_share:.0%} of the length"),
+        *_wave_rows(summary.rippling),
+        *([("waves that would not show", summary.hidden_waves)] if summary.hidden_waves else []),
+    ]
+
+
+def _rate(change: float) -> str:
+    return f"{np.degrees(change) * BUILD_LENGTH:+.2f} °/{BUILD_LENGTH:g} m"
+
+
+def _wave_rows(wave: Rippling) -> list[tuple[str, str]]:
+    if wave.state is State.NONE:
+        return [("rippling", "no")]
+    return [
+        ("rippling", verdict(wave)),
+        ("ripple of the inclination", f"±{degrees(wave.amplitude):.3g} °"),
+        ("ripple of the hole axis", f"±{1e3 * wave.axis_amplitude:.3g} mm"),
+        ("ripple, from wave to wave", f"length ±{wave.spread:.2f} m"),
+        ("ripple, from stand to stand", f"amplitude {100 * wave.growth_over(BUILD_LENGTH):+.1f} %/{BUILD_LENGTH:g} m"),
+        ("ripple, at least half as large since", f"{wave.since:.0f} m"),
+        ("modes of a wave", "\n".join(map(_words, wave.modes))),
+    ]
+
+
+def verdict(wave: Rippling) -> str:
+    """Whether a run ends rippling, and with what wave."""
+    length = f"{wave.wavelength:.2f} m long"
+    return {
+        State.NONE: "no",
+        State.DYING: f"no, dying out over {wave.fading_length:.3g} m: waves {length}",
+        State.LASTING: f"yes: {length}",
+        State.GROWING: f"yes, growing: {length}",
+        State.STEERED: f"no: waves {length}, but force or weight change too often to tell whether they would last",
+    }[wave.state]
+
+
+def _words(stretch: Stretch) -> str:
+    touching = [f"{i} {'lower' if wall > 0 else 'upper'}" for i, wall in enumerate(stretch.contact, 1) if wall]
+    limit = [f"{'+' if stretch.tilt > 0 else '−'}ψ*"] if stretch.tilt else []
+    return f"{' '.join(touching + limit) or 'free'} {stretch.share:.0%}"

@@ -1,0 +1,1 @@
+"""Runs: the engines, what a run gives, and its files."""

@@ -1,0 +1,317 @@
+"""What a run lacks and its other columns determine: a tool records what it likes, the viewer draws more.
+
+Two tables of formulas. Those of `ROW_BY_ROW` are exact, so what one gives may go into the next. Those of
+`ALONG_THE_HOLE` integrate or difference over the rows: they are as good as the rows are close together, and what they
+give goes nowhere else, as a hundredth of a degree in ⟨Θ⟩_i is tens of newtons at the bit.
+"""
+
+from collections.abc import Callable
+from math import floor, log10
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..case.case import Case
+from ..core.beam import Beam
+from ..core.modes import Loads, Modes
+from ..core.quantities import BY_NAME
+from ..core.system import scale
+from ..errors import InputError
+from .trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+INDISPENSABLE = ("bit_inclination", "average_inclination", "stabilizer_force")  # without them there is no BHA to draw
+FORCE_ROUNDING = 1e-9  # of F*, millinewtons: far above what the rounding of a file of twelve digits leaves of a balance
+RATE_DECIMALS = 7  # of m/s: the rest is rounding of lengths and times
+AT_LIMIT = 1e-4  # of ψ*: a tilt this close to its limit is at it, in a file of six digits
+
+
+def complete(run: Trajectory) -> Trajectory:
+    """Add the columns that a run lacks and that its other columns and its case determine.
+
+    Parameters
+    ----------
+    run
+        The run, with its case and drilled_length, which must not decrease.
+
+    Returns
+    -------
+    Trajectory
+        The columns of `run` as they are, then the new ones. What is neither there nor determined stays missing.
+
+    Raises
+    ------
+    InputError
+        If the run lacks its case, drilled_length, or one of the `INDISPENSABLE` that nothing determines.
+    """
+    known = Known(run, case_of(run))
+    while known.add(ROW_BY_ROW):
+        pass
+    known.add(ALONG_THE_HOLE)
+    completed = Trajectory(known.columns, run.case)
+    for name in INDISPENSABLE:
+        completed.stack(name)  # raises if it is not there
+    return completed
+
+
+def case_of(run: Trajectory) -> Case:
+    """The case of a run; `InputError` if it has none."""
+    if run.case is None:
+        raise InputError("the run must have its case, got none: give it with --case or --fmu")
+    return run.case
+
+
+class Known:
+    """The columns known so far, by the names of variables: (rows,), or (rows, n) or (rows, n − 1) by stabilizer."""
+
+    def __init__(self, run: Trajectory, case: Case) -> None:
+        self.columns, self.rows = dict(run.columns), len(run)
+        self.case, self.scaled = case, scale(case.bha, case.bit)
+        self.beam = Beam(self.scaled)
+        self.length, self.force = case.bha.length_scale, case.bha.force_scale  # ℓ₁, F*
+
+    def __contains__(self, name: str) -> bool:
+        return all(scalar in self.columns for scalar in self._scalars(name))
+
+    def __getitem__(self, name: str) -> Array:
+        values = [self.columns[scalar] for scalar in self._scalars(name)]
+        if name == "time" or BY_NAME[name].size == "1":
+            return values[0]
+        return np.column_stack(values) if values else np.empty((self.rows, 0))
+
+    def _scalars(self, name: str) -> list[str]:
+        return [name] if name == "time" else BY_NAME[name].names(len(self.scaled.s))
+
+    def add(self, formulas: "tuple[Formula, ...]") -> bool:
+        """Add what formulas give that is not there, from what is; whether that was anything."""
+        before = len(self.columns)
+        for formula in formulas:
+            if formula.gives not in self and all(name in self for name in formula.needs):
+                values = formula.values(self)
+                if values is not None:
+                    for scalar, column in zip(self._scalars(formula.gives), np.atleast_2d(values.T), strict=True):
+                        self.columns.setdefault(scalar, column)
+        return len(self.columns) > before
+
+
+class Formula(NamedTuple):
+    """How a variable follows from others; `values` gives None where those of this run do not determine it."""
+
+    gives: str
+    needs: tuple[str, ...]
+    values: Callable[[Known], Array | None]
+
+
+# Row by row. The core's formulas of the beam are plain arithmetic: they take columns for floats.
+
+
+def eta_pi(known: Known) -> Array:
+    """ηΠ = η (Π F*)/F*, (3) and (9)."""
+    return known.case.bit.lateral_steering_resistance * known["active_weight_on_bit"] / known.force
+
+
+def active_weight_on_bit(known: Known) -> Array:
+    """Π F*, (3) and (9)."""
+    return known["eta_pi"] * known.force / known.case.bit.lateral_steering_resistance
+
+
+def bit_inclination(known: Known) -> Array:
+    """θ = Θ + ψ, (16)."""
+    return known["borehole_inclination"] + known["bit_tilt"]
+
+
+def borehole_inclination(known: Known) -> Array:
+    """Θ = θ − ψ, (16)."""
+    return known["bit_inclination"] - known["bit_tilt"]
+
+
+def bit_tilt(known: Known) -> Array:
+    """ψ = θ − Θ, (16)."""
+    return known["bit_inclination"] - known["borehole_inclination"]
+
+
+def bit_tilt_from_force(known: Known) -> Array:
+    """ψ = clip(F_0/(ηΠ), −ψ*, ψ*), (10) and (11)."""
+    psi_star = known.scaled.psi_star
+    return np.clip(known["bit_lateral_force"] / known.force / known["eta_pi"], -psi_star, psi_star)
+
+
+def bit_tilt_saturation(known: Known) -> Array:
+    """The side on which ψ is at its limit ±ψ*, (11)."""
+    psi = known["bit_tilt"]
+    return np.where(np.abs(psi) >= (1 - AT_LIMIT) * known.scaled.psi_star, np.sign(psi), 0.0)
+
+
+def loads(known: Known, rss_force: Any) -> Loads:
+    """What bends the BHA besides the contacts, in columns: e_i = Σ_{k≤i} λ_k (⟨Θ⟩_k − θ), F_RSS and sin⟨Θ⟩_1."""
+    averages: Any = known["average_inclination"]
+    turns = (averages - known["bit_inclination"][:, None]) * known.scaled.lambda_
+    return Loads(list(np.cumsum(turns, axis=1).T), rss_force / known.force, np.sin(averages[:, 0]))
+
+
+def contacts(known: Known) -> Any:
+    """F_1 … F_{n−1}, in columns."""
+    return list(known["stabilizer_force"].T / known.force)
+
+
+def bit_lateral_force(known: Known, rss_force: Any) -> Any:
+    """F_0 under an RSS force, (14)."""
+    at = loads(known, rss_force)
+    return known.force * known.beam.bit_force(at.e[-1], contacts(known), at.F_rss, at.sin_Theta_1)
+
+
+def bit_moment(known: Known, rss_force: Any) -> Any:
+    """M_0 = −M under an RSS force, (17)."""
+    at = loads(known, rss_force)
+    return -known.force * known.length * known.beam.bit_moment(at.e[-1], contacts(known), at.F_rss, at.sin_Theta_1)
+
+
+def rss_force_from_force(known: Known) -> Array | None:
+    """F_RSS from the balance (14) of forces at the bit."""
+    rest = known["bit_lateral_force"] - bit_lateral_force(known, 0.0)
+    return rounded_force(known, rest, known.beam.F0_rss)
+
+
+def rss_force_from_moment(known: Known) -> Array | None:
+    """F_RSS from the balance (17) of moments at the bit."""
+    rest = known["bit_moment"] - bit_moment(known, 0.0)
+    return rounded_force(known, rest, -known.length * known.beam.M_rss)
+
+
+def rounded_force(known: Known, rest: Array, per_force: float) -> Array | None:
+    """The RSS force that a balance leaves, rid of rounding; None where the pads are at a support that bears it all."""
+    if per_force == 0.0:
+        return None
+    decimals = -floor(log10(FORCE_ROUNDING * known.force))
+    return np.round(rest / per_force, decimals)
+
+
+def stabilizer_force(known: Known) -> Array:
+    """F_i from the contacts that satisfy (7) and (21)."""
+    modes, columns = Modes(known.beam, known.scaled.y_star), loads(known, known["rss_force"])
+    contact = (0,) * len(known.scaled.y_star)
+    values = np.empty((known.rows, len(contact)))
+    for k, (*e, F_rss, sine) in enumerate(np.column_stack((*columns.e, columns.F_rss, columns.sin_Theta_1)).tolist()):
+        at = Loads(e, F_rss, sine)
+        mode = modes.settle(at, contact)
+        contact, values[k] = mode.contact, [row(at) for row in mode.F]
+    return known.force * values
+
+
+def stabilizer_deflection(known: Known) -> Array:
+    """δ = q̃ + K⁻¹F, (21)."""
+    at = loads(known, known["rss_force"])
+    q_tilde = known.beam.q_tilde(at.e, at.F_rss, at.sin_Theta_1)
+    delta: Array = np.column_stack(q_tilde) + known["stabilizer_force"] / known.force @ np.array(known.beam.K_inv)
+    return known.length * delta
+
+
+# Along the hole: the existing one and then the rows, the inclination linear in between.
+
+
+class Hole:
+    """Stations of the hole; where the inclination jumps there are two at one length.
+
+    Attributes
+    ----------
+    length, inclination
+        m from the start of the run, negative in the existing hole; rad.
+    start
+        Which station is the bit at the start of the run; the rows follow it.
+    """
+
+    def __init__(self, known: Known) -> None:
+        survey = known.case.survey
+        existing = np.array(survey.measured_depth) - survey.measured_depth[-1]
+        above = existing[0] - known.case.bha.stabilizer_positions[-1]  # straight above the first station
+        self.length = np.concatenate(([above], existing, known["drilled_length"]))
+        self.inclination = np.concatenate(
+            (survey.inclination[:1], survey.inclination, known["borehole_inclination"]), dtype=np.float64
+        )
+        self.start = existing.size
+
+    def inclination_at(self, length: Array) -> Array:
+        """Θ at given lengths; where it jumps, after the jump."""
+        return np.interp(length, self.length, self.inclination)
+
+    def lateral_at(self, length: Array) -> Array:
+        """Y = ∫ Θ ds at given lengths."""
+        pieces = np.diff(self.length) * (self.inclination[1:] + self.inclination[:-1]) / 2
+        station = np.searchsorted(self.length, length, side="right") - 1
+        mean = (self.inclination[station] + self.inclination_at(length)) / 2
+        return np.append(0.0, np.cumsum(pieces))[station] + (length - self.length[station]) * mean
+
+
+def path(length: Array, inclination: Array) -> Array:
+    """Positions (x, z) of the stations of a hole, (N, 2), the first one at the origin.
+
+    The inclination (N,) is linear in length (N,) in between, so each piece is an arc of a circle: exact.
+    """
+    mean = (inclination[1:] + inclination[:-1]) / 2
+    chord = np.diff(length) * np.sinc(np.diff(inclination) / (2 * np.pi))
+    pieces = chord[:, None] * np.column_stack((np.sin(mean), np.cos(mean)))
+    return np.concatenate((np.zeros((1, 2)), np.cumsum(pieces, axis=0)))
+
+
+def drilled(known: Known) -> Array:
+    """Positions (x, z) of the bit, (rows, 2), from where the run starts."""
+    hole = Hole(known)
+    return path(hole.length[hole.start :], hole.inclination[hole.start :])[1:]
+
+
+def average_inclination(known: Known) -> Array:
+    """⟨Θ⟩_i = (Y(ξ−s_{i−1}) − Y(ξ−s_i))/λ_i, (6)."""
+    behind = np.append(0.0, known.case.bha.stabilizer_positions)
+    lateral = Hole(known).lateral_at(known["drilled_length"][:, None] - behind)
+    return -np.diff(lateral, axis=1) / np.diff(behind)
+
+
+def borehole_curvature(known: Known) -> Array:
+    """Change of Θ over the last ℓ₁, per length."""
+    behind = Hole(known).inclination_at(known["drilled_length"] - known.length)
+    return (known["borehole_inclination"] - behind) / known.length
+
+
+def rate_of_penetration(known: Known) -> Array | None:
+    """Drilled length per time from each row to the next; None if no time passes.
+
+    A row that repeats its time, and the last one, have the rate of their neighbour.
+    """
+    time = np.diff(known["time"])
+    pieces = np.flatnonzero(time > 0.0)
+    if not pieces.size:
+        return None
+    rates = np.round(np.diff(known["drilled_length"])[pieces] / time[pieces], RATE_DECIMALS)
+    piece = np.searchsorted(pieces, np.arange(known.rows))
+    return rates[np.minimum(piece, pieces.size - 1)]
+
+
+FREE = ("bit_inclination", "average_inclination")  # with the RSS force, the loads
+HELD = (*FREE, "stabilizer_force")
+
+ROW_BY_ROW = (
+    Formula("eta_pi", ("active_weight_on_bit",), eta_pi),
+    Formula("active_weight_on_bit", ("eta_pi",), active_weight_on_bit),
+    Formula("bit_inclination", ("borehole_inclination", "bit_tilt"), bit_inclination),
+    Formula("borehole_inclination", ("bit_inclination", "bit_tilt"), borehole_inclination),
+    Formula("bit_tilt", ("bit_inclination", "borehole_inclination"), bit_tilt),
+    Formula("bit_tilt", ("bit_lateral_force", "eta_pi"), bit_tilt_from_force),
+    Formula("bit_tilt_saturation", ("bit_tilt",), bit_tilt_saturation),
+    Formula("rss_force", (*HELD, "bit_lateral_force"), rss_force_from_force),
+    Formula("rss_force", (*HELD, "bit_moment"), rss_force_from_moment),
+    Formula("stabilizer_force", (*FREE, "rss_force"), stabilizer_force),
+    Formula("stabilizer_contact", ("stabilizer_force",), lambda k: np.sign(k["stabilizer_force"])),  # (7)
+    Formula("stabilizer_deflection", (*HELD, "rss_force"), stabilizer_deflection),
+    Formula("bit_lateral_force", (*HELD, "rss_force"), lambda k: bit_lateral_force(k, k["rss_force"])),
+    Formula("bit_moment", (*HELD, "rss_force"), lambda k: bit_moment(k, k["rss_force"])),
+)
+
+ALONG_THE_HOLE = (
+    Formula("average_inclination", ("borehole_inclination",), average_inclination),
+    Formula("borehole_curvature", ("borehole_inclination",), borehole_curvature),
+    Formula("displacement", ("borehole_inclination",), lambda k: drilled(k)[:, 0]),
+    Formula("true_vertical_depth", ("borehole_inclination",), lambda k: drilled(k)[:, 1]),
+    Formula("rate_of_penetration", ("time",), rate_of_penetration),
+)

@@ -1,0 +1,189 @@
+"""What a run gives: columns over the drilled length, and the files that hold them with their case.
+
+A CSV file is read and written with the standard library alone; its case stands beside it (run.csv, run.case.toml).
+A Parquet file, with the extra [parquet], holds its case in its metadata.
+
+Files of other tools have our columns under longer names: with the path of the component before (OMSimulator and fmpy,
+model.root.borehole.bit_tilt) or what the variable is behind (libcosim up to 0.9, bit_tilt [6 real output]).
+"""
+
+import re
+from csv import reader
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..case.case import Case
+from ..case.file import dump_case, load_case, parse_case, read_stopped
+from ..core.columns import read_columns
+from ..core.quantities import BY_NAME, INPUTS, OUTPUTS
+from ..errors import InputError
+from ..replacing import replacing
+from .trajectory import Trajectory, _variable
+
+SUFFIXES = (".csv", ".parquet")
+CASE_KEY = b"boreprop.case"
+
+
+def write_trajectory(trajectory: Trajectory, path: str | Path) -> None:
+    """Write a run, and if it is known its case, with why the run stopped if it did, to a .csv or .parquet file.
+
+    Nothing of that name changes before everything is written.
+
+    Raises
+    ------
+    InputError
+        If `path` ends in neither, or what writes it is not installed.
+    OSError
+        If the file cannot be written.
+    """
+    path = Path(path)
+    write = {".csv": _write_csv, ".parquet": _write_parquet}.get(path.suffix)
+    if write is None:
+        raise InputError(f"{path}: must end in {' or '.join(SUFFIXES)}, got {path.suffix!r}")
+    write(trajectory, path)
+
+
+def read_trajectory(path: str | Path, case: Case | None = None) -> Trajectory:
+    """Read a run written by `write_trajectory` or by any FMI tool.
+
+    Columns that are not in the table of variables are left out; of those that are, only drilled_length must be there.
+    In a file of a system, those of the component that has drilled_length are read. Several may have it, as an input
+    say: then the one that has every output that the others have.
+
+    Parameters
+    ----------
+    path
+        A .csv or .parquet file.
+    case
+        The case that was run. None: the one that stands beside or in the file, if there is one.
+
+    Raises
+    ------
+    InputError, TableError
+        If the file cannot be read, drilled_length is missing or that of several components, a row is ragged, a value is
+        not a finite number, or the case has another number of stabilizers.
+    """
+    path = Path(path)
+    read = {".csv": _read_csv, ".parquet": _read_parquet}.get(path.suffix)
+    if read is None:
+        raise InputError(f"{path}: must end in {' or '.join(SUFFIXES)}, got {path.suffix!r}")
+    trajectory = read(path, case)
+    if not len(trajectory):
+        raise InputError(f"{path}: must have at least one row, got none")
+    found = Trajectory(trajectory.columns).n
+    if found not in (0, trajectory.n):
+        raise InputError(f"{path}: average_inclination: must have {trajectory.n} columns like its case, got {found}")
+    return trajectory
+
+
+def case_path(path: Path) -> Path:
+    """Where the case of a CSV file is: run.case.toml beside run.csv."""
+    return path.with_suffix(".case.toml")
+
+
+IO_NAMES = {variable.name for variable in INPUTS + OUTPUTS}
+OUTPUT_NAMES = {variable.name for variable in OUTPUTS}
+# component.name [reference type causality]
+HEADING = re.compile(r"(?:(?P<component>.+)\.)?(?P<name>[^.\s]+)(?: \[\d+ [\w ]+\])?")
+
+
+def _ours(path: Path, headings: list[str]) -> dict[str, str]:
+    """Headings in the file of the time and of one borehole's inputs and outputs, by their scalar names."""
+    components: dict[str, dict[str, str]] = {}
+    for heading in headings:
+        match = HEADING.fullmatch(heading)
+        if match and _variable(match["name"]) in IO_NAMES:
+            components.setdefault(match["component"] or "", {}).setdefault(match["name"], heading)
+    drilling = [names for names in components.values() if "drilled_length" in names]
+    if not drilling:
+        raise InputError(f"{path}: must have a column 'drilled_length', got {headings}")
+    outputs = [{name for name in names if _variable(name) in OUTPUT_NAMES} for names in drilling]
+    ours = [names for names, own in zip(drilling, outputs, strict=True) if own >= set().union(*outputs)]
+    if len(ours) != 1:
+        found = ", ".join(names["drilled_length"] for names in drilling)
+        raise InputError(f"{path}: must have drilled_length of one borehole, got {found}")
+    times = [heading for heading in headings if heading.lower() == "time"]
+    return dict(zip(("time",), times, strict=False)) | ours[0]
+
+
+def _typed(trajectory: Trajectory) -> dict[str, NDArray[Any]]:
+    """The columns, those of FMI's Integer variables as such."""
+    integers = {name for name in trajectory.columns if (v := BY_NAME.get(_variable(name))) and v.kind == "Integer"}
+    return {k: v.astype(np.int32) if k in integers else v for k, v in trajectory.columns.items()}
+
+
+def _write_csv(trajectory: Trajectory, path: Path) -> None:
+    columns = _typed(trajectory)
+    # repr is the shortest text that reads back as the same number
+    rows = zip(*(map(repr, column.tolist()) for column in columns.values()), strict=True)
+    with replacing(path) as draft:
+        with open(draft, "w", encoding="utf-8", newline="\n") as file:
+            file.write(",".join(columns) + "\n")
+            file.writelines(",".join(row) + "\n" for row in rows)
+        if trajectory.case is None:
+            case_path(path).unlink(missing_ok=True)  # of a run that is overwritten
+        else:
+            with replacing(case_path(path)) as case_draft:
+                case_draft.write_text(dump_case(trajectory.case, trajectory.stopped), encoding="utf-8")
+
+
+def _read_csv(path: Path, case: Case | None) -> Trajectory:
+    read_columns(path, ())  # so the file is sound, and the next lines can be short
+    with open(path, newline="", encoding="utf-8-sig") as file:
+        headings = [heading.strip() for heading in next(filter(None, reader(file)), [])]
+    ours = _ours(path, headings)
+    columns = {name: np.array(c) for name, c in zip(ours, read_columns(path, tuple(ours.values())), strict=True)}
+    own = case_path(path)
+    if not own.exists():
+        return Trajectory(columns, case)
+    stopped = read_stopped(own.read_text("utf-8-sig", errors="replace"))
+    return Trajectory(columns, load_case(own) if case is None else case, stopped)
+
+
+def _write_parquet(trajectory: Trajectory, path: Path) -> None:
+    pyarrow, parquet = _pyarrow(path)
+    metadata = {} if trajectory.case is None else {CASE_KEY: dump_case(trajectory.case, trajectory.stopped)}
+    with replacing(path) as draft:
+        parquet.write_table(pyarrow.table(_typed(trajectory), metadata=metadata), draft)
+
+
+def _read_parquet(path: Path, case: Case | None) -> Trajectory:
+    pyarrow, parquet = _pyarrow(path)
+    try:
+        with parquet.ParquetFile(path) as file:
+            ours = _ours(path, file.schema_arrow.names)
+            table, metadata = file.read(columns=list(ours.values())), file.schema_arrow.metadata or {}
+    except (OSError, pyarrow.ArrowException) as error:
+        raise InputError(f"{path}: must be a readable Parquet file, got: {error}") from error
+    columns = {name: _numbers(path, name, table.column(heading)) for name, heading in ours.items()}
+    if CASE_KEY not in metadata:
+        return Trajectory(columns, case)
+    own = metadata[CASE_KEY].decode()
+    return Trajectory(columns, parse_case(own, path) if case is None else case, read_stopped(own))
+
+
+def _numbers(path: Path, name: str, column: Any) -> NDArray[np.float64]:
+    """A Parquet column as finite floats."""
+    try:
+        values = np.asarray(column.to_numpy(), dtype=np.float64)
+    except (ValueError, TypeError) as error:
+        raise InputError(f"{path}: {name}: must hold numbers, got {column.type}") from error
+    bad = np.flatnonzero(~np.isfinite(values))
+    if bad.size:
+        raise InputError(f"{path}: {name}: row {bad[0] + 1}: must be a finite number, got {values[bad[0]]}")
+    return values
+
+
+def _pyarrow(path: Path) -> tuple[Any, Any]:
+    """The two modules; loaded here, as they take longer to load than a short run to compute."""
+    try:
+        import pyarrow
+        import pyarrow.parquet
+    except ModuleNotFoundError as error:
+        raise InputError(
+            f"{path}: must be .csv unless pyarrow is installed: pip install 'boreprop[parquet]'"
+        ) from error
+    return pyarrow, pyarrow.parquet

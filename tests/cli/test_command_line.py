@@ -1,0 +1,232 @@
+"""The command `boreprop`, as a user meets it: its own process, its exit status, its one line of error."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from boreprop.case.file import load_case
+from boreprop.cli import console
+from boreprop.core.errors import ParameterError, TableError
+from boreprop.errors import InputError, RootsNotFound, Stopped
+from boreprop.run.results import read_trajectory
+from conftest import Command, assert_refused
+from places import ROOT
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "named"),
+    [
+        pytest.param("= 0.6", "= 0.6\nrss_strength = 5", ("bha.rss_strength", "known key", "5"), id="unknown key"),
+        pytest.param(
+            "flexural_stiffness    = 7.2e6", "", ("bha.flexural_stiffness", "must be given"), id="missing key"
+        ),
+        pytest.param(
+            "= 1612.469", '= "heavy"', ("drilling.active_weight_on_bit", "number", "'heavy'"), id="wrong type"
+        ),
+        pytest.param(
+            "[3.66, 7.32]",
+            "[7.32, 3.66]",
+            ("bha.stabilizer_positions", "increase", "3.66"),
+            id="positions not increasing",
+        ),
+        pytest.param(
+            "[3.66e-3]", "[1e-3, 2e-3]", ("bha.stabilizer_clearances", "here 1", "(0.001, 0.002)"), id="clearance count"
+        ),
+        pytest.param("= 7.2e6", "= -7.2e6", ("bha.flexural_stiffness", "> 0", "-7200000.0"), id="negative stiffness"),
+        pytest.param(
+            "[0.0, 3.66, 7.32]", "[0, 5, 4]", ("hole.measured_depth", "increase", "4.0"), id="survey not monotonic"
+        ),
+        pytest.param("= 1080.0", "= nan", ("bha.distributed_weight", "finite", "nan"), id="NaN"),
+        pytest.param("[bit]", "[bit", ("TOML", "line"), id="no TOML"),
+    ],
+)
+def test_a_wrong_case_file(
+    command: Command, tmp_path: Path, paper_text: str, old: str, new: str, named: tuple[str, ...]
+) -> None:
+    assert paper_text.count(old) == 1
+    (tmp_path / "wrong.toml").write_text(paper_text.replace(old, new), encoding="utf-8")
+    result = command("boreprop", "simulate", "wrong.toml", "--output", "run.csv")
+    assert_refused(result, "wrong.toml: ", *named)
+    assert [file.name for file in tmp_path.iterdir()] == ["wrong.toml"]
+
+
+SURVEY = '[hole]\nsurvey = "data.csv"\n'
+SCHEDULE = '[hole]\nmeasured_depth = [0]\ninclination_deg = [0]\n[rss]\nschedule = "data.csv"\n'
+
+
+@pytest.mark.parametrize(
+    ("tables", "content", "named"),
+    [
+        pytest.param(
+            SURVEY,
+            "measured_depth,inclination_deg\n0,0\n9,1\n8,2\n",
+            ("measured_depth", "increase", "8.0"),
+            id="not monotonic",
+        ),
+        pytest.param(SURVEY, "measured_depth,inclination_deg\n0,0\n9\n", (":3", "2 values", "got 1"), id="ragged row"),
+        pytest.param(SCHEDULE, "drilled_length,force\n0,0\n9,NaN\n", (":3", "force", "finite", "'NaN'"), id="NaN"),
+        pytest.param(SCHEDULE, None, ("readable", "No such file"), id="no file"),
+    ],
+)
+def test_a_wrong_file_that_the_case_file_names(
+    command: Command, tmp_path: Path, paper_text: str, tables: str, content: str | None, named: tuple[str, ...]
+) -> None:
+    (tmp_path / "case.toml").write_text(paper_text.partition("[hole]")[0] + tables, encoding="utf-8")
+    if content is not None:
+        (tmp_path / "data.csv").write_text(content)
+    before = set(tmp_path.iterdir())
+    assert_refused(command("boreprop", "simulate", "case.toml", "--output", "run.csv"), "data.csv", *named)
+    assert set(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        (["simulate", "CASE", "--output", "run.txt"], ("run.txt", ".csv or .parquet", "'.txt'")),
+        (["simulate", "CASE", "--output", "nowhere/run.csv"], ("nowhere/run.csv", "directory", "'nowhere'")),
+        (["simulate", "nothing.toml", "--output", "run.csv"], ("nothing.toml", "readable", "No such file")),
+        (["simulate", "CASE", "--output", "run.csv", "--length", "-5"], ("--length", "> 0", "'-5'")),
+        (
+            ["simulate", "CASE", "--output", "run.csv", "--sample-interval", "nan"],
+            ("--sample-interval", "> 0", "'nan'"),
+        ),
+        (["simulate", "CASE", "--output", "run.csv", "--colour"], ("--colour",)),
+    ],
+)
+def test_a_wrong_argument(
+    command: Command, tmp_path: Path, paper_case: Path, arguments: list[str], named: tuple[str, ...]
+) -> None:
+    result = command("boreprop", *(str(paper_case) if argument == "CASE" else argument for argument in arguments))
+    assert_refused(result, *named)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_run_does_not_overwrite_the_case_it_reads(command: Command, tmp_path: Path, paper_text: str) -> None:
+    (tmp_path / "paper.case.toml").write_text(paper_text)
+    assert_refused(
+        command("boreprop", "simulate", "paper.case.toml", "--output", "paper.csv"), "paper.csv", "case file"
+    )
+    assert (tmp_path / "paper.case.toml").read_text() == paper_text
+
+
+def test_simulate_writes_a_row_at_each_multiple_of_the_sample_interval(
+    command: Command, tmp_path: Path, paper_case: Path
+) -> None:
+    arguments = ["--length", "2", "--sample-interval", "0.3"]
+    for name in ("run.csv", "run.parquet"):
+        result = command("boreprop", "simulate", paper_case, "--output", name, *arguments)
+        assert (result.returncode, result.stderr) == (0, "")
+        assert result.stdout == f"{name}: 7 rows over 2 m\n"
+    run = read_trajectory(tmp_path / "run.csv")
+    np.testing.assert_array_equal(run["drilled_length"], [0.3 * k for k in range(7)])
+    assert run.case is not None
+    assert run.case.length == 2.0
+    assert run.case.bha == load_case(paper_case).bha
+    parquet = read_trajectory(tmp_path / "run.parquet")
+    assert parquet.case == run.case
+    for name, column in run.columns.items():
+        np.testing.assert_array_equal(parquet[name], column)
+    assert {file.name for file in tmp_path.iterdir()} == {"run.csv", "run.case.toml", "run.parquet"}
+
+
+def test_simulate_loads_nothing_slow_that_it_does_not_use(tmp_path: Path, paper_case: Path) -> None:
+    arguments = ["simulate", str(paper_case), "--output", str(tmp_path / "run.csv"), "--length", "1"]
+    command = [sys.executable, "-X", "importtime", "-m", "boreprop.cli.app", *arguments]
+    result = subprocess.run(command, capture_output=True, text=True, check=True)
+    loaded = {line.rpartition("|")[2].strip().partition(".")[0] for line in result.stderr.splitlines()}
+    assert "numpy" in loaded
+    assert not loaded & {"pandas", "scipy", "matplotlib", "pyarrow", "rich", "fmpy"}
+
+
+def test_the_version(command: Command) -> None:
+    result = command("boreprop", "--version")
+    assert (result.returncode, result.stdout.split(".")[0].isdigit()) == (0, True)
+
+
+def test_figures_refuses_a_directory_that_is_a_file(command: Command, tmp_path: Path) -> None:
+    (tmp_path / "out").write_text("mine")
+    assert_refused(command("boreprop", "figures", "out"), "out", "exists")
+    assert (tmp_path / "out").read_text() == "mine"
+
+
+@pytest.mark.parametrize(("package", "extra"), [("boreprop", "cli"), ("boreprop_fmu", "fmu"), ("boreprop_viz", "viz")])
+def test_without_its_extra_a_command_says_what_to_install(package: str, extra: str) -> None:
+    folders = [str(ROOT / folder) for folder in ("model", "fmu_build", "viz")]
+    program = f"import sys; sys.path[:0] = {folders}; from {package}.app import main; main()"
+    bare = [sys.executable, "-S", "-c", program]  # -S: no site-packages, so the standard library alone
+    assert_refused(subprocess.run(bare, capture_output=True, text=True), "typer", f"pip install 'boreprop[{extra}]'")
+
+
+def run_raising(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
+    app = console.new_app("An application with one command.")
+
+    @app.command()
+    def fails() -> None:
+        raise error
+
+    monkeypatch.setattr(sys, "argv", ["fails"])
+    console.run(app)
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        InputError("x: must be y, got z"),
+        ParameterError("x", "must be y", 5),
+        TableError("x: must be y, got z"),
+        RootsNotFound("x: 2 zeros more were counted than found"),
+        FileNotFoundError(2, "no such file", "x"),
+        ModuleNotFoundError("No module named 'rerun.x'", name="rerun.x"),
+        InputError("x: must be y,\ngot z"),
+    ],
+)
+def test_whatever_a_user_can_mend_is_one_line(
+    error: Exception, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        run_raising(error, monkeypatch)
+    shown = capsys.readouterr()
+    assert (ended.value.code, shown.out, shown.err.count("\n")) == (2, "", 1)
+    assert "x" in shown.err
+
+
+def test_a_run_that_stops_is_no_bad_input(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        run_raising(Stopped("after 5 m: x"), monkeypatch)
+    assert (ended.value.code, *capsys.readouterr()) == (3, "", "error: after 5 m: x\n")
+
+
+@pytest.mark.parametrize(
+    "error", [ValueError("a bug"), RuntimeError("a bug"), ModuleNotFoundError("a bug", name="bug")]
+)
+def test_a_bug_is_not_dressed_up_as_bad_input(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(type(error), match="a bug"):
+        run_raising(error, monkeypatch)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs a pseudo-terminal")
+def test_ctrl_c_ends_a_run_with_130_and_no_file(tmp_path: Path, paper_case: Path) -> None:
+    import pty
+
+    terminal, stderr = pty.openpty()
+    arguments = ["simulate", str(paper_case), "--output", "run.csv", "--length", "1e6", "--sample-interval", "100"]
+    run = subprocess.Popen(
+        [sys.executable, "-m", "boreprop.cli.app", *arguments],
+        cwd=tmp_path,
+        stderr=stderr,
+        env={**os.environ, "TERM": "xterm"},
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+    os.close(stderr)
+    shown = b""
+    while b"drilling" not in shown:  # the progress bar: it is under way
+        shown += os.read(terminal, 1000)
+    run.send_signal(signal.SIGINT)
+    assert run.wait(timeout=60) == 130
+    os.close(terminal)
+    assert not list(tmp_path.iterdir())

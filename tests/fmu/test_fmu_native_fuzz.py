@@ -1,0 +1,90 @@
+"""The native FMU under sanitizers: random lives of it, and the tests of its flavour.
+
+$BOREPROP_FUZZ lives are led, 30 000 if it is not set; a million take some minutes:
+BOREPROP_FUZZ=1000000 pytest tests/test_fmu_native_fuzz.py -k live
+"""
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from test_fmu_c_host import COMPILER
+
+from boreprop.case.case import Case
+from boreprop_fmu.pack.build import build_fmu
+from places import HOSTS, TESTS
+
+FOLDER = Path(__file__).parent
+LIVES = int(os.environ.get("BOREPROP_FUZZ", "30000"))
+SEED = 1
+SANITIZERS = (
+    "-fsanitize=address,undefined,float-cast-overflow",
+    "-fno-sanitize-recover=all",
+    "-g",
+    "-O1",
+    "-fno-inline",
+)
+WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wno-sign-conversion", "-Werror")
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(sys.platform != "linux" or COMPILER is None, reason="no C compiler of Linux"),
+]
+
+
+@pytest.fixture(scope="module")
+def asan(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The library of the address sanitizer."""
+    program = tmp_path_factory.mktemp("sanitizers") / "nothing"
+    source = program.with_suffix(".c")
+    source.write_text("int main(void) { return 0; }\n")
+    if subprocess.run([str(COMPILER), *SANITIZERS, source, "-o", program], capture_output=True).returncode:
+        pytest.skip("this compiler has no sanitizers")
+    asked = [str(COMPILER), "-print-file-name=libasan.so"]
+    return Path(subprocess.run(asked, capture_output=True, text=True, check=True).stdout.strip())
+
+
+@pytest.mark.parametrize("stabilizers", [2, 5])
+def test_random_lives_of_an_instance_end_well(case: Case, stabilizers: int, asan: Path, tmp_path: Path) -> None:
+    positions = tuple(case.bha.stabilizer_positions[0] * i for i in range(1, stabilizers + 1))
+    bha = replace(case.bha, stabilizer_positions=positions, stabilizer_clearances=(3e-3,) * (stabilizers - 1))
+    with zipfile.ZipFile(
+        build_fmu(replace(case, bha=bha), tmp_path / "a.fmu", runtime="native", platforms=())
+    ) as archive:
+        archive.extractall(tmp_path)
+    program, sources = tmp_path / "fuzz", tmp_path / "sources"
+    command = [str(COMPILER), "-std=c99", *SANITIZERS, *WARNINGS, f"-I{sources}", str(HOSTS / "fuzz_native.c")]
+    subprocess.run([*command, "-o", program, "-lm"], check=True)
+    done = subprocess.run([program, str(SEED), str(LIVES // 2), tmp_path], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+def test_the_tests_of_the_native_flavour_pass_under_sanitizers(asan: Path) -> None:
+    """Leaks apart, of which Python has some: those of the FMU the test above sees."""
+    files = ("test_fmu.py", "test_fmu_trust.py", "test_fmu_native.py")
+    others = "command or builds or compile or binaries or leave"  # other compilers, other processes, memory
+    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "sanitized", "-p", "no:cacheprovider"]
+    done = subprocess.run(
+        [*command, "-k", f"native and not ({others})", *(FOLDER / name for name in files)],
+        cwd=FOLDER,
+        env={
+            **{name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")},
+            "CC": str(COMPILER),
+            "CFLAGS": shlex.join([*SANITIZERS, "-O0"]),
+            "LD_PRELOAD": str(asan),
+            "ASAN_OPTIONS": "detect_leaks=0",
+            "PYTHONPATH": os.pathsep.join(map(str, (TESTS, HOSTS))),
+        },
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert done.returncode == 0, done.stdout
+    [passed] = re.findall(r"(\d+) passed", done.stdout)
+    assert int(passed) > 50, done.stdout

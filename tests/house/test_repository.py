@@ -1,0 +1,67 @@
+"""The repository itself: what its files say of each other and of the machine they were written on."""
+
+import re
+import subprocess
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from places import ROOT
+
+PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+MACHINE = re.compile(
+    rb"(?<![\w.])/(?:home|media|mnt|opt|root|tmp|Users|work)/|\b[A-Z]:\\\w{2}|\.\./shared|(?:index|registry)[-_]url|find[-_]links"
+)
+
+
+def text(name: str) -> str:
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def files() -> list[Path]:
+    """Every file that is or would be committed."""
+    if not (ROOT / ".git").exists():
+        pytest.skip("not a git checkout")
+    listing = subprocess.run(
+        ["git", "-c", f"safe.directory={ROOT}", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
+        cwd=ROOT,
+        capture_output=True,
+        check=True,
+    ).stdout
+    paths = [ROOT / name for name in listing.decode().split("\0") if name]
+    return [path for path in paths if path.is_file()]
+
+
+def test_no_file_names_a_place_on_a_machine(files: list[Path]) -> None:
+    found = {
+        str(path.relative_to(ROOT)): [match.group() for match in MACHINE.finditer(path.read_bytes())] for path in files
+    }
+    assert not {name: matches for name, matches in found.items() if matches}
+
+
+def test_versions_agree() -> None:
+    version = re.escape(PYPROJECT["project"]["version"])
+    assert re.search(rf"^version: {version}$", text("CITATION.cff"), re.MULTILINE)
+    headings = re.findall(r"^## \[(.+?)\]", text("CHANGELOG.md"), re.MULTILINE)
+    assert re.fullmatch(version, next(heading for heading in headings if heading != "Unreleased"))
+
+
+def test_readme_gives_the_commands_of_make_demo() -> None:
+    recipe = text("Makefile").partition("\ndemo:")[2].partition("\n\n")[0]
+    commands = re.findall(r"\$\(BIN\)/(boreprop\S* .+)", recipe)
+    assert len(commands) >= 5
+    readme = text("README.md")
+    assert not [command for command in commands if command not in readme]
+
+
+def test_links_between_documents_lead_somewhere(files: list[Path]) -> None:
+    links = [
+        (document, target)
+        for document in files
+        if document.suffix == ".md"
+        for target in re.findall(r"\]\(([^)\s#]+)", document.read_text(encoding="utf-8"))
+        if "://" not in target
+    ]
+    assert not [(str(document), target) for document, target in links if not (document.parent / target).exists()]

@@ -1,0 +1,181 @@
+"""Runs in a notebook: what reaches the viewer's widget, and the example from top to bottom."""
+
+import re
+import subprocess
+import sys
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from typing import Any
+
+import nbformat
+import numpy as np
+import pytest
+import rerun_notebook
+from rerun.chunk import RrdReader
+
+from boreprop.case.case import Case
+from boreprop.core.survey import Survey
+from boreprop.errors import InputError
+from boreprop.run.simulate import simulate
+from boreprop.run.trajectory import Trajectory
+from boreprop_viz import show
+from places import EXAMPLES
+
+NOTEBOOK = EXAMPLES / "rippling.ipynb"
+LARGEST = 500_000  # bytes, of a notebook that is quick to open on a web page
+
+
+@pytest.fixture(scope="module")
+def run(case: Case) -> Trajectory:
+    return simulate(case, sample_interval=0.5, length=20.0)
+
+
+@pytest.fixture
+def sent(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[RrdReader]:
+    """What is sent to the widget of a viewer, as it is sent."""
+    pieces: list[RrdReader] = []
+
+    def keep(_: rerun_notebook.Viewer, data: bytes) -> None:
+        path = tmp_path / f"{len(pieces)}.rrd"
+        path.write_bytes(data)
+        pieces.append(RrdReader(path))
+
+    monkeypatch.setattr(rerun_notebook.Viewer, "send_rrd", keep)
+    return pieces
+
+
+def ticks(sent: list[RrdReader], entity: str) -> list[int]:
+    """The ticks of the timeline at which an entity has been sent something."""
+    chunks = [
+        chunk
+        for piece in sent
+        for recording in piece.recordings()
+        for chunk in piece.stream(store=recording).filter(content=entity, has_timeline="drilled_length_mm")
+    ]
+    return [tick for chunk in chunks for tick in chunk.to_record_batch().column("drilled_length_mm").to_pylist()]
+
+
+def millimetres(run: Trajectory) -> list[int]:
+    return [int(tick) for tick in np.rint(1000 * run["drilled_length"])]
+
+
+def test_every_row_of_a_run_reaches_the_widget(sent: list[RrdReader], run: Trajectory) -> None:
+    show(run)
+    assert ticks(sent, "/plots/inclination/bit_inclination") == millimetres(run)
+
+
+def test_several_runs_reach_one_widget_under_their_names(sent: list[RrdReader], run: Trajectory, case: Case) -> None:
+    other = simulate(case, sample_interval=0.7, length=28.0)
+    show({"fine": run, "coarse": other})
+    assert ticks(sent, "/plots/inclination/fine/bit_inclination") == millimetres(run)
+    assert ticks(sent, "/plots/inclination/coarse/bit_inclination") == millimetres(other)
+    assert len({store.recording_id for piece in sent for store in piece.recordings()}) == 1
+
+
+def test_runs_without_names_are_numbered(sent: list[RrdReader], run: Trajectory) -> None:
+    show(run, run)
+    for name in ("run_1", "run_2"):
+        assert ticks(sent, f"/plots/inclination/{name}/bit_inclination") == millimetres(run)
+
+
+def test_a_plan_reaches_the_widget(sent: list[RrdReader], run: Trajectory) -> None:
+    show(run, plan=Survey((0.0, 100.0), (0.0, 0.1)))
+    assert ticks(sent, "/plots/inclination/planned_inclination") == millimetres(run)
+
+
+def test_the_widget_gets_the_layout(sent: list[RrdReader], run: Trajectory) -> None:
+    show(run)
+    [layout] = {store.recording_id for piece in sent for store in piece.blueprints()}
+    assert layout
+
+
+def test_the_viewer_has_the_size_asked_for(run: Trajectory, monkeypatch: pytest.MonkeyPatch) -> None:
+    displayed: list[rerun_notebook.Viewer] = []
+    monkeypatch.setattr("rerun.notebook.Viewer.display", lambda viewer: displayed.append(viewer._viewer))
+    show(run)
+    show(run, width=900, height=500)
+    assert [(viewer._width, viewer._height) for viewer in displayed] == [("auto", 720), (900, 500)]
+
+
+@pytest.mark.parametrize(
+    ("runs", "got"), [((), "none"), (({},), "none"), (("run.csv",), "str"), (({"a": None},), "NoneType")]
+)
+def test_what_is_no_run_is_refused(runs: tuple[Any, ...], got: str) -> None:
+    with pytest.raises(InputError, match=f"must be given runs, or one mapping from names to runs, got {got}$"):
+        show(*runs)
+
+
+def test_nothing_is_shown_of_a_run_that_cannot_be_drawn(sent: list[RrdReader], run: Trajectory) -> None:
+    with pytest.raises(InputError, match="must have its case"):
+        show(Trajectory(run.columns))
+    assert not sent
+
+
+@pytest.mark.parametrize("package", ["rerun", "rerun_notebook"])
+def test_what_is_not_installed_is_named_with_its_extra(
+    run: Trajectory, package: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(InputError, match=rf"{package} must be installed .* 'boreprop\[notebook\]', got: "):
+        show(run)
+
+
+def test_importing_the_package_does_not_import_rerun() -> None:
+    code = "import sys; from boreprop_viz import show; print({'rerun', 'rerun_notebook', 'fmpy'} & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert (done.stdout.strip(), done.stderr) == ("set()", "")
+
+
+# The example
+
+
+def outputs(notebook: nbformat.NotebookNode) -> list[nbformat.NotebookNode]:
+    return [output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]
+
+
+def printed(notebook: nbformat.NotebookNode) -> list[str]:
+    return [output.text for output in outputs(notebook) if output.output_type == "stream"]
+
+
+def kinds(notebook: nbformat.NotebookNode) -> list[set[str]]:
+    """The MIME types of what is shown."""
+    return [set(output.data) for output in outputs(notebook) if "data" in output]
+
+
+@pytest.fixture(scope="module")
+def committed() -> nbformat.NotebookNode:
+    notebook: nbformat.NotebookNode = nbformat.read(NOTEBOOK, as_version=4)  # type: ignore[no-untyped-call]
+    return notebook
+
+
+def test_the_example_is_executed_from_top_to_bottom(committed: nbformat.NotebookNode) -> None:
+    counts = [cell.execution_count for cell in committed.cells if cell.cell_type == "code"]
+    assert counts == list(range(1, len(counts) + 1))
+    assert committed.metadata.kernelspec.name == "python3"
+
+
+def test_the_example_can_be_read_without_its_kernel(committed: nbformat.NotebookNode) -> None:
+    assert {"image/png", "text/plain"} in kinds(committed)
+    assert all(kind <= {"image/png", "text/plain"} for kind in kinds(committed))
+    assert "widgets" not in committed.metadata
+    assert NOTEBOOK.stat().st_size < LARGEST
+
+
+def test_the_pictures_that_the_example_refers_to_are_there(committed: nbformat.NotebookNode) -> None:
+    text = "\n".join(cell.source for cell in committed.cells if cell.cell_type == "markdown")
+    pictures = re.findall(r"!\[[^]]+\]\(([^)]+)\)", text)
+    assert pictures
+    assert all((EXAMPLES / picture).is_file() for picture in pictures)
+
+
+@pytest.mark.slow
+def test_the_example_runs_in_a_new_kernel_and_says_what_is_in_its_file(committed: nbformat.NotebookNode) -> None:
+    spec = spec_from_file_location("execute_notebook", EXAMPLES / "execute_notebook.py")
+    assert spec
+    assert spec.loader
+    tool = module_from_spec(spec)
+    spec.loader.exec_module(tool)
+    executed = tool.execute(NOTEBOOK)
+    assert printed(executed) == printed(committed)
+    assert kinds(executed) == kinds(committed)
+    assert executed.metadata == committed.metadata

@@ -1,0 +1,119 @@
+"""What the viewer draws, without a screen: a picture of every view."""
+
+import subprocess
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import rerun as rr
+import rerun.blueprint as rrb
+from PIL import Image
+from rerun.chunk import RrdReader
+from rerun.experimental import View
+
+from boreprop.case.case import Case
+from boreprop.run.simulate import simulate
+from boreprop_viz import picture
+from boreprop_viz.picture import SOFTWARE_DRIVERS, Viewer, viewer
+from boreprop_viz.record import record
+from boreprop_viz.sinks import PROGRAM
+from boreprop_viz.stream import TIMELINE
+from boreprop_viz.style import ORANGE
+
+LENGTH = 60.0
+SIZE = 960, 600
+BLANK = 1e-3  # of a picture: a line across it is three times that
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(
+        not SOFTWARE_DRIVERS, reason="no software Vulkan driver (Debian: mesa-vulkan-drivers and libvulkan1)"
+    ),
+]
+
+
+@pytest.fixture(scope="module")
+def recorded(case: Case, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The paper's case, far enough to ripple."""
+    path = tmp_path_factory.mktemp("render") / "run.rrd"
+    record(simulate(replace(case, length=LENGTH), sample_interval=0.1), save=path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def shown(recorded: Path) -> Iterator[Viewer]:
+    with viewer(recorded, *SIZE) as started:
+        yield started
+
+
+def drawn(view: View, image: Image.Image) -> float:
+    """Share of a view's picture that shows what is in it: colours, since ground, grid, axes and names are grey."""
+    pixels = np.asarray(image, dtype=int)
+    if view.view_class == "TextDocument":
+        return float(np.mean(pixels.max(axis=-1) > 128))
+    return float(np.mean(np.ptp(pixels, axis=-1) > 40))
+
+
+def test_every_view_draws_something_and_complains_of_nothing(shown: Viewer) -> None:
+    views = shown.views()
+    assert len(views) >= 4
+    for view in views:
+        assert drawn(view, shown.picture(view)) > BLANK, view.name
+        assert not shown.reports(view), view.name
+    assert not shown.warnings()
+
+
+def test_a_view_that_cannot_draw_complains(tmp_path: Path) -> None:
+    rec = rr.RecordingStream("broken")
+    layout = rrb.Blueprint(rrb.Tabs(rrb.TextDocumentView(origin="text"), rrb.Spatial2DView(origin="image")))
+    rec.save(tmp_path / "broken.rrd", default_blueprint=layout)
+    rec.log(
+        "image", rr.Image.from_fields(buffer=b"four", format=rr.components.ImageFormat(9, 9, channel_datatype="U8"))
+    )
+    rec.disconnect()
+    with viewer(tmp_path / "broken.rrd", *SIZE) as shown:
+        [view] = [view for view in shown.views() if view.view_class == "2D"]
+        shown.picture(view)
+        [report] = shown.reports(view)
+    assert report.severity == "error"
+    assert "got 4 bytes" in report.summary
+
+
+def test_a_view_without_its_data_is_blank(recorded: Path, tmp_path: Path) -> None:
+    """What is left of the run are the ticks of its timeline: grids, axes and names are drawn, and no more."""
+    reader, ticks, left = RrdReader(recorded), tmp_path / "ticks.rrd", tmp_path / "left.rrd"
+    [run] = reader.recordings()
+    rec = rr.RecordingStream(run.application_id, recording_id=run.recording_id)
+    rec.save(ticks)
+    for tick in (0, round(1000 * LENGTH)):
+        rec.set_time(TIMELINE, sequence=tick)
+        rec.log("nowhere", rr.Scalars(0.0))
+    rec.disconnect()
+    data = {chunk.entity_path for chunk in reader.stream() if not chunk.is_static}
+    data |= {chunk.entity_path for chunk in reader.stream().filter(components="TextDocument:text")}
+    drop = [argument for entity in data for argument in ("--drop-entity", entity)]
+    subprocess.run([PROGRAM, "rrd", "filter", *drop, recorded, ticks, "--output", left], check=True)
+    with viewer(left, *SIZE) as shown:
+        views = shown.views()
+        assert len(views) >= 4
+        for view in views:
+            assert drawn(view, shown.picture(view)) < BLANK, view.name
+
+
+def test_half_way_there_is_half_of_the_hole(shown: Viewer) -> None:
+    [section] = [view for view in shown.views() if view.name.startswith("Vertical section")]
+    orange = []
+    for length in (LENGTH / 2, LENGTH):
+        shown.seek(round(1000 * length))
+        pixels = np.asarray(shown.picture(section), dtype=int)
+        orange.append(np.count_nonzero(np.abs(pixels - ORANGE).max(axis=-1) < 40))
+    assert 0.3 < orange[0] / orange[1] < 0.6  # the BHA covers some of both
+
+
+def test_without_a_driver_the_viewer_says_what_it_needs(monkeypatch: pytest.MonkeyPatch, recorded: Path) -> None:
+    monkeypatch.setattr(picture, "SOFTWARE_DRIVERS", [Path("none.json")])
+    monkeypatch.setenv("WGPU_BACKEND", "vulkan")
+    with pytest.raises(RuntimeError, match=r"must find a Vulkan driver .* got exit status"), viewer(recorded):
+        pass

@@ -1,0 +1,158 @@
+"""What the viewer draws: results of any tool, and FMUs that drill while it draws."""
+
+import os
+import signal
+import subprocess
+import sys
+import sysconfig
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from boreprop.case.case import Case, Schedule
+from boreprop.core.quantities import OUTPUTS, scalar_names
+from boreprop.run.results import write_trajectory
+from boreprop.run.simulate import simulate
+from boreprop.run.trajectory import Trajectory
+from boreprop_fmu.pack.build import build_fmu
+from conftest import Command
+from rrd import read, stacked
+
+LIVE = """
+import sys
+from boreprop_fmu.host.drive import Run
+from boreprop_viz import source
+from boreprop_viz.record import record
+
+fmu, live, stored = sys.argv[1:]
+source.BATCH = 50
+record({"live": Run(fmu, step=0.25, stop=60.0)}, save=live)
+record({"stored": Run(fmu, step=0.25, stop=60.0).trajectory()}, save=stored)
+"""
+
+
+def test_a_run_is_drawn_alike_while_its_fmu_drills_and_afterwards(fmu: Path, tmp_path: Path) -> None:
+    live, stored = tmp_path / "live.rrd", tmp_path / "stored.rrd"
+    done = subprocess.run([sys.executable, "-c", LIVE, fmu, live, stored], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    for entity, component in (
+        ("vertical_section/drilled_hole", "LineStrips2D:strips"),
+        ("bit_frame/walls", "LineStrips2D:strips"),
+        ("bit_frame/tilt/bit_axis", "LineStrips2D:strips"),
+        ("plots/build_rate/build_rate", "Scalars:scalars"),
+        ("plots/ripple/ripple", "Scalars:scalars"),
+        ("modes/stabilizer_1", "StateChange:state"),
+    ):
+        now, then = read(live, entity, component), read(stored, entity, component)
+        assert list(now) == list(then)
+        for tick, values in then.items():
+            if component == "StateChange:state":
+                assert now[tick] == values
+            else:
+                np.testing.assert_allclose(now[tick], values, atol=1e-4)
+
+
+def test_the_command_drills_an_fmu_under_a_schedule(command: Command, fmu: Path, tmp_path: Path) -> None:
+    (tmp_path / "forces.csv").write_text("drilled_length,force\n0,1000\n2,-3000\n")
+    done = command(
+        "boreprop-view", fmu, "--schedule", "forces.csv", "--step", "0.5", "--stop", "4", "--save", "live.rrd"
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    shown = stacked(tmp_path / "live.rrd", "plots/rss_force/rss_force", "Scalars:scalars")[:, 0]
+    np.testing.assert_allclose(shown, [1.0] * 4 + [-3.0] * 5)
+
+
+def test_ctrl_c_ends_a_live_run_with_130_and_keeps_what_was_drilled(case: Case, tmp_path: Path) -> None:
+    fmu = build_fmu(replace(case, length=100_000.0), tmp_path / "long.fmu")
+    running = subprocess.Popen(
+        [Path(sysconfig.get_path("scripts"), "boreprop-view"), fmu, "--save", tmp_path / "live.rrd"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+    try:
+        deadline = time.monotonic() + 60.0
+        while not any(path.stat().st_size > 1_000_000 for path in tmp_path.glob(".*live.rrd")):
+            assert running.poll() is None
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+        os.kill(running.pid, signal.SIGINT)
+        printed, said = running.communicate(timeout=60.0)
+    finally:
+        running.kill()
+    assert (running.returncode, printed, said) == (130, b"", b"")
+    drilled = read(tmp_path / "live.rrd", "vertical_section/bit", "Points2D:positions")
+    assert list(drilled) == list(range(0, 100 * len(drilled), 100))
+    assert len(drilled) > 100
+
+
+def test_the_vertical_section_grows_with_a_live_run_that_leaves_it(case: Case, tmp_path: Path) -> None:
+    steep = replace(case, length=10.0, survey=replace(case.survey, inclination=(1.2, 1.2, 1.2)))
+    fmu = build_fmu(steep, tmp_path / "short.fmu")
+    blueprints = """
+import sys
+from boreprop_fmu.host.drive import Run
+from boreprop_viz import record
+sections = []
+record.blueprint, make = lambda look, tracks: sections.append(look.section) or make(look, tracks), record.blueprint
+record.record({"live": Run(sys.argv[1], step=0.5, stop=200.0)}, save=sys.argv[2])
+print(len(sections), sections[0].x[1], sections[-1].x[1])
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", blueprints, fmu, tmp_path / "live.rrd"], capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == 0, done.stderr
+    made, first, last = map(float, done.stdout.split())
+    bit = stacked(tmp_path / "live.rrd", "vertical_section/bit", "Points2D:positions")[-1, 0]
+    assert first < bit[0] < last
+    assert 2 <= made <= 5
+
+
+def test_a_result_file_with_outputs_alone_is_drawn_with_the_pads_force(
+    case: Case, command: Command, tmp_path: Path
+) -> None:
+    forces = Schedule((0.0, 10.0, 20.0), (0.0, 3000.0, -2000.0))
+    run = simulate(replace(case, length=30.0, schedule=forces), sample_interval=0.5)
+    outputs = {name: run[name] for name in scalar_names(OUTPUTS, 2)}
+    foreign = {"time": run["drilled_length"]} | {f"model.root.borehole.{name}": c for name, c in outputs.items()}
+    lines = [
+        ",".join(f'"{name}"' for name in foreign),
+        *(",".join(map(repr, row)) for row in zip(*(c.tolist() for c in foreign.values()), strict=True)),
+    ]
+    (tmp_path / "foreign.csv").write_text("\n".join(lines) + "\n")
+    write_trajectory(run, tmp_path / "own.csv")
+    done = command("boreprop-view", "foreign.csv", "--case", "own.case.toml", "--save", "foreign.rrd")
+    assert (done.returncode, done.stderr) == (0, "")
+    shown = stacked(tmp_path / "foreign.rrd", "plots/rss_force/rss_force", "Scalars:scalars")[:, 0]
+    np.testing.assert_allclose(shown, run["rss_force"] / 1000, atol=1e-6)
+    command("boreprop-view", "own.csv", "--save", "own.rrd")
+    for entity in ("bit_frame/bha", "bit_frame/walls"):
+        ours, theirs = (stacked(tmp_path / f"{name}.rrd", entity, "LineStrips2D:strips") for name in ("own", "foreign"))
+        np.testing.assert_allclose(theirs, ours, atol=1e-5)
+
+
+def test_what_fmpy_wrote_is_drawn_with_the_case_in_the_fmu(command: Command, fmu: Path, tmp_path: Path) -> None:
+    written = command(
+        "fmpy", "simulate", fmu, "--stop-time", "20", "--output-interval", "0.5", "--output-file", "fmpy.csv"
+    )
+    assert written.returncode == 0, written.stderr
+    done = command("boreprop-view", "fmpy.csv", "--fmu", fmu, "--save", "fmpy.rrd")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert list(read(tmp_path / "fmpy.rrd", "bit_frame/bha", "LineStrips2D:strips")) == list(range(0, 20001, 500))
+
+
+@pytest.mark.parametrize("missing", ["bit_inclination", "average_inclination[2]"])
+def test_a_run_without_what_a_picture_needs_is_refused(
+    case: Case, command: Command, tmp_path: Path, missing: str
+) -> None:
+    run = simulate(replace(case, length=2.0))
+    kept = {n: c for n, c in run.columns.items() if n not in (missing, "bit_tilt", "borehole_inclination")}
+    write_trajectory(Trajectory(kept, run.case), tmp_path / "run.csv")
+    done = command("boreprop-view", "run.csv", "--save", "run.rrd")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("error: run.csv: ")
+    assert missing.partition("[")[0] in done.stderr
+    assert not (tmp_path / "run.rrd").exists()
