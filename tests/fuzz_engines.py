@@ -33,9 +33,8 @@ from boreprop.case.file import dump_case
 from boreprop.core.propagation import RELATIVE_TOLERANCE
 from boreprop.core.survey import Survey
 from boreprop.core.system import LEAST_SPAN, BitRock, BottomHoleAssembly
-from boreprop.errors import Stopped
 from boreprop.run.simulate import simulate
-from boreprop.run.trajectory import Trajectory
+from boreprop.run.trajectory import Stopped, Trajectory
 
 COMPARED = 50.0  # m at the start of a run, over which both engines are compared
 AGREEMENT = 1e-6  # of the largest value of a column
@@ -151,7 +150,7 @@ def compare(case: Case, tolerance: float, found: Finding) -> None:
     interval = min(case.length, COMPARED) / 100
     python, native = (drilled(case, tolerance, engine, interval) for engine in ("python", "native"))
     bad = differing(python, native, AGREEMENT)
-    sure = len(native)
+    sure = native.rows
     if bad.any() or not same_end(python, native):
         bha, positions = case.bha, case.bha.stabilizer_positions
         longer = tuple(position * (1 + i * HAIR) for i, position in enumerate(positions))
@@ -159,9 +158,9 @@ def compare(case: Case, tolerance: float, found: Finding) -> None:
         other = drilled(replace(case, bha=moved_bha), tolerance, "native", interval)
         moved = differing(other, native, AGREEMENT / 10)
         sure = int(np.argmax(moved)) if moved.any() else len(moved)
-        if sure == len(native) and same_end(other, native) and not same_end(python, native):
+        if sure == native.rows and same_end(other, native) and not same_end(python, native):
             found.fault = f"python: {python.stopped or 'no stop'}; native: {native.stopped or 'no stop'}"
-    found.rows, found.uncompared = min(sure, len(bad)), len(native) - min(sure, len(bad))
+    found.rows, found.uncompared = min(sure, len(bad)), native.rows - min(sure, len(bad))
     if bad[:sure].any():
         row = int(np.argmax(bad))
         found.fault = f"the engines differ at {native['drilled_length'][row]:g} m"

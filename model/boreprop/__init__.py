@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from .core.survey import Survey as Survey
     from .core.system import BitRock as BitRock
     from .core.system import BottomHoleAssembly as BottomHoleAssembly
-    from .errors import Stopped as Stopped
+    from .run.trajectory import Stopped as Stopped
     from .run.engines import engine as engine
     from .run.results import read_trajectory as read_trajectory
     from .run.results import write_trajectory as write_trajectory
@@ -47,7 +47,7 @@ _HOMES = {  # public name → module, and the name there where it is another
     "BottomHoleAssembly": "core.system",
     "Case": "case.case",
     "Schedule": "case.case",
-    "Stopped": "errors",
+    "Stopped": "run.trajectory",
     "Survey": "core.survey",
     "Trajectory": "run.trajectory",
     "critical_dogleg": "analysis.tipping",

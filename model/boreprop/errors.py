@@ -1,14 +1,10 @@
 """What goes wrong in a way that a user can do something about."""
 
 from reprlib import Repr
-from typing import TYPE_CHECKING
 
 from .core.errors import BorepropError as BorepropError
 from .core.errors import ParameterError as ParameterError
 from .core.errors import TableError as TableError
-
-if TYPE_CHECKING:
-    from .run.trajectory import Trajectory
 
 
 class InputError(BorepropError, ValueError):
@@ -17,22 +13,6 @@ class InputError(BorepropError, ValueError):
 
 class RootsNotFound(BorepropError):
     """Some of the roots of a mode could not be found. The message says how many, and what helps."""
-
-
-class Stopped(BorepropError):
-    """A run could not go on to its end. The message says where it stopped and what helps.
-
-    Parameters
-    ----------
-    message
-        One line.
-    trajectory
-        The rows so far, where they are kept; its `stopped` is the message.
-    """
-
-    def __init__(self, message: str, trajectory: "Trajectory | None" = None) -> None:
-        super().__init__(message)
-        self.trajectory = trajectory
 
 
 def shown(value: object) -> str:

@@ -40,7 +40,7 @@ from boreprop.analysis.summary import summarize
 from boreprop.case.paper import paper_case
 from boreprop.core.system import eta_pi
 from boreprop.errors import InputError
-from boreprop.report.tables.study import lines, verdict
+from boreprop.report.tables.study import lines, sentence
 from boreprop.run.results import write_trajectory
 from boreprop.run.simulate import simulate
 from boreprop.run.workers import work
@@ -219,7 +219,7 @@ def test_a_study_of_which_every_case_fails_says_so() -> None:
     ):
         results = run(study, workers=1)
         assert lines(results, [0.5]) == []
-        assert verdict(results).startswith(
+        assert sentence(results).startswith(
             "2 cases, 2 failed (the first: stabilizer_clearances: must be >= 0, got -0.00"
         )
 

@@ -1,19 +1,25 @@
 """The command `boreprop`, as a user meets it: its own process, its exit status, its one line of error."""
 
+import inspect
 import os
 import signal
 import subprocess
 import sys
+import tomllib
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from boreprop import engine
 from boreprop.case.file import load_case
-from boreprop.cli import console
+from boreprop.cli import app, console
 from boreprop.core.errors import ParameterError, TableError
-from boreprop.errors import InputError, RootsNotFound, Stopped
+from boreprop.errors import InputError, RootsNotFound
 from boreprop.run.results import read_trajectory
+from boreprop.run.trajectory import Stopped
+from boreprop_fmu.cli import app as fmu_app
 from conftest import Command, assert_refused
 from places import ROOT
 
@@ -121,7 +127,7 @@ def test_simulate_writes_a_row_at_each_multiple_of_the_sample_interval(
     for name in ("run.csv", "run.parquet"):
         result = command("boreprop", "simulate", paper_case, "--output", name, *arguments)
         assert (result.returncode, result.stderr) == (0, "")
-        assert result.stdout == f"{name}: 7 rows over 2 m\n"
+        assert result.stdout == f"{name}: 7 rows over 2 m, {engine()} engine\n"
     run = read_trajectory(tmp_path / "run.csv")
     np.testing.assert_array_equal(run["drilled_length"], [0.3 * k for k in range(7)])
     assert run.case is not None
@@ -135,12 +141,11 @@ def test_simulate_writes_a_row_at_each_multiple_of_the_sample_interval(
 
 
 def test_simulate_loads_nothing_slow_that_it_does_not_use(tmp_path: Path, paper_case: Path) -> None:
-    arguments = ["simulate", str(paper_case), "--output", str(tmp_path / "run.csv"), "--length", "1"]
-    command = [sys.executable, "-X", "importtime", "-m", "boreprop.cli.app", *arguments]
-    result = subprocess.run(command, capture_output=True, text=True, check=True)
-    loaded = {line.rpartition("|")[2].strip().partition(".")[0] for line in result.stderr.splitlines()}
-    assert "numpy" in loaded
-    assert not loaded & {"pandas", "scipy", "matplotlib", "pyarrow", "rich", "fmpy"}
+    found = loaded(
+        "boreprop.cli.app", "simulate", str(paper_case), "--output", str(tmp_path / "run.csv"), "--length", "1"
+    )
+    assert "numpy" in found
+    assert not found & {"pandas", "scipy", "matplotlib", "pyarrow", "rich", "fmpy"}
 
 
 def test_the_version(command: Command) -> None:
@@ -154,23 +159,44 @@ def test_figures_refuses_a_directory_that_is_a_file(command: Command, tmp_path: 
     assert (tmp_path / "out").read_text() == "mine"
 
 
-@pytest.mark.parametrize(("package", "extra"), [("boreprop", "cli"), ("boreprop_fmu", "fmu"), ("boreprop_viz", "viz")])
-def test_without_its_extra_a_command_says_what_to_install(package: str, extra: str) -> None:
-    folders = [str(ROOT / folder) for folder in ("model", "fmu_build", "viz")]
-    program = f"import sys; sys.path[:0] = {folders}; from {package}.app import main; main()"
-    bare = [sys.executable, "-S", "-c", program]  # -S: no site-packages, so the standard library alone
-    assert_refused(subprocess.run(bare, capture_output=True, text=True), "typer", f"pip install 'boreprop[{extra}]'")
+def test_what_only_an_extra_brings_is_named_with_the_extra(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        run_raising(ModuleNotFoundError("No module named 'rerun.x'", name="rerun.x"), monkeypatch)
+    assert "pip install 'boreprop[viz]'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("package", sorted(set(console.EXTRAS.values())))
+def test_the_extras_that_are_named_exist(package: str) -> None:
+    assert package in tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
+
+
+@pytest.mark.parametrize("commands", [app.COMMANDS, fmu_app.COMMANDS])
+def test_the_help_lists_each_command_with_the_first_line_of_its_own(commands: dict[str, tuple[str, str]]) -> None:
+    for name, (module, line) in commands.items():
+        assert inspect.getdoc(getattr(import_module(module), name)).splitlines()[0] == line
+
+
+def loaded(*arguments: str) -> set[str]:
+    """The packages that a command loads."""
+    command = [sys.executable, "-X", "importtime", "-m", *arguments]
+    result = subprocess.run(command, capture_output=True, text=True, check=True)
+    return {line.rpartition("|")[2].strip().partition(".")[0] for line in result.stderr.splitlines()}
+
+
+def test_the_help_loads_nothing_slow() -> None:
+    slow = {"numpy", "scipy", "rich", "pydantic", "matplotlib", "pyarrow", "rerun", "fmpy"}
+    for module in ("boreprop.cli.app", "boreprop_fmu.cli.app", "boreprop_viz.cli"):
+        assert not loaded(module, "--help") & slow
 
 
 def run_raising(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
-    app = console.new_app("An application with one command.")
-
-    @app.command()
     def fails() -> None:
         raise error
 
     monkeypatch.setattr(sys, "argv", ["fails"])
-    console.run(app)
+    console.run(console.one_command(fails))
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,9 @@ from places import ROOT
 SOURCE_ROOTS = ("model", "fmu_build", "viz")
 
 DOWNWARDS = "Arrows run downwards: viewer, FMU, model"
+IN_MODEL = "Arrows run downwards inside the model"
+IN_FMU = "Arrows run downwards inside the FMU's package"
+CIRCLES = "No circles"
 MODEL = "The model knows nothing of FMI and Rerun"
 CORE = "The core, which travels inside the FMU, needs the standard library only"
 
@@ -31,7 +34,7 @@ def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_the_contract_holds(copy: Path, command: Command) -> None:
     result = command("lint-imports", "--no-cache")
     assert result.returncode == 0, result.stdout
-    for contract in (DOWNWARDS, MODEL, CORE):
+    for contract in (DOWNWARDS, IN_MODEL, IN_FMU, CIRCLES, MODEL, CORE):
         assert f"{contract} KEPT" in result.stdout
 
 
@@ -44,6 +47,11 @@ def test_the_contract_holds(copy: Path, command: Command) -> None:
         ("model/boreprop", "import boreprop_fmu", DOWNWARDS),
         ("fmu_build/boreprop_fmu", "import boreprop_viz", DOWNWARDS),
         ("model/boreprop/core", "import numpy", CORE),
+        ("model/boreprop/run", "from ..analysis import summary", IN_MODEL),
+        ("model/boreprop/core", "from .. import errors", IN_MODEL),
+        ("model/boreprop/analysis", "from ..report.tables import summary", IN_MODEL),
+        ("fmu_build/boreprop_fmu/host", "from ..cli import app", IN_FMU),
+        ("model/boreprop/analysis/stability", "from ..study import design", CIRCLES),
     ],
 )
 def test_the_contract_fails_when(copy: Path, command: Command, package: str, statement: str, contract: str) -> None:

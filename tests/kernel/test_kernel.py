@@ -22,12 +22,12 @@ from boreprop.core.errors import ParameterError
 from boreprop.core.propagation import Propagation
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly, Scaled
-from boreprop.errors import Stopped
 from boreprop.kernel import binding
 from boreprop.kernel.binding import KernelError, NativeDrilling
 from boreprop.run import engines
 from boreprop.run.results import read_trajectory
 from boreprop.run.simulate import simulate
+from boreprop.run.trajectory import Stopped
 from conftest import Command
 from reference_cases import CASES, reference
 from systems import scaled_systems

@@ -10,10 +10,10 @@ import pytest
 from boreprop.case.case import Case, Schedule
 from boreprop.case.file import dump_case, load_case
 from boreprop.cli.console import tolerance, typer
-from boreprop.errors import BorepropError, InputError, Stopped
+from boreprop.errors import BorepropError, InputError
 from boreprop.run.results import case_path, read_trajectory, write_trajectory
 from boreprop.run.simulate import simulate
-from boreprop.run.trajectory import Trajectory
+from boreprop.run.trajectory import Stopped, Trajectory
 from boreprop_fmu.host.drive import Run
 from conftest import Command, Pack
 from flavours import Flavour, both_flavours
@@ -50,7 +50,7 @@ def test_the_whole_rows_so_far_are_those_of_a_run_that_ends_before(case: Case, p
     assert rows.stopped == str(error)
     assert rows.case == pushed
     before = simulate(replace(case, length=3.3), engine=engine)
-    assert len(before) == KEPT
+    assert before.rows == KEPT
     assert list(rows.columns) == list(before.columns)
     for name, column in before.columns.items():
         np.testing.assert_array_equal(rows[name], column, err_msg=name)
@@ -68,7 +68,7 @@ def test_progress_makes_no_difference_to_what_is_kept(pushed: Case) -> None:
 def test_it_travels_between_processes(pushed: Case) -> None:
     error, rows = stopped(pushed)
     there = pickle.loads(pickle.dumps(error))
-    assert (str(there), len(there.trajectory)) == (str(error), len(rows))
+    assert (str(there), there.trajectory.rows) == (str(error), rows.rows)
 
 
 @pytest.mark.parametrize("name", ["run.csv", "run.parquet"])
@@ -105,7 +105,7 @@ def test_simulate_ends_with_3_and_one_line_and_keeps_the_rows(command: Command, 
     assert "after 3.3" in done.stderr
     assert "the bit turns over at 3.35" in done.stderr
     run = read_trajectory(pushed_file.with_name(name))
-    assert len(run) == KEPT
+    assert run.rows == KEPT
     assert run.stopped is not None
     assert run.stopped in done.stderr
     told = command("boreprop", "summary", name)

@@ -1,26 +1,20 @@
 """The command `boreprop-view`: draws runs with Rerun."""
 
-from collections import Counter
 from pathlib import Path
 from typing import Annotated, NoReturn
 
-from boreprop.case.file import load_case
-from boreprop.case.tables import read_schedule, read_survey
-from boreprop.cli import console
-from boreprop.cli.console import positive, typer
-from boreprop.errors import InputError, Stopped
-from boreprop.run.results import SUFFIXES, read_trajectory
-from boreprop.run.trajectory import Trajectory
+import typer
 
-app = console.new_app("Runs to look at in Rerun: vertical section, bit frame, ripple, plots over the drilled length.")
+from boreprop.cli import console
+from boreprop.cli.options import positive
+from boreprop.errors import InputError
 
 
 def main() -> NoReturn:
     """Run the command `boreprop-view`."""
-    console.run(app)
+    console.run(console.one_command(view))
 
 
-@app.command()
 def view(
     sources: Annotated[
         list[Path],
@@ -53,11 +47,7 @@ def view(
     ] = None,
     _version: console.Version = False,
 ) -> None:
-    """Draw runs; a case is run first, an FMU while it is drawn."""
-    from .record import draw
-    from .sinks import open_recording
-    from .source import Source, live, stored
-
+    """Draw runs in Rerun; a case is drilled first, an FMU drills while it is drawn."""
     if save is not None:
         console.check_output(save, (".rrd",))
     if case is not None and fmu is not None:
@@ -67,72 +57,21 @@ def view(
     for option, value in (("--schedule", schedule), ("--step", step), ("--stop", stop)):
         if value is not None and not any(source.suffix == ".fmu" for source in sources):
             raise InputError(f"{option}: must come with an FMU to run, got {', '.join(map(str, sources))}")
-    forces = None if schedule is None else read_schedule(schedule)
-    planned = None if plan is None else read_survey(plan)
+    from .view import show  # here: Rerun takes longer to load than --help should
 
-    stopped: list[Stopped] = []  # runs that came to less than their end: what there is of them is drawn
-
-    def open_source(name: str, path: Path) -> Source:
-        if path.suffix == ".fmu":
-            from boreprop_fmu.host.drive import Run
-
-            return live(name, Run(path, forces, step=step, stop=stop), planned)
-        try:
-            run = load_run(path, case, fmu)
-        except Stopped as error:
-            if error.trajectory is None:
-                raise
-            stopped.append(error)
-            run = error.trajectory
-        try:
-            return stored(name, run, planned)
-        except InputError as error:
-            raise InputError(f"{path}: {error}") from error
-
-    opened = [open_source(name, path) for name, path in zip(names(sources), sources, strict=True)]
-    rows = sum(source.rows for source in opened)
-    spawn = spawn or (save is None and not serve and connect is None)
-    with (
-        open_recording(save=save, spawn=spawn, serve=serve, connect=connect) as rec,
-        console.progress("drawing", rows) as done,
-    ):
-        draw(rec, opened, planned, done)
-    if save is not None:
-        print(f"{save}: {rows} rows, {save.stat().st_size / 1e6:.1f} MB")
-    if stopped:
-        raise stopped[0]
-
-
-def names(sources: list[Path]) -> list[str]:
-    """What the runs are called: as their files, without what is not needed to tell them apart."""
-    for short in (lambda path: path.stem, lambda path: path.name, str):
-        found = [short(source) for source in sources]
-        if len(set(found)) == len(found):
-            return found
-    [(twice, _)] = Counter(sources).most_common(1)
-    raise InputError(f"{twice}: must be given once, got it again")
-
-
-def load_run(source: Path, case: Path | None, fmu: Path | None) -> Trajectory:
-    """The run in a result file, or of a case file that is run now."""
-    if source.suffix == ".toml":
-        from boreprop.run.simulate import simulate
-
-        if case or fmu:
-            raise InputError(f"{source}: must be a run to be given a case, got a case file")
-        to_run = load_case(source)
-        with console.progress("drilling", to_run.length) as drilled:
-            return simulate(to_run, progress=drilled)
-    if source.suffix not in SUFFIXES:
-        raise InputError(f"{source}: must end in {', '.join(SUFFIXES)}, .fmu or .toml, got {source.suffix!r}")
-    if fmu is not None:
-        from boreprop_fmu.host.drive import read_packed_case
-
-        packed = read_packed_case(fmu)
-        if packed is None:
-            raise InputError(f"{fmu}: must hold its case, as ours do, got an FMU without")
-        return read_trajectory(source, packed)
-    return read_trajectory(source, None if case is None else load_case(case))
+    show(
+        sources,
+        case=case,
+        fmu=fmu,
+        plan=plan,
+        schedule=schedule,
+        step=step,
+        stop=stop,
+        save=save,
+        spawn=spawn or (save is None and viewers == 0),
+        serve=serve,
+        connect=connect,
+    )
 
 
 if __name__ == "__main__":

@@ -49,7 +49,7 @@ def show(
         import rerun_notebook  # noqa: F401  # Rerun does without until it shows something
         from rerun.notebook import Viewer
     except ModuleNotFoundError as error:
-        message = f"show: {error.name} must be installed for this: pip install 'boreprop[notebook]', got: {error}"
+        message = f"show: {error.name} must be installed for this: pip install 'boreprop[all]', got: {error}"
         raise InputError(message) from error
     from .record import draw, find_sources
     from .sinks import APPLICATION

@@ -26,9 +26,9 @@ from boreprop.case.case import Case, Schedule
 from boreprop.case.file import parse_case
 from boreprop.core.checks import check_number
 from boreprop.core.quantities import INPUTS, OUTPUTS
-from boreprop.errors import InputError, Stopped
+from boreprop.errors import InputError
 from boreprop.kernel.compiler import host_platform
-from boreprop.run.trajectory import Trajectory
+from boreprop.run.trajectory import Stopped, Trajectory
 
 from ..pack.build import CASE_FILE
 

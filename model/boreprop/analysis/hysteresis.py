@@ -9,8 +9,7 @@ import numpy as np
 from ..case.case import Case
 from ..core.propagation import RELATIVE_TOLERANCE
 from ..core.survey import Survey
-from ..errors import Stopped
-from ..run.trajectory import Trajectory
+from ..run.trajectory import Stopped, Trajectory
 from .rippling import Rippling
 from .study.design import vary
 from .tipping import LARGEST_DOGLEG, SCAN, drill_until_settled, with_dogleg

@@ -26,9 +26,8 @@ from ..core.propagation import RELATIVE_TOLERANCE
 from ..core.quantities import OUTPUTS, scalar_names
 from ..core.survey import Survey
 from ..core.system import eta_pi
-from ..errors import Stopped
 from ..run.engines import engine, follow, start
-from ..run.trajectory import Trajectory
+from ..run.trajectory import Stopped, Trajectory
 from ..run.workers import WorkerLost, work
 from .rippling import Rippling, State, examine_rippling, find_rippling, longest_wave, modes_of
 from .stability.contacts import can_touch, first_that_touches

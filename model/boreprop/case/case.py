@@ -5,9 +5,7 @@ from dataclasses import dataclass
 from ..core.checks import check_increasing, check_number
 from ..core.errors import ParameterError
 from ..core.survey import Survey
-from ..core.system import BitRock, BottomHoleAssembly
-
-SAMPLE_INTERVAL = 0.1  # m between the rows of a run, unless told otherwise: some 50 for each wave of a rippling hole
+from ..core.system import BitRock, BottomHoleAssembly, eta_pi
 
 
 @dataclass(frozen=True)
@@ -77,3 +75,13 @@ class Case:
     def __post_init__(self) -> None:
         for name in ("bit_diameter", "active_weight_on_bit", "length"):
             check_number(name, getattr(self, name), above=0.0)
+
+    @property
+    def length_scale(self) -> float:
+        """ℓ₁, m: the distance from the bit to the first stabilizer."""
+        return self.bha.length_scale
+
+    @property
+    def eta_pi(self) -> float:
+        """ηΠ: the stiffness of the rock over that of the BHA, eq. (9)."""
+        return eta_pi(self.bha, self.bit, self.active_weight_on_bit)

@@ -1,4 +1,4 @@
-"""The shell that the three commands share: an application, one-line errors, progress.
+"""The shell that the three commands share: commands that load when they are run, one-line errors, progress.
 
 Bad input of any kind ends a command with exit status 2 and one line on stderr, a run that stops before its end with 3;
 Ctrl-C ends it with 130.
@@ -6,64 +6,31 @@ Ctrl-C ends it with 130.
 
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
+from importlib import import_module
 from importlib.metadata import version
-from math import inf, nan
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
-from ..core.errors import ParameterError, TableError
-from ..core.quantities import BY_NAME
-from ..errors import BorepropError, InputError, Stopped
+import typer
+from typer.core import TyperGroup
+
+from ..errors import BorepropError, InputError
 
 EXTRAS = {  # the extra that brings a package
-    "typer": "cli",
-    "rich": "cli",
-    "pydantic": "cli",
-    "tomli_w": "cli",
     "matplotlib": "plot",
-    "pyarrow": "parquet",
+    "pyarrow": "study",
     "xarray": "study",
     "fmpy": "fmu",
     "pythonfmu": "fmu",
     "rerun": "viz",
-    "rerun_notebook": "notebook",
     "libcosimpy": "dev",
 }
-STOPPED = 3  # exit status of a run that stopped before its end
-COMMANDS = {"boreprop_viz": "viz", "boreprop_fmu": "fmu"}  # a command's package: its own extra, which brings [cli] too
-
-
-def fail(message: str, status: int = 2) -> NoReturn:
-    """End the process with this exit status and `message` as one line on stderr."""
-    print("error:", " ".join(message.split()), file=sys.stderr)
-    sys.exit(status)
-
-
-def warn(message: str) -> None:
-    """Tell of something that is not as asked, on one line of stderr; the command goes on."""
-    print("warning:", " ".join(message.split()), file=sys.stderr)
-
-
-def fail_without(error: ModuleNotFoundError) -> NoReturn:
-    """`fail`, naming the extra that brings the missing package. Any other missing module is a bug and raised."""
-    package = (error.name or "").partition(".")[0]
-    if package not in EXTRAS:
-        raise error
-    extra = EXTRAS[package]
-    if extra == "cli":
-        extra = next((own for command, own in COMMANDS.items() if command in sys.modules), extra)
-    fail(f"{package} must be installed for this: pip install 'boreprop[{extra}]', got: {error}")
-
-
-try:
-    import typer as typer  # for the commands' modules, which get it from here: what they need may not be installed
-except ModuleNotFoundError as error:
-    fail_without(error)
-
-# click.ClickException, under whatever name this version of typer brings it
-ClickException: Any = typer.BadParameter.mro()[2]
+INTERRUPTED = 130  # exit status after Ctrl-C
+# help is plain text: rich would take as long to load as the rest
+Application = partial(typer.Typer, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None)
 
 
 def _print_version(wanted: bool) -> None:
@@ -78,38 +45,56 @@ Version = Annotated[
 """The option --version of a command or callback: ``def command(version: Version = False)``."""
 
 
-def positive(text: str) -> float:
-    """Parse an option that takes a finite number > 0: ``typer.Option(parser=positive)``."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = nan
-    if not 0.0 < value < inf:
-        raise typer.BadParameter(f"must be a number > 0, got {text!r}")
-    return value
+def one_command(function: Callable[..., None]) -> typer.Typer:
+    """An application that is one command."""
+    app = Application()
+    app.command()(function)
+    return app
 
 
-def tolerance(text: str) -> float:
-    """Parse an option that takes a relative_tolerance in the range of the table of variables."""
-    allowed = BY_NAME["relative_tolerance"]
-    value = positive(text)
-    if not allowed.min <= value <= allowed.max:
-        raise typer.BadParameter(f"must be {allowed.min:g} to {allowed.max:g}, got {text!r}")
-    return value
+def many_commands(description: str, commands: Mapping[str, tuple[str, str]]) -> typer.Typer:
+    """An application of several commands, each imported when it is run.
+
+    Parameters
+    ----------
+    description
+        What the application is for.
+    commands
+        Name of a command → the module that has a function of that name, and the line about it in the help.
+    """
+
+    class Commands(TyperGroup):
+        def list_commands(self, ctx: Any) -> list[str]:  # noqa: ARG002 - the context is of no use
+            return list(commands)
+
+        def get_command(self, ctx: Any, cmd_name: str) -> Any:  # noqa: ARG002
+            if cmd_name not in commands:
+                return None
+            module, _ = commands[cmd_name]
+            return typer.main.get_command(one_command(getattr(import_module(module), cmd_name)))
+
+        def format_commands(self, ctx: Any, formatter: Any) -> None:  # noqa: ARG002
+            with formatter.section("Commands"):
+                formatter.write_dl([(name, line) for name, (_, line) in commands.items()])
+
+    app = Application(help=description, cls=Commands)
+
+    @app.callback()
+    def with_version(version: Version = False) -> None:
+        pass
+
+    return app
 
 
-Tolerance = Annotated[
-    float | None,
-    typer.Option(
-        parser=tolerance, metavar="X", help="Local error of one step of the integrator, over 1 rad and ℓ₁, if not 1e-7."
-    ),
-]
-"""The option --tolerance of a command that drills: ``tolerance: Tolerance = None``."""
+def fail(message: str, status: int = 2) -> NoReturn:
+    """End the process with this exit status and `message` as one line on stderr."""
+    print("error:", " ".join(message.split()), file=sys.stderr)
+    sys.exit(status)
 
 
-def new_app(description: str) -> typer.Typer:
-    """An application to add commands to; start it with `run`."""
-    return typer.Typer(help=description, add_completion=False, pretty_exceptions_enable=False)
+def warn(message: str) -> None:
+    """Tell of something that is not as asked, on one line of stderr; the command goes on."""
+    print("warning:", " ".join(message.split()), file=sys.stderr)
 
 
 def run(app: typer.Typer) -> NoReturn:
@@ -119,28 +104,20 @@ def run(app: typer.Typer) -> NoReturn:
     """
     try:
         sys.exit(app(standalone_mode=False))
-    except ClickException as error:
+    except typer.TyperException as error:
         context = getattr(error, "ctx", None)
         fail(error.format_message() + (f" (see {context.command_path} --help)" if context else ""))
-    except (InputError, ParameterError, TableError) as error:
-        fail(str(error))
-    except Stopped as error:
-        fail(str(error), STOPPED)
     except BorepropError as error:
-        fail(str(error))
+        fail(str(error), error.exit_status)
     except ModuleNotFoundError as error:
-        fail_without(error)
+        package = (error.name or "").partition(".")[0]
+        if package not in EXTRAS:
+            raise  # a bug
+        fail(f"{package} must be installed for this: pip install 'boreprop[{EXTRAS[package]}]', got: {error}")
     except OSError as error:
         fail(f"{error.filename}: {error.strerror}" if error.filename else str(error))
     except (KeyboardInterrupt, typer.Abort):
-        sys.exit(130)
-    except RuntimeError as error:
-        from ..kernel.binding import KernelError  # not before: these bring numpy
-        from ..kernel.compiler import CompilerError
-
-        if not isinstance(error, (KernelError, CompilerError)):
-            raise
-        fail(str(error))
+        sys.exit(INTERRUPTED)
 
 
 def check_output(path: str | Path, suffixes: tuple[str, ...] = ()) -> Path:
@@ -165,12 +142,12 @@ def check_output(path: str | Path, suffixes: tuple[str, ...] = ()) -> Path:
 def progress(description: str, total: float) -> Iterator[Callable[[float], None]]:
     """A progress bar on stderr; yields the function that takes the amount completed so far, of `total`.
 
-    Nothing is shown, and rich is not even loaded, where stderr is not a terminal.
+    Nothing is shown where stderr is not a terminal.
     """
     if not sys.stderr.isatty():
         yield lambda _: None
         return
-    from rich.console import Console
+    from rich.console import Console  # here: it takes as long to load as a short run to drill
     from rich.progress import Progress
 
     with Progress(console=Console(stderr=True), transient=True) as bar:

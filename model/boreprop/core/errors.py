@@ -4,6 +4,8 @@
 class BorepropError(Exception):
     """The base of the errors of this package. The message is one line."""
 
+    exit_status = 2  # of a command that ends with it
+
 
 class ParameterError(BorepropError, ValueError):
     """A parameter breaks a constraint. Carries ``name``, ``constraint`` and ``value``."""

@@ -143,7 +143,7 @@ def compile_library(
     else:
         what = "ziglang" if platform else "a C compiler (cc, gcc, clang or $CC) or ziglang"
         target = platform or "this machine"
-        raise NoCompilerError(f"{what} must be installed to compile for {target}: pip install 'boreprop[native]'")
+        raise NoCompilerError(f"{what} must be installed to compile for {target}: pip install ziglang==0.15.2")
 
     flags += [f"-I{folder}" for folder in folders]
     flags += [f"-D{name}={value}" for name, value in defines.items()]

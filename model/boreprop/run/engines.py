@@ -11,19 +11,24 @@ from ..kernel.binding import NativeDrilling, available
 
 AnyDrilling = Drilling | NativeDrilling
 
-ENGINES = ("python", "native")
+ENGINES = ("auto", "native", "python")
 
 
 def engine() -> str:
-    """The native engine where it is there, else Python."""
+    """The engine that "auto" stands for: "native" where it is there, else "python"."""
     return "native" if available() else "python"
 
 
-def start(case: Case, engine: str, relative_tolerance: float) -> AnyDrilling:
+def chosen(choice: str) -> str:
+    """The engine, "native" or "python", that one of `ENGINES` stands for; `ParameterError` if it is none of them."""
+    if choice not in ENGINES:
+        raise ParameterError("engine", f"must be {', '.join(ENGINES[:-1])} or {ENGINES[-1]}", choice)
+    return engine() if choice == "auto" else choice
+
+
+def start(case: Case, choice: str, relative_tolerance: float) -> AnyDrilling:
     """A case before its first step, under its first force; errors as in `simulate`."""
-    if engine not in ENGINES:
-        raise ParameterError("engine", f"must be {' or '.join(ENGINES)}", engine)
-    make = NativeDrilling if engine == "native" else Drilling
+    make = NativeDrilling if chosen(choice) == "native" else Drilling
     return make(
         case.bha,
         case.bit,

@@ -21,7 +21,7 @@ from ..core.columns import read_columns
 from ..core.quantities import BY_NAME, INPUTS, OUTPUTS
 from ..errors import InputError
 from ..replacing import replacing
-from .trajectory import Trajectory, _variable
+from .trajectory import Trajectory, quantity_of
 
 SUFFIXES = (".csv", ".parquet")
 CASE_KEY = b"boreprop.case"
@@ -71,7 +71,7 @@ def read_trajectory(path: str | Path, case: Case | None = None) -> Trajectory:
     if read is None:
         raise InputError(f"{path}: must end in {' or '.join(SUFFIXES)}, got {path.suffix!r}")
     trajectory = read(path, case)
-    if not len(trajectory):
+    if not trajectory.rows:
         raise InputError(f"{path}: must have at least one row, got none")
     found = Trajectory(trajectory.columns).n
     if found not in (0, trajectory.n):
@@ -95,12 +95,12 @@ def _ours(path: Path, headings: list[str]) -> dict[str, str]:
     components: dict[str, dict[str, str]] = {}
     for heading in headings:
         match = HEADING.fullmatch(heading)
-        if match and _variable(match["name"]) in IO_NAMES:
+        if match and quantity_of(match["name"]) in IO_NAMES:
             components.setdefault(match["component"] or "", {}).setdefault(match["name"], heading)
     drilling = [names for names in components.values() if "drilled_length" in names]
     if not drilling:
         raise InputError(f"{path}: must have a column 'drilled_length', got {headings}")
-    outputs = [{name for name in names if _variable(name) in OUTPUT_NAMES} for names in drilling]
+    outputs = [{name for name in names if quantity_of(name) in OUTPUT_NAMES} for names in drilling]
     ours = [names for names, own in zip(drilling, outputs, strict=True) if own >= set().union(*outputs)]
     if len(ours) != 1:
         found = ", ".join(names["drilled_length"] for names in drilling)
@@ -111,8 +111,8 @@ def _ours(path: Path, headings: list[str]) -> dict[str, str]:
 
 def _typed(trajectory: Trajectory) -> dict[str, NDArray[Any]]:
     """The columns, those of FMI's Integer variables as such."""
-    integers = {name for name in trajectory.columns if (v := BY_NAME.get(_variable(name))) and v.kind == "Integer"}
-    return {k: v.astype(np.int32) if k in integers else v for k, v in trajectory.columns.items()}
+    integers = {name for name in trajectory if (v := BY_NAME.get(quantity_of(name))) and v.kind == "Integer"}
+    return {k: v.astype(np.int32) if k in integers else v for k, v in trajectory.items()}
 
 
 def _write_csv(trajectory: Trajectory, path: Path) -> None:
@@ -183,7 +183,5 @@ def _pyarrow(path: Path) -> tuple[Any, Any]:
         import pyarrow
         import pyarrow.parquet
     except ModuleNotFoundError as error:
-        raise InputError(
-            f"{path}: must be .csv unless pyarrow is installed: pip install 'boreprop[parquet]'"
-        ) from error
+        raise InputError(f"{path}: must be .csv unless pyarrow is installed: pip install 'boreprop[study]'") from error
     return pyarrow, pyarrow.parquet

@@ -6,14 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Floats
-from ..case.case import SAMPLE_INTERVAL, Case, Schedule
+from ..case.case import Case, Schedule
 from ..core.checks import check_number
 from ..core.propagation import RELATIVE_TOLERANCE
 from ..core.quantities import OUTPUTS, scalar_names
-from ..errors import Stopped
-from .engines import follow, start
-from .trajectory import Trajectory
+from .engines import chosen, follow, start
+from .trajectory import Stopped, Trajectory
 
+SAMPLE_INTERVAL = 0.1  # m between the rows of a run, unless told otherwise: some 50 for each wave of a rippling hole
 PARTS = 100  # a run reports its progress about so often
 LONGEST_LEG = 50.0  # ℓ₁: an engine keeps the way back to where a leg began
 ROUNDING = 1e-9  # of a sample interval: a row this close before the end or a change of force counts as on it
@@ -26,7 +26,7 @@ def simulate(
     length: float | None = None,
     relative_tolerance: float = RELATIVE_TOLERANCE,
     progress: Callable[[float], None] | None = None,
-    engine: str = "python",
+    engine: str = "auto",
 ) -> Trajectory:
     """Drill a case under its force schedule.
 
@@ -44,7 +44,8 @@ def simulate(
     progress
         Called with the drilled length, m, about a hundred times.
     engine
-        "python", or "native": the same model as compiled code, which agrees but for rounding and is many times faster.
+        "native": compiled code; "python": the same model in Python, which agrees but for rounding and is many times
+        slower; "auto": native where it is there. The trajectory says which one drilled it.
 
     Returns
     -------
@@ -64,6 +65,7 @@ def simulate(
     check_number("length", length, above=0.0)
     check_number("sample_interval", sample_interval, above=0.0)
     weight = case.active_weight_on_bit
+    engine = chosen(engine)
     drilling = start(case, engine, relative_tolerance)
     names = scalar_names(OUTPUTS, len(case.bha.stabilizer_positions))
     table = np.full((int(length / sample_interval + ROUNDING) + 1, len(names)), np.nan)
@@ -81,7 +83,7 @@ def simulate(
             progress(drilling.drilled_length)
     table = table[~np.isnan(table[:, 0])]
     columns = {"rss_force": forces[rows >= 0][: len(table)], "active_weight_on_bit": np.full(len(table), weight)}
-    trajectory = Trajectory(columns | {name: table[:, j] for j, name in enumerate(names)}, case, stopped)
+    trajectory = Trajectory(columns | {name: table[:, j] for j, name in enumerate(names)}, case, stopped, engine)
     if stopped:
         raise Stopped(stopped, trajectory)
     return trajectory

@@ -38,11 +38,12 @@ from ...case.case import Case
 from ...case.file import dump_case
 from ...core.propagation import RELATIVE_TOLERANCE
 from ...core.quantities import BY_NAME
-from ...errors import InputError, Stopped, shown
+from ...errors import InputError, shown
 from ...replacing import replacing
 from ...run.engines import engine
 from ...run.results import CASE_KEY
 from ...run.simulate import simulate
+from ...run.trajectory import Stopped
 from ...run.workers import WorkerLost, work
 from ..rippling import State
 from ..summary import summarize

@@ -35,7 +35,7 @@ def modes_title(eta_pi: float, active_weight_on_bit: float, inclination: float) 
     )
 
 
-def mode_row(
+def mode_line(
     found: Roots, length_scale: float, here: tuple[tuple[int, ...], bool], met: Container[tuple[int, ...]]
 ) -> tuple[str, ...]:
     """A mode in a line, under `MODE_HEADINGS`: its verdict and the root that makes it.
@@ -61,7 +61,7 @@ def contact_text(contact: tuple[int, ...]) -> str:
     return f"stabilizer{'s' * (len(contact) > 1)} {numbers} in contact" if contact else "no contact"
 
 
-def rows(found: Roots, length_scale: float) -> list[tuple[str, str, str, str]]:
+def lines(found: Roots, length_scale: float) -> list[tuple[str, str, str, str]]:
     """A line for each of the rightmost roots, under `HEADINGS`; `length_scale` is ℓ₁, m."""
     return [
         (f"{root.real:.6f}", f"{root.imag:.6f}", change(root, length_scale), wavelength(root, length_scale))

@@ -12,7 +12,7 @@ from ...units import BUILD_LENGTH
 SIDES = {1: "up", -1: "down"}
 
 
-def rows(case: Case, found: Mapping[int, CriticalDogleg | str], limit: float) -> list[tuple[str, str]]:
+def lines(case: Case, found: Mapping[int, CriticalDogleg | str], limit: float) -> list[tuple[str, str]]:
     """The lines of a table; `found` by side, or why a run stopped; `limit` the largest turn that was tried, rad."""
     return [
         (

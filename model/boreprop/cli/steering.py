@@ -1,0 +1,56 @@
+"""The command `boreprop steering`."""
+
+from math import radians
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from ..case.file import load_case
+from ..core.checks import check_number
+from ..report.tables.steering import HEADINGS, lines, piece_lines, summarize
+from . import console
+from .options import CaseFile, positive
+
+
+def steering(
+    case_file: CaseFile,
+    output: Annotated[
+        Path | None, typer.Option(metavar="STEERING.png", help="Draw build rate against force into this file.")
+    ] = None,
+    inclination_deg: Annotated[
+        float | None,
+        typer.Option(
+            metavar="A", help="Inclination at which the weight acts, degrees. Default: that at the end of the hole."
+        ),
+    ] = None,
+    force_limit: Annotated[
+        float | None,
+        typer.Option(
+            parser=positive,
+            metavar="N",
+            help="Largest force, N. Default: the largest of the case's schedule, or 30 kN if that has none.",
+        ),
+    ] = None,
+) -> None:
+    """Print how fast a steady steering force turns the hole, and draw it."""
+    if output is not None:
+        console.check_output(output, (".png",))
+    if inclination_deg is not None:
+        check_number("--inclination-deg", inclination_deg)
+    case = load_case(case_file)
+    summary = summarize(case, None if inclination_deg is None else radians(inclination_deg), force_limit)
+    table, pieces = Table(str(case_file), ""), Table(*HEADINGS)
+    for line in lines(summary):
+        table.add_row(*line)
+    for cells in piece_lines(summary.curve):
+        pieces.add_row(*cells)
+    Console().print(table, pieces)
+    if output is not None:
+        from ..report.figures.drawing import save  # here: matplotlib takes longer to load than all else to compute
+        from ..report.figures.steering import draw
+
+        save(draw(summary), output)
+        print(f"{output}: build rate and bit tilt over the steering force")

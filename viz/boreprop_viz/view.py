@@ -1,0 +1,121 @@
+"""What the command `boreprop-view` does: opens runs, and draws them."""
+
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from boreprop.case.file import load_case
+from boreprop.case.tables import read_schedule, read_survey
+from boreprop.cli import console
+from boreprop.core.survey import Survey
+from boreprop.errors import InputError
+from boreprop.run.results import SUFFIXES, read_trajectory
+from boreprop.run.simulate import simulate
+from boreprop.run.trajectory import Stopped, Trajectory
+
+from .record import draw
+from .sinks import open_recording
+from .source import Source, live, stored
+
+
+@dataclass
+class Opener:
+    """Opens what the command is given: result files, cases that it drills first, FMUs that it drives.
+
+    Parameters
+    ----------
+    case, fmu
+        The case of result files, or the FMU that has it, if they are not to have their own.
+    plan
+        The planned hole.
+    schedule
+        The file with the forces for an FMU, instead of those packed in it.
+    step, stop
+        Communication step and end, s, for an FMU, instead of its own.
+    """
+
+    case: Path | None
+    fmu: Path | None
+    plan: Survey | None
+    schedule: Path | None
+    step: float | None
+    stop: float | None
+    stopped: list[Stopped] = field(default_factory=list)  # runs that ended early: what there is of them is drawn
+
+    def open(self, name: str, path: Path) -> Source:
+        """A run to draw, under a name."""
+        if path.suffix == ".fmu":
+            from boreprop_fmu.host.drive import Run  # here: fmpy takes long to load
+
+            forces = None if self.schedule is None else read_schedule(self.schedule)
+            return live(name, Run(path, forces, step=self.step, stop=self.stop), self.plan)
+        try:
+            run = self._run(path)
+        except Stopped as error:
+            if error.trajectory is None:
+                raise
+            self.stopped.append(error)
+            run = error.trajectory
+        try:
+            return stored(name, run, self.plan)
+        except InputError as error:
+            raise InputError(f"{path}: {error}") from error
+
+    def _run(self, path: Path) -> Trajectory:
+        """The run in a result file, or of a case file that is drilled now."""
+        if path.suffix == ".toml":
+            if self.case or self.fmu:
+                raise InputError(f"{path}: must be a run to be given a case, got a case file")
+            case = load_case(path)
+            with console.progress("drilling", case.length) as drilled:
+                return simulate(case, progress=drilled)
+        if path.suffix not in SUFFIXES:
+            raise InputError(f"{path}: must end in {', '.join(SUFFIXES)}, .fmu or .toml, got {path.suffix!r}")
+        if self.fmu is None:
+            return read_trajectory(path, None if self.case is None else load_case(self.case))
+        from boreprop_fmu.host.drive import read_packed_case  # here: fmpy takes long to load
+
+        packed = read_packed_case(self.fmu)
+        if packed is None:
+            raise InputError(f"{self.fmu}: must hold its case, as ours do, got an FMU without")
+        return read_trajectory(path, packed)
+
+
+def show(
+    sources: list[Path],
+    *,
+    case: Path | None,
+    fmu: Path | None,
+    plan: Path | None,
+    schedule: Path | None,
+    step: float | None,
+    stop: float | None,
+    save: Path | None,
+    spawn: bool,
+    serve: bool,
+    connect: str | None,
+) -> None:
+    """Draw runs, see the options of the command."""
+    planned = None if plan is None else read_survey(plan)
+    opener = Opener(case, fmu, planned, schedule, step, stop)
+    opened = [opener.open(name, path) for name, path in zip(names(sources), sources, strict=True)]
+    rows = sum(source.rows for source in opened)
+    with (
+        open_recording(save=save, spawn=spawn, serve=serve, connect=connect) as rec,
+        console.progress("drawing", rows) as done,
+    ):
+        draw(rec, opened, planned, done)
+    if save is not None:
+        print(f"{save}: {rows} rows, {save.stat().st_size / 1e6:.1f} MB")
+    if opener.stopped:
+        raise opener.stopped[0]
+
+
+def names(sources: list[Path]) -> list[str]:
+    """What the runs are called: as their files, without what is not needed to tell them apart."""
+    for short in (lambda path: path.stem, lambda path: path.name, str):
+        found = [short(source) for source in sources]
+        if len(set(found)) == len(found):
+            return found
+    [(twice, _)] = Counter(sources).most_common(1)
+    raise InputError(f"{twice}: must be given once, got it again")
