@@ -51,7 +51,7 @@ def test_the_contract_holds(copy: Path, command: Command) -> None:
         ("model/boreprop/core", "from .. import errors", IN_MODEL),
         ("model/boreprop/analysis", "from ..report.tables import summary", IN_MODEL),
         ("fmu_build/boreprop_fmu/host", "from ..cli import app", IN_FMU),
-        ("model/boreprop/analysis/stability", "from ..study import design", CIRCLES),
+        ("model/boreprop/analysis/stability", "from .. import tipping", CIRCLES),
     ],
 )
 def test_the_contract_fails_when(copy: Path, command: Command, package: str, statement: str, contract: str) -> None:
