@@ -285,10 +285,10 @@ def test_numbers_that_are_no_state_are_refused_and_change_nothing(case: Case, da
 
 @given(st.floats(max_value=-1e-300, allow_infinity=False))
 def test_a_number_in_a_message_reads_back_as_the_same(value: float) -> None:
-    system = binding.System(1, (1.0,), (), 0.0, 0.0, value, 1.0, 1.0, 0.1, 1e-7)
+    parameters = np.array([1.0, 0.0, 0.0, value, 1.0, 1.0, 0.1, 1e-7])
     survey = np.zeros(1)
     why = ctypes.create_string_buffer(binding.MESSAGE)
-    assert not binding.library().boreprop_start(system, 1, survey, survey, binding.Inputs(0.0, 0.0, 1.0), why)
+    assert not binding.library().boreprop_start(1, parameters, 1, survey, survey, binding.Inputs(0.0, 0.0, 1.0), why)
     name, _, written = why.value.decode().rpartition(", got ")
     assert name == "flexural_stiffness: must be > 0"
     assert float(written) == value
