@@ -2,6 +2,7 @@
 
 import json
 import tomllib
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import asdict
 from difflib import get_close_matches
@@ -15,15 +16,19 @@ from pydantic_core import ErrorDetails
 from ..core.checks import check_number
 from ..core.errors import ParameterError
 from ..core.quantities import QUANTITIES, Quantity, quantity_of
+from ..core.survey import Survey
 from ..errors import InputError, shown
-from .case import Case
+from .case import Case, Schedule
 from .tables import read_schedule, read_survey
 
 Document = dict[str, dict[str, Any]]  # table → key → value
 
 BY_KEY = {quantity.key: quantity for quantity in QUANTITIES if quantity.key}
 TABLES = ("bha", "bit", "drilling", "hole", "rss", "run")  # in the order in which a file has them
-OF_FILES = {"hole.survey": ("survey", read_survey), "rss.schedule": ("schedule", read_schedule)}
+OF_FILES: dict[str, tuple[str, Callable[[Path], Survey | Schedule]]] = {
+    "hole.survey": ("survey", read_survey),
+    "rss.schedule": ("schedule", read_schedule),
+}
 """Key that names a file of columns → the part of a `Case` that they are, and what reads them."""
 
 _CASE = TypeAdapter(Case)

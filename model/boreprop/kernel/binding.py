@@ -3,6 +3,7 @@
 import ctypes
 import re
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -43,9 +44,13 @@ def library() -> ctypes.CDLL:
     Raises
     ------
     KernelError
-        If it is not built, cannot be loaded, or is older than its sources.
+        If it is not built, cannot be loaded, or is not made from its sources and the table of quantities as they are.
     """
-    path = library_path()
+    return load(library_path())
+
+
+def load(path: Path) -> ctypes.CDLL:
+    """The kernel in a file, if it is one for this table of quantities; `KernelError` if not."""
     helps = "with a C compiler or ziglang (pip install 'boreprop[native]') run: python -m boreprop.kernel"
     if not path.exists():
         raise KernelError(f"the native kernel must be built, got no {path.name}: {helps}")

@@ -10,6 +10,7 @@ from ..core.system import LEAST_SPAN
 
 FOLDER = Path(__file__).resolve().parent
 
+Table = tuple[Quantity, ...]
 SYSTEM = tuple(quantity for quantity in PARAMETERS if quantity.kind == "Real")
 """The parameters that the kernel has, in the order in which it takes their values."""
 
@@ -73,10 +74,10 @@ enum {{ MOST_OUTPUTS = {most_outputs} }}; /* values, of the largest assembly */
 """
 
 
-def acting() -> list[tuple[str, str, str]]:
+def acting(inputs: Table = INPUTS) -> list[tuple[str, str, str]]:
     """Name, unit and meaning of the members of the C struct Inputs."""
     members = []
-    for quantity in INPUTS:
+    for quantity in inputs:
         if quantity.field:  # the rate of penetration, which no case has, does not act on the drilling system
             members.append((quantity.name, quantity.unit, quantity.meaning))
             if quantity.slope:
@@ -84,23 +85,23 @@ def acting() -> list[tuple[str, str, str]]:
     return members
 
 
-def quantities_header() -> str:
+def quantities_header(system: Table = SYSTEM, inputs: Table = INPUTS, outputs: Table = OUTPUTS) -> str:
     """The text of quantities.h."""
     numbers = {
         "least_span": LEAST_SPAN,
         "most": MAX_STABILIZERS,
-        "parameters": len(SYSTEM),
-        "inputs": len(INPUTS),
-        "outputs": len(OUTPUTS),
-        "system": _lines(f"double {q.name}{ROOMS[q.size]}; /* {_note(q.unit, q.meaning)} */" for q in SYSTEM),
-        "acting": _lines(f"double {name}; /* {_note(unit, meaning)} */" for name, unit, meaning in acting()),
+        "parameters": len(system),
+        "inputs": len(inputs),
+        "outputs": len(outputs),
+        "system": _lines(f"double {q.name}{ROOMS[q.size]}; /* {_note(q.unit, q.meaning)} */" for q in system),
+        "acting": _lines(f"double {name}; /* {_note(unit, meaning)} */" for name, unit, meaning in acting(inputs)),
         "sizes": ", ".join(SIZES.values()),
-        "parameter_table": _lines(_row(q, f"offsetof(System, {q.name})") for q in SYSTEM),
-        "input_names": ", ".join(f"IN_{q.name.upper()}" for q in INPUTS),
-        "input_table": _lines(_row(q, "0") for q in INPUTS),
-        "output_names": _lines(f"OUT_{q.name.upper()}, /* {_note(q.unit, q.meaning)} */" for q in OUTPUTS),
-        "output_sizes": _lines(f"{SIZES[q.size]}, /* {q.name} */" for q in OUTPUTS),
-        "most_outputs": sum(q.count(MAX_STABILIZERS) for q in OUTPUTS),
+        "parameter_table": _lines(_row(q, f"offsetof(System, {q.name})") for q in system),
+        "input_names": ", ".join(f"IN_{q.name.upper()}" for q in inputs),
+        "input_table": _lines(_row(q, "0") for q in inputs),
+        "output_names": _lines(f"OUT_{q.name.upper()}, /* {_note(q.unit, q.meaning)} */" for q in outputs),
+        "output_sizes": _lines(f"{SIZES[q.size]}, /* {q.name} */" for q in outputs),
+        "most_outputs": sum(q.count(MAX_STABILIZERS) for q in outputs),
     }
     return QUANTITIES.format(digest=_digest(QUANTITIES.format(digest="", **numbers)), **numbers)
 

@@ -1,0 +1,42 @@
+"""What is generated for C is fresh, and C that does not keep up with the table of quantities is refused."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from boreprop.core.quantities import OUTPUTS, Quantity
+from boreprop.kernel import binding
+from boreprop.kernel.binding import KernelError
+from boreprop.kernel.compiler import FOLDER, CompilerError, NoCompilerError, compile_library, sources_digest
+from boreprop.kernel.generate import HEADERS, quantities_header
+
+
+@pytest.mark.parametrize("name", HEADERS)
+def test_the_generated_headers_are_fresh(name: str) -> None:
+    assert (FOLDER / name).read_text(encoding="utf-8") == HEADERS[name](), "run: python -m boreprop.kernel.generate"
+
+
+def compiled(folder: Path, outputs: tuple[Quantity, ...]) -> Path:
+    """The kernel, compiled with a header for these outputs."""
+    for path in [*FOLDER.glob("*.c"), *FOLDER.glob("*.h")]:
+        shutil.copy(path, folder)
+    (folder / "quantities.h").write_text(quantities_header(outputs=outputs), encoding="utf-8")
+    digest = {"BOREPROP_SOURCES_DIGEST": f'"{sources_digest()}"'}
+    try:
+        return compile_library(folder / "library.c", folder / "boreprop_kernel.so", defines=digest)
+    except NoCompilerError as error:
+        pytest.skip(str(error))
+
+
+def test_an_output_that_c_does_not_compute_is_an_error_of_the_compiler(tmp_path: Path) -> None:
+    half_added = Quantity("sensor_inclination", "output", "rad", "", "", "inclination at the sensor", size="n-1")
+    with pytest.raises(CompilerError, match="OUT_SENSOR_INCLINATION"):
+        compiled(tmp_path, (*OUTPUTS, half_added))
+
+
+def test_a_library_for_another_table_is_refused(tmp_path: Path) -> None:
+    assert binding.load(compiled(tmp_path, OUTPUTS))
+    (tmp_path / "other").mkdir()
+    with pytest.raises(KernelError, match="must be made for this table of quantities"):
+        binding.load(compiled(tmp_path / "other", OUTPUTS[::-1]))
