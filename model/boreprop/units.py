@@ -55,3 +55,4 @@ UNITS = {  # SI unit, as the table of quantities spells it
         {"rad": 1, "m": -1}, f"°/{BUILD_LENGTH:g} m", BUILD_LENGTH * 180 / pi, "+.2f", ascii=f"deg/{BUILD_LENGTH:g}m"
     ),
 }
+SMALL_LENGTH = Unit({"m": 1}, "mm", 1e3, ".3g")  # of clearances, and of the hole axis beside a straight line
