@@ -1,15 +1,20 @@
 """What is generated for C is fresh, and C that does not keep up with the table of quantities is refused."""
 
+import ctypes
 import shutil
+from math import inf, isfinite
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from boreprop.core.quantities import OUTPUTS, Quantity
+from boreprop.core.checks import check_number
+from boreprop.core.errors import ParameterError
+from boreprop.core.quantities import OUTPUTS, Quantity, scalar_names
 from boreprop.kernel import binding
 from boreprop.kernel.binding import KernelError
 from boreprop.kernel.compiler import FOLDER, CompilerError, NoCompilerError, compile_library, sources_digest
-from boreprop.kernel.generate import HEADERS, quantities_header
+from boreprop.kernel.generate import HEADERS, SYSTEM, quantities_header
 
 
 @pytest.mark.parametrize("name", HEADERS)
@@ -40,3 +45,19 @@ def test_a_library_for_another_table_is_refused(tmp_path: Path) -> None:
     (tmp_path / "other").mkdir()
     with pytest.raises(KernelError, match="must be made for this table of quantities"):
         binding.load(compiled(tmp_path / "other", OUTPUTS[::-1]))
+
+
+@pytest.mark.usefixtures("kernel")
+@pytest.mark.parametrize("quantity", SYSTEM, ids=lambda quantity: quantity.name)
+def test_c_refuses_what_python_refuses_in_the_same_words(quantity: Quantity) -> None:
+    good = dict(zip(scalar_names(SYSTEM, 2), [3.0, 6.0, 1e-3, 0.5, 1e3, 7e6, 10.0, 1.0, 0.03, 1e-7], strict=True))
+    name = quantity.names(2)[-1]
+    bounds = {"above": quantity.above, "at_least": quantity.at_least, "at_most": quantity.at_most}
+    outside = [quantity.above, quantity.at_least - 1e-9, quantity.at_most + 1e-9]
+    for value in (inf, *filter(isfinite, outside)):
+        why = ctypes.create_string_buffer(binding.MESSAGE)
+        parameters, survey = np.array(list((good | {name: value}).values())), np.zeros(1)
+        assert not binding.library().boreprop_start(2, parameters, 1, survey, survey, binding.Inputs(0, 0, 1e3), why)
+        with pytest.raises(ParameterError) as refused:
+            check_number(name, float(value), **bounds)
+        assert why.value.decode() == str(refused.value)

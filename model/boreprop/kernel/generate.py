@@ -3,12 +3,11 @@
 from collections.abc import Callable, Iterable
 from functools import cache
 from hashlib import sha256
-from pathlib import Path
 
 from ..core.quantities import INPUTS, MAX_STABILIZERS, OUTPUTS, PARAMETERS, Quantity
 from ..core.system import LEAST_SPAN
-
-FOLDER = Path(__file__).resolve().parent
+from ..replacing import replacing
+from .compiler import FOLDER
 
 Table = tuple[Quantity, ...]
 SYSTEM = tuple(quantity for quantity in PARAMETERS if quantity.kind == "Real")
@@ -96,9 +95,9 @@ def quantities_header(system: Table = SYSTEM, inputs: Table = INPUTS, outputs: T
         "system": _lines(f"double {q.name}{ROOMS[q.size]}; /* {_note(q.unit, q.meaning)} */" for q in system),
         "acting": _lines(f"double {name}; /* {_note(unit, meaning)} */" for name, unit, meaning in acting(inputs)),
         "sizes": ", ".join(SIZES.values()),
-        "parameter_table": _lines(_row(q, f"offsetof(System, {q.name})") for q in system),
+        "parameter_table": _lines(_range_row(q, f"offsetof(System, {q.name})") for q in system),
         "input_names": ", ".join(f"IN_{q.name.upper()}" for q in inputs),
-        "input_table": _lines(_row(q, "0") for q in inputs),
+        "input_table": _lines(_range_row(q, "0") for q in inputs),
         "output_names": _lines(f"OUT_{q.name.upper()}, /* {_note(q.unit, q.meaning)} */" for q in outputs),
         "output_sizes": _lines(f"{SIZES[q.size]}, /* {q.name} */" for q in outputs),
         "most_outputs": sum(q.count(MAX_STABILIZERS) for q in outputs),
@@ -127,7 +126,7 @@ def _note(unit: str, meaning: str) -> str:
     return f"{unit}: {meaning}" if unit else meaning
 
 
-def _row(quantity: Quantity, offset: str) -> str:
+def _range_row(quantity: Quantity, offset: str) -> str:
     bounds = ", ".join(_bound(bound) for bound in (quantity.above, quantity.at_least, quantity.at_most))
     return f'{{"{quantity.name}", {SIZES[quantity.size]}, {offset}, {bounds}}},'
 
@@ -138,5 +137,5 @@ def _bound(value: float) -> str:
 
 if __name__ == "__main__":
     for name, text in HEADERS.items():
-        (FOLDER / name).write_text(text(), encoding="utf-8", newline="\n")
-        print(FOLDER / name)
+        with replacing(FOLDER / name) as draft:
+            draft.write_text(text(), encoding="utf-8", newline="\n")
