@@ -87,7 +87,7 @@ static inline void drilling_cancel(Drilling *d) { go_back(&d->propagation); }
 
 /* What the outputs follow from: the state where the bit is. */
 typedef struct {
-    double theta, Theta, psi, F_0, x, z, earlier; /* earlier: Θ one ℓ₁ ago */
+    double l1, F_star, theta, Theta, psi, F_0, F[MAX_STABILIZERS], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
     Loads loads;
     const Mode *mode;
 } Present;
@@ -97,11 +97,13 @@ static inline Present present(Drilling *d) {
     const State *now = &p->now;
     double Y;
     Present at;
+    at.l1 = length_scale(&d->system), at.F_star = force_scale(&d->system);
     at.earlier = earlier_inclination(p, now->xi - 1.0);
     step_state(&now->step, now->xi, &at.theta, &Y);
     at.loads = present_loads(p);
     at.mode = settle(&p->modes, &at.loads, now->contact);
     at.F_0 = row_value(&at.mode->F_0, &at.loads, p->scaled.n);
+    for (int i = 0; i < p->scaled.n - 1; i++) at.F[i] = row_value(&at.mode->F[i], &at.loads, p->scaled.n);
     at.psi = bit_tilt(at.F_0, now->inputs.eta_pi, p->scaled.psi_star);
     at.Theta = at.theta - at.psi;
     position_at(now, now->xi, &at.x, &at.z);
@@ -113,7 +115,7 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
     const Scaled *scaled = &d->propagation.scaled;
     const Loads *loads = &at->loads;
     const ScaledInputs *inputs = &d->propagation.now.inputs;
-    double l1 = length_scale(&d->system), F_star = force_scale(&d->system);
+    double l1 = at->l1, F_star = at->F_star;
     int n = scaled->n;
     switch (which) {
     case OUT_DRILLED_LENGTH: return d->drilled_length;
@@ -123,8 +125,8 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
     case OUT_AVERAGE_INCLINATION: /* λ_i (⟨Θ⟩_i − θ) = e_i − e_{i−1} */
         return at->theta + (loads->e[i] - (i ? loads->e[i - 1] : 0.0)) / lambda_(scaled, i);
     case OUT_STABILIZER_DEFLECTION: return row_value(&at->mode->delta[i], loads, n) * l1;
-    case OUT_STABILIZER_FORCE: return row_value(&at->mode->F[i], loads, n) * F_star;
-    case OUT_STABILIZER_CONTACT: return wall(row_value(&at->mode->F[i], loads, n));
+    case OUT_STABILIZER_FORCE: return at->F[i] * F_star;
+    case OUT_STABILIZER_CONTACT: return wall(at->F[i]);
     case OUT_BIT_TILT_SATURATION: return left(at->F_0 / inputs->eta_pi, -scaled->psi_star, scaled->psi_star, ROUNDING);
     case OUT_BIT_LATERAL_FORCE: return at->F_0 * F_star;
     case OUT_BIT_MOMENT: return -row_value(&at->mode->M, loads, n) * F_star * l1;
