@@ -34,11 +34,11 @@ if TYPE_CHECKING:
     from .core.survey import Survey as Survey
     from .core.system import BitRock as BitRock
     from .core.system import BottomHoleAssembly as BottomHoleAssembly
-    from .run.trajectory import Stopped as Stopped
     from .run.engines import engine as engine
     from .run.results import read_trajectory as read_trajectory
     from .run.results import write_trajectory as write_trajectory
     from .run.simulate import simulate as simulate
+    from .run.trajectory import Stopped as Stopped
     from .run.trajectory import Trajectory as Trajectory
 
 _HOMES = {  # public name → module, and the name there where it is another

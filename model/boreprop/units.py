@@ -1,3 +1,58 @@
-"""Units that people use."""
+"""Units: what SI units are made of, and the units and formats in which people read a quantity. Their one home.
+
+A quantity is in SI units everywhere; only what is shown to people is in the unit, and with the digits, given here.
+"""
+
+from dataclasses import dataclass
+from math import pi
 
 BUILD_LENGTH = 30.0  # m: build rates are told in degrees per 30 m
+
+
+@dataclass(frozen=True)
+class Unit:
+    """How values of one SI unit are shown.
+
+    Parameters
+    ----------
+    base
+        Base units of the SI unit → exponents.
+    shown
+        The unit to show values in.
+    factor
+        How many of that unit the SI unit is.
+    digits
+        Format of a number in that unit.
+    ascii
+        The unit to show values in as FMI spells it; empty: the SI unit itself.
+    """
+
+    base: dict[str, int]
+    shown: str
+    factor: float = 1.0
+    digits: str = ".4g"
+    ascii: str = ""
+
+    def number(self, value: float, digits: str = "") -> str:
+        """An SI value as a number of the shown unit, in this format or the usual one."""
+        return f"{self.factor * value:{digits or self.digits}}"
+
+    def text(self, value: float, digits: str = "") -> str:
+        """The same with the unit."""
+        return f"{self.number(value, digits)} {self.shown}".rstrip()
+
+
+UNITS = {  # SI unit, as the table of quantities spells it
+    "": Unit({}, ""),
+    "m": Unit({"m": 1}, "m", digits=".1f"),
+    "N": Unit({"kg": 1, "m": 1, "s": -2}, "kN", 1e-3, ".1f", ascii="kN"),
+    "N/m": Unit({"kg": 1, "s": -2}, "N/m"),
+    "N.m": Unit({"kg": 1, "m": 2, "s": -2}, "kN·m", 1e-3, ".1f", ascii="kN.m"),
+    "N.m2": Unit({"kg": 1, "m": 3, "s": -2}, "kN·m²", 1e-3, ascii="kN.m2"),
+    "m/s": Unit({"m": 1, "s": -1}, "m/h", 3600.0, ".1f", ascii="m/h"),
+    "rad": Unit({"rad": 1}, "°", 180 / pi, ".2f", ascii="deg"),
+    "rad/m": Unit(
+        {"rad": 1, "m": -1}, f"°/{BUILD_LENGTH:g} m", BUILD_LENGTH * 180 / pi, "+.2f", ascii=f"deg/{BUILD_LENGTH:g}m"
+    ),
+}
+SMALL_LENGTH = Unit({"m": 1}, "mm", 1e3, ".3g")  # of clearances, and of the hole axis beside a straight line

@@ -31,8 +31,9 @@ from boreprop.core.beam import Beam
 from boreprop.core.errors import ParameterError
 from boreprop.core.modes import Loads
 from boreprop.core.propagation import Propagation
+from boreprop.core.quantities import MAX_STABILIZERS
 from boreprop.core.survey import Survey
-from boreprop.core.system import MAX_STABILIZERS, BitRock, BottomHoleAssembly, Scaled, eta_pi, scale
+from boreprop.core.system import BitRock, BottomHoleAssembly, Scaled, eta_pi, scale
 from boreprop.report.figures.steering import draw
 from boreprop.report.tables.steering import lines as table_lines
 from boreprop.report.tables.steering import piece_lines, summarize, warnings

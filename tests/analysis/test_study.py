@@ -23,7 +23,6 @@ import scipy.stats
 import xarray
 
 import study_functions
-from boreprop.analysis.study.design import parameters, parse_axis, parse_distribution, parse_each
 from boreprop.analysis.study.run import (
     FIGURES,
     Row,
@@ -38,6 +37,8 @@ from boreprop.analysis.study.run import (
 )
 from boreprop.analysis.summary import summarize
 from boreprop.case.paper import paper_case
+from boreprop.case.parameters import parameters
+from boreprop.cli.ranges import parse_axis, parse_distribution, parse_each
 from boreprop.core.system import eta_pi
 from boreprop.errors import InputError
 from boreprop.report.tables.study import lines, sentence
@@ -220,7 +221,7 @@ def test_a_study_of_which_every_case_fails_says_so() -> None:
         results = run(study, workers=1)
         assert lines(results, [0.5]) == []
         assert sentence(results).startswith(
-            "2 cases, 2 failed (the first: stabilizer_clearances: must be >= 0, got -0.00"
+            "2 cases, 2 failed (the first: stabilizer_clearance[1]: must be >= 0, got -0.00"
         )
 
 
@@ -510,7 +511,7 @@ def test_the_command_over_a_grid(command: Command, tmp_path: Path, paper_text: s
     result = command("boreprop", "study", "case.toml", *axes, "--output", "study.parquet", "--workers", "1")
     assert result.stderr == ""
     assert "median" in result.stdout
-    assert "6 cases, 2 failed (the first: tilt_limit: must be <= " in result.stdout
+    assert "6 cases, 2 failed (the first: bit_tilt_limit: must be <= " in result.stdout
     assert "the figures are of the other 4, " in result.stdout
     assert parquet.read_table(tmp_path / "study.parquet")["bit_tilt_limit_deg"].to_pylist() == [1.0, 2.0, 95.0] * 2
 

@@ -175,7 +175,7 @@ def test_the_extras_that_are_named_exist(package: str) -> None:
 @pytest.mark.parametrize("commands", [app.COMMANDS, fmu_app.COMMANDS])
 def test_the_help_lists_each_command_with_the_first_line_of_its_own(commands: dict[str, tuple[str, str]]) -> None:
     for name, (module, line) in commands.items():
-        assert inspect.getdoc(getattr(import_module(module), name)).splitlines()[0] == line
+        assert (inspect.getdoc(getattr(import_module(module), name)) or "").splitlines()[0] == line
 
 
 def loaded(*arguments: str) -> set[str]:

@@ -98,7 +98,7 @@ def test_random_systems_do_not_fail_and_both_engines_agree(space: str) -> None:
 
 @pytest.mark.parametrize("positions", [(3.66, 3.6601, 3.6602, 7.32), (3.66, 3.669), (0.005, 7.32)])
 def test_stabilizers_closer_than_a_centimetre_are_refused(positions: tuple[float, ...]) -> None:
-    why = "stabilizer_positions: must be at least 0.01 m from each other and from the bit, got "
+    why = "stabilizer_position: must be at least 0.01 m from each other and from the bit, got "
     with pytest.raises(ParameterError, match=why):
         BottomHoleAssembly(positions, (1e-3,) * (len(positions) - 1), 0.0, 1080.0, 7.2e6)
 

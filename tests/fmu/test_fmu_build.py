@@ -12,6 +12,7 @@ import pytest
 from fmpy.validation import validate_fmu
 
 from boreprop.case.case import Case
+from boreprop.core.checks import check_quantity
 from boreprop.core.quantities import BY_NAME, VARIABLES, scalar_names
 from boreprop.core.system import BottomHoleAssembly
 from boreprop.errors import InputError
@@ -39,16 +40,29 @@ def test_every_variable_of_the_table_is_declared_with_its_role_unit_and_bounds(d
     scalars = description.findall("ModelVariables/ScalarVariable")
     assert [scalar.get("name") for scalar in scalars] == scalar_names(VARIABLES, 2)
     for scalar in scalars:
-        variable = BY_NAME[scalar.attrib["name"].partition("[")[0]]
-        typed = scalar.find(variable.kind)
+        quantity = BY_NAME[scalar.attrib["name"].partition("[")[0]]
+        typed = scalar.find(quantity.kind)
         assert typed is not None
-        assert scalar.get("causality") == variable.role
-        assert scalar.attrib["description"].startswith(variable.meaning)
-        assert variable.symbol in scalar.attrib["description"]
-        if variable.kind == "Real":
-            assert typed.get("unit") == (variable.unit or "1")
-        assert float(typed.get("min", "-inf")) == variable.min
-        assert float(typed.get("max", "inf")) == variable.max
+        assert scalar.get("causality") == quantity.role
+        assert scalar.attrib["description"].startswith(quantity.meaning)
+        assert quantity.symbol in scalar.attrib["description"]
+        if quantity.kind == "Real":
+            assert typed.get("unit") == (quantity.unit or "1")
+        assert float(typed.get("min", "-inf")) == quantity.at_least
+        assert float(typed.get("max", "inf")) == quantity.at_most
+
+
+@both_flavours
+def test_a_value_at_a_bound_that_the_description_gives_is_accepted(description: Element) -> None:
+    given = [
+        (scalar.attrib["name"].partition("[")[0], float(bound))
+        for scalar in description.iterfind("ModelVariables/ScalarVariable")
+        for bound in (scalar[0].get("min"), scalar[0].get("max"))
+        if bound is not None
+    ]
+    for name, bound in given:
+        check_quantity(name, bound)
+    assert {"rss_position", "relative_tolerance", "bit_tilt_limit"} <= {name for name, _ in given}
 
 
 @both_flavours

@@ -339,7 +339,7 @@ def test_without_pyarrow_parquet_says_what_to_install(
     trajectory: Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "pyarrow", None)
-    with pytest.raises(InputError, match=r"run\.parquet: .* pip install 'boreprop\[parquet\]'"):
+    with pytest.raises(InputError, match=r"run\.parquet: .* pip install 'boreprop\[study\]'"):
         write_trajectory(trajectory, tmp_path / "run.parquet")
     assert not list(tmp_path.iterdir())
 

@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import typer
 
 from boreprop.case.case import Case, Schedule
 from boreprop.case.file import dump_case, load_case
-from boreprop.cli.console import tolerance, typer
+from boreprop.cli.options import tolerance
 from boreprop.errors import BorepropError, InputError
 from boreprop.run.results import case_path, read_trajectory, write_trajectory
 from boreprop.run.simulate import simulate
@@ -61,7 +62,7 @@ def test_progress_makes_no_difference_to_what_is_kept(pushed: Case) -> None:
     with pytest.raises(Stopped) as caught:
         simulate(pushed, progress=seen.append, engine="native")
     assert caught.value.trajectory is not None
-    assert len(caught.value.trajectory) == KEPT
+    assert caught.value.trajectory.rows == KEPT
     assert max(seen) == 3.35
 
 

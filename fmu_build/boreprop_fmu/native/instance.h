@@ -60,24 +60,9 @@ static fmi2Status fail(const Component *c, fmi2Status status, const char *why) {
 
 /* The drilling system */
 
-static System system_of(const double value[VARIABLES]) {
-    System system = {0};
-    system.n = STABILIZERS;
-    for (int i = 0; i < STABILIZERS; i++) system.stabilizer_position[i] = value[STABILIZER_POSITION + i];
-    for (int i = 0; i < STABILIZERS - 1; i++) system.stabilizer_clearance[i] = value[STABILIZER_CLEARANCE + i];
-    system.rss_position = value[RSS_POSITION];
-    system.distributed_weight = value[DISTRIBUTED_WEIGHT];
-    system.flexural_stiffness = value[FLEXURAL_STIFFNESS];
-    system.lateral_steering_resistance = value[LATERAL_STEERING_RESISTANCE];
-    system.angular_steering_resistance = value[ANGULAR_STEERING_RESISTANCE];
-    system.bit_tilt_limit = value[BIT_TILT_LIMIT];
-    system.relative_tolerance = value[RELATIVE_TOLERANCE];
-    return system;
-}
-
 /* A drilling system that has not begun; NULL with `why` if the parameters are bad. */
 static Run *new_run(const double value[VARIABLES], char why[LINE]) {
-    System system = system_of(value);
+    System system = system_of(STABILIZERS, value + STABILIZER_POSITION); /* where the parameters begin */
     Run *run = calloc(1, sizeof *run);
     if (!run) explain(why, "run: must fit into the memory");
     else if (run_prepare(run, &system, why) == DONE) return run;
@@ -132,9 +117,9 @@ static int ready(Component *c, char why[LINE]) {
 }
 
 static int check_given(const double input[INPUTS], char why[LINE]) {
-    return check_finite("rss_force", input[RSS_FORCE], why) &&
-           check_positive("active_weight_on_bit", input[ACTIVE_WEIGHT_ON_BIT], why) &&
-           check_at_least("rate_of_penetration", input[RATE_OF_PENETRATION], 0.0, why);
+    for (int i = 0; i < INPUT_COUNT; i++)
+        if (!check_quantity(&INPUT_TABLE[i], 0, input[i], why)) return 0;
+    return 1;
 }
 
 /* The outputs of the present hole under the present inputs: 0 with `why` if there are none. */

@@ -15,8 +15,8 @@ from uuid import UUID, uuid5
 
 from boreprop.case.case import Case
 from boreprop.case.file import dump_case
-from boreprop.core.propagation import RELATIVE_TOLERANCE
-from boreprop.core.quantities import BY_NAME
+from boreprop.case.parameters import parameters
+from boreprop.core.quantities import INPUTS, PARAMETERS
 from boreprop.errors import InputError
 from boreprop.replacing import replacing
 
@@ -171,23 +171,8 @@ def pack_manual(case: Case, runtime: str) -> dict[str, bytes]:
 
 def start_values(case: Case) -> dict[str, float | str]:
     """Start value of every input and parameter, by scalar name."""
-    bha, bit = case.bha, case.bit
-    n = len(bha.stabilizer_positions)
-    return {
-        "rss_force": case.schedule.rss_force[0],
-        "active_weight_on_bit": case.active_weight_on_bit,
-        "rate_of_penetration": 1.0,
-        **dict(zip(BY_NAME["stabilizer_position"].names(n), bha.stabilizer_positions, strict=True)),
-        **dict(zip(BY_NAME["stabilizer_clearance"].names(n), bha.stabilizer_clearances, strict=True)),
-        "rss_position": bha.rss_position,
-        "distributed_weight": bha.distributed_weight,
-        "flexural_stiffness": bha.flexural_stiffness,
-        "lateral_steering_resistance": bit.lateral_steering_resistance,
-        "angular_steering_resistance": bit.angular_steering_resistance,
-        "bit_tilt_limit": bit.tilt_limit,
-        "relative_tolerance": RELATIVE_TOLERANCE,
-        "survey_file": "",
-    }
+    own = {q.name: q.start for q in INPUTS + PARAMETERS if q.start is not None}
+    return {**own, **parameters(case)}
 
 
 def base_class() -> tuple[str, dict[str, bytes]]:

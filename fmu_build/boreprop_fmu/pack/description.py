@@ -1,38 +1,12 @@
-"""modelDescription.xml of the borehole FMU, from the table of variables."""
+"""modelDescription.xml of the borehole FMU, from the table of quantities."""
 
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
-from math import isfinite, pi
+from math import isfinite
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from boreprop.core.quantities import VARIABLES, Variable
-
-UNITS: dict[str, tuple[dict[str, int], tuple[str, float] | None]] = {
-    # unit: its SI base units, the unit to show it in and how many of those it is
-    "1": ({}, None),
-    "N": ({"kg": 1, "m": 1, "s": -2}, ("kN", 1e-3)),
-    "N.m": ({"kg": 1, "m": 2, "s": -2}, ("kN.m", 1e-3)),
-    "N.m2": ({"kg": 1, "m": 3, "s": -2}, ("kN.m2", 1e-3)),
-    "N/m": ({"kg": 1, "s": -2}, None),
-    "m": ({"m": 1}, None),
-    "m/s": ({"m": 1, "s": -1}, ("m/h", 3600.0)),
-    "rad": ({"rad": 1}, ("deg", 180 / pi)),
-    "rad/m": ({"rad": 1, "m": -1}, ("deg/30m", 30 * 180 / pi)),
-}
-
-DIRECT: dict[str, tuple[str, ...]] = {
-    # output: the inputs that it follows at once, without any drilling; eqs. (10), (14), (16), (17), (21)
-    "borehole_inclination": ("rss_force", "active_weight_on_bit"),
-    "bit_tilt": ("rss_force", "active_weight_on_bit"),
-    "stabilizer_deflection": ("rss_force",),
-    "stabilizer_force": ("rss_force",),
-    "stabilizer_contact": ("rss_force",),
-    "bit_tilt_saturation": ("rss_force", "active_weight_on_bit"),
-    "bit_lateral_force": ("rss_force",),
-    "bit_moment": ("rss_force",),
-    "borehole_curvature": ("rss_force", "active_weight_on_bit"),
-    "eta_pi": ("active_weight_on_bit",),
-}
+from boreprop.core.quantities import VARIABLES, Quantity
+from boreprop.units import UNITS
 
 LOG_CATEGORIES = {"logStatusError": "Bad input, and why a step was discarded."}
 
@@ -88,10 +62,10 @@ def model_description(
     for name, meaning in LOG_CATEGORIES.items():
         SubElement(categories, "Category", name=name, description=meaning)
     SubElement(root, "DefaultExperiment", startTime="0.0", stopTime=repr(stop_time), stepSize=repr(step_size))
-    scalars = [(name, variable) for variable in VARIABLES for name in variable.names(n)]
+    scalars = [(name, quantity) for quantity in VARIABLES for name in quantity.names(n)]
     variables = SubElement(root, "ModelVariables")
-    for reference, (name, variable) in enumerate(scalars):
-        _add_variable(variables, name, reference, variable, start)
+    for reference, (name, quantity) in enumerate(scalars):
+        _add_variable(variables, name, reference, quantity, start)
     _add_structure(SubElement(root, "ModelStructure"), scalars)
     indent(root)
     document: bytes = tostring(root, encoding="utf-8", xml_declaration=True)
@@ -99,53 +73,52 @@ def model_description(
 
 
 def _add_units(units: Element) -> None:
-    for name, (base, display) in UNITS.items():
-        unit = SubElement(units, "Unit", name=name)
-        SubElement(unit, "BaseUnit", {symbol: str(exponent) for symbol, exponent in base.items()})
-        if display:
-            SubElement(unit, "DisplayUnit", name=display[0], factor=repr(display[1]))
+    for name, unit in UNITS.items():
+        element = SubElement(units, "Unit", name=name or "1")
+        SubElement(element, "BaseUnit", {symbol: str(exponent) for symbol, exponent in unit.base.items()})
+        if unit.ascii:
+            SubElement(element, "DisplayUnit", name=unit.ascii, factor=repr(unit.factor))
 
 
 def _add_variable(
-    variables: Element, name: str, reference: int, variable: Variable, start: Mapping[str, float | str]
+    variables: Element, name: str, reference: int, quantity: Quantity, start: Mapping[str, float | str]
 ) -> None:
-    source = ", ".join(part for part in (variable.symbol, variable.equation and f"eq. {variable.equation}") if part)
+    source = ", ".join(part for part in (quantity.symbol, quantity.equation and f"eq. {quantity.equation}") if part)
     attributes = {
         "name": name,
         "valueReference": str(reference),
-        "description": f"{variable.meaning} [{source}]" if source else variable.meaning,
-        "causality": variable.role,
-        "variability": "continuous" if variable.kind == "Real" else "discrete",
+        "description": f"{quantity.meaning} [{source}]" if source else quantity.meaning,
+        "causality": quantity.role,
+        "variability": "continuous" if quantity.kind == "Real" else "discrete",
     }
-    if variable.role == "parameter":
+    if quantity.role == "parameter":
         attributes |= {"variability": "fixed", "initial": "exact"}
-    if variable.role == "output":
+    if quantity.role == "output":
         attributes |= {"initial": "calculated"}
     scalar = SubElement(variables, "ScalarVariable", attributes)
-    typed = SubElement(scalar, variable.kind)
-    if variable.kind == "Real":
-        unit = variable.unit or "1"
-        typed.set("unit", unit)
-        display = UNITS[unit][1]
-        if display:
-            typed.set("displayUnit", display[0])
-        typed.set("nominal", repr(variable.nominal))
-    number = repr if variable.kind == "Real" else "{:d}".format
-    if isfinite(variable.min):
-        typed.set("min", number(variable.min))
-    if isfinite(variable.max):
-        typed.set("max", number(variable.max))
+    typed = SubElement(scalar, quantity.kind)
+    if quantity.kind == "Real":
+        typed.set("unit", quantity.unit or "1")
+        if display := UNITS[quantity.unit].ascii:
+            typed.set("displayUnit", display)
+        typed.set("nominal", repr(quantity.nominal))
+    number = repr if quantity.kind == "Real" else "{:d}".format
+    # FMI cannot say that a value must be above a bound and not on it: such a bound is left out
+    if isfinite(quantity.at_least):
+        typed.set("min", number(quantity.at_least))
+    if isfinite(quantity.at_most):
+        typed.set("max", number(quantity.at_most))
     if name in start:
         value = start[name]
         typed.set("start", value if isinstance(value, str) else repr(value))
 
 
-def _add_structure(structure: Element, scalars: list[tuple[str, Variable]]) -> None:
+def _add_structure(structure: Element, scalars: list[tuple[str, Quantity]]) -> None:
     index = {name: str(i) for i, (name, _) in enumerate(scalars, start=1)}
-    outputs = [(name, variable) for name, variable in scalars if variable.role == "output"]
+    outputs = [(name, quantity) for name, quantity in scalars if quantity.role == "output"]
     unknowns = SubElement(structure, "Outputs")
-    for name, variable in outputs:
-        depends_on = " ".join(index[source] for source in DIRECT.get(variable.name, ()))
+    for name, quantity in outputs:
+        depends_on = " ".join(index[source] for source in quantity.follows)
         SubElement(unknowns, "Unknown", index=index[name], dependencies=depends_on)
     unknowns = SubElement(structure, "InitialUnknowns")
     for name, _ in outputs:  # no dependencies named: they depend on everything

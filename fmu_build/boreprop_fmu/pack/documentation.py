@@ -1,10 +1,10 @@
-"""documentation/index.html of the borehole FMU: the equations, the variables of the table, an example."""
+"""documentation/index.html of the borehole FMU: the equations, its variables, an example."""
 
 from html import escape
-from math import degrees, isfinite
+from math import degrees
 
 from boreprop.case.case import Case
-from boreprop.core.quantities import VARIABLES, Variable
+from boreprop.core.quantities import VARIABLES, Quantity
 
 PAGE = """<!DOCTYPE html>
 <html lang="en">
@@ -110,17 +110,17 @@ def documentation(case: Case, runtime: str) -> bytes:
         f"{n} stabilizer{'s' * (n > 1)}, the last one {case.bha.stabilizer_positions[-1]:g} m from the bit; "
         f"the existing hole ends at {degrees(case.survey.inclination[-1]):.3g}°"
     )
-    rows = [_row(variable, variable.names(n)) for variable in VARIABLES if variable.names(n)]
+    rows = [_row(quantity, quantity.names(n)) for quantity in VARIABLES if quantity.names(n)]
     return PAGE.format(case=facts, variables="\n".join(rows), **TEXTS[runtime]).encode()
 
 
-def _row(variable: Variable, names: list[str]) -> str:
+def _row(quantity: Quantity, names: list[str]) -> str:
     cells = [
         names[0] if len(names) == 1 else f"{names[0]} … {names[-1]}",
-        variable.symbol,
-        variable.equation,
-        variable.unit,
-        " ".join(f"{sign} {bound:g}" for sign, bound in (("≥", variable.min), ("≤", variable.max)) if isfinite(bound)),
-        f"{variable.role}: {variable.meaning}",
+        quantity.symbol,
+        quantity.equation,
+        quantity.unit,
+        quantity.range.replace(">=", "≥").replace("<=", "≤"),
+        f"{quantity.role}: {quantity.meaning}",
     ]
     return "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>"

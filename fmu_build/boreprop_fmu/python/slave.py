@@ -18,21 +18,16 @@ from zlib import crc32
 from pythonfmu.enums import Fmi2Status
 from pythonfmu.fmi2slave import Fmi2Slave
 
-from boreprop.core.checks import check_number
+from boreprop.core.checks import check_number, check_quantity
 from boreprop.core.columns import read_columns
 from boreprop.core.drilling import Drilling
 from boreprop.core.errors import ParameterError, TableError
-from boreprop.core.quantities import BY_NAME, VARIABLES, Variable
+from boreprop.core.quantities import VARIABLES, Quantity, fields_of
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 
 STATE_FORMAT = "boreprop-fmu-state-2"
 NOTHING: dict[str, Any] = {"Real": nan, "Integer": 0, "Boolean": False, "String": ""}  # the value of what has none
-FMI_NAME = {  # of what the model calls otherwise
-    "tilt_limit": "bit_tilt_limit",
-    "stabilizer_positions": "stabilizer_position",
-    "stabilizer_clearances": "stabilizer_clearance",
-}
 
 
 class SlaveError(ValueError):
@@ -52,7 +47,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         self.guid: str = packed["guid"]
         self._n: int = packed["stabilizers"]
         self._survey = Survey(**{name: tuple(values) for name, values in packed["survey"].items()})
-        self._scalars = [(name, variable) for variable in VARIABLES for name in variable.names(self._n)]
+        self._scalars = [(name, quantity) for quantity in VARIABLES for name in quantity.names(self._n)]
         self._given: dict[str, Any] = packed["start"]  # inputs and parameters
         self._outputs = self._nothing()
         self._stale = True  # the outputs are not those of the present hole under the present inputs
@@ -131,26 +126,13 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
     # What is done then; these raise
 
     def _nothing(self) -> dict[str, Any]:
-        return {name: NOTHING[variable.kind] for name, variable in self._scalars if variable.role == "output"}
+        return {name: NOTHING[quantity.kind] for name, quantity in self._scalars if quantity.role == "output"}
 
     def _build(self, survey: Survey) -> Drilling:
-        def stack(name: str) -> tuple[float, ...]:
-            return tuple(given[scalar] for scalar in BY_NAME[name].names(self._n))
-
         given = self._given
         return Drilling(
-            BottomHoleAssembly(
-                stabilizer_positions=stack("stabilizer_position"),
-                stabilizer_clearances=stack("stabilizer_clearance"),
-                rss_position=given["rss_position"],
-                distributed_weight=given["distributed_weight"],
-                flexural_stiffness=given["flexural_stiffness"],
-            ),
-            BitRock(
-                lateral_steering_resistance=given["lateral_steering_resistance"],
-                angular_steering_resistance=given["angular_steering_resistance"],
-                tilt_limit=given["bit_tilt_limit"],
-            ),
+            BottomHoleAssembly(**fields_of("bha", given, self._n)),
+            BitRock(**fields_of("bit", given, self._n)),
             survey,
             active_weight_on_bit=given["active_weight_on_bit"],
             rss_force=given["rss_force"],
@@ -174,10 +156,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         if self._fault:
             raise SlaveError(self._fault)
         if self._drilling is None:
-            try:
-                self._drilling = self._build(self._read_survey())
-            except ParameterError as error:
-                raise ParameterError(FMI_NAME.get(error.name, error.name), error.constraint, error.value) from error
+            self._drilling = self._build(self._read_survey())
         return self._drilling
 
     def _advance(self, drilling: Drilling, drilled_length: float) -> None:
@@ -189,7 +168,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         check_number("current_time", current_time)
         check_number("step_size", step_size, above=0.0)
         rate, anchor = self._given["rate_of_penetration"], self._anchor
-        check_number("rate_of_penetration", rate, at_least=0.0)
+        check_quantity("rate_of_penetration", rate)
         drilling = self._ready()
         continues = isclose(current_time, self._time, rel_tol=1e-12, abs_tol=1e-9 * step_size)
         if rate != anchor[2] or not continues:
@@ -206,13 +185,13 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         self._outputs = drilling.outputs()
         self._stale = False
 
-    def _scalar(self, reference: int, kind: str) -> tuple[str, Variable]:
+    def _scalar(self, reference: int, kind: str) -> tuple[str, Quantity]:
         if not 0 <= reference < len(self._scalars):
             raise ParameterError("value reference", f"must be 0 to {len(self._scalars) - 1}", reference)
-        name, variable = self._scalars[reference]
-        if variable.kind != kind:
-            raise ParameterError(name, f"must be used as {variable.kind}", kind)
-        return name, variable
+        name, quantity = self._scalars[reference]
+        if quantity.kind != kind:
+            raise ParameterError(name, f"must be used as {quantity.kind}", kind)
+        return name, quantity
 
     def _get(self, references: list[int], kind: str) -> list[Any]:
         values = [NOTHING[kind]] * len(references)
@@ -221,8 +200,8 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
 
     def _read(self, references: list[int], kind: str, values: list[Any]) -> None:
         for index, reference in enumerate(references):
-            name, variable = self._scalar(reference, kind)
-            if variable.role == "output":
+            name, quantity = self._scalar(reference, kind)
+            if quantity.role == "output":
                 if self._stale:
                     self._stale = False  # whether it goes well or not: the log says it once
                     self._safely(self._refresh)
@@ -232,12 +211,12 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
 
     def _set(self, references: list[int], values: list[Any], kind: str) -> None:
         for reference, value in zip(references, values, strict=True):
-            name, variable = self._scalar(reference, kind)
-            if variable.role == "output":
+            name, quantity = self._scalar(reference, kind)
+            if quantity.role == "output":
                 raise ParameterError(name, "must not be set, it is an output", value)
             if value == self._given[name]:
                 continue
-            if variable.role == "parameter" and self._initialized:
+            if quantity.role == "parameter" and self._initialized:
                 raise ParameterError(name, "must not change after initialization", value)
             self._given[name] = value
             self._stale = True

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ..core.checks import check_increasing, check_number
+from ..core.checks import check_increasing, check_part
 from ..core.errors import ParameterError
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly, eta_pi
@@ -35,8 +35,7 @@ class Schedule:
         if len(self.rss_force) != len(self.drilled_length):
             constraint = f"must hold one value per drilled_length, here {len(self.drilled_length)}"
             raise ParameterError("rss_force", constraint, self.rss_force)
-        for force in self.rss_force:
-            check_number("rss_force", force)
+        check_part("schedule", self)
 
 
 @dataclass(frozen=True)
@@ -73,8 +72,7 @@ class Case:
     schedule: Schedule = Schedule()
 
     def __post_init__(self) -> None:
-        for name in ("bit_diameter", "active_weight_on_bit", "length"):
-            check_number(name, getattr(self, name), above=0.0)
+        check_part("", self)
 
     @property
     def length_scale(self) -> float:

@@ -1,15 +1,21 @@
 """A case: what is drilled, with what, from where, under which steering force. Read from and written to TOML.
 
-The file speaks the field's language (long names, degrees), a `Case` the core's (SI, radians). What the file must look
-like is in `case_file`, which needs the extra [cli]; a `Case` made in Python needs nothing.
+The file speaks the field's language (long names, degrees), a `Case` the core's (SI, radians). The table of quantities
+says which key of the file is which field of the case.
 """
 
 import tomllib
 from math import degrees, radians
+from operator import attrgetter
 from pathlib import Path
+from typing import Any
 
+import tomli_w
+
+from ..core.quantities import QUANTITIES
 from ..errors import InputError
 from .case import Case
+from .schema import TABLES, parse
 
 
 def load_case(path: str | Path) -> Case:
@@ -36,51 +42,40 @@ def parse_case(text: str, source: str | Path) -> Case:
     InputError
         If the text is no TOML, breaks a constraint, or refers to a file that does.
     """
-    from .schema import parse
-
     return parse(text, Path(source))
 
 
-def read_stopped(text: str) -> str | None:
-    """Why the run of a case stopped before its end, if the text of the case's file says so."""
+def read_run(text: str) -> dict[str, str]:
+    """What the text of a case file says of a run of the case: see `dump_case`. Nothing, if it is no case file."""
     try:
-        stopped = tomllib.loads(text).get("run", {}).get("stopped")
+        run = tomllib.loads(text).get("run", {})
+        return {key: str(value) for key, value in run.items()}
     except (tomllib.TOMLDecodeError, AttributeError):
-        return None
-    return None if stopped is None else str(stopped)
+        return {}
 
 
-def dump_case(case: Case, stopped: str | None = None) -> str:
+def dump_case(case: Case, **run: str | None) -> str:
     """`case` as the text of a case file that refers to no other file; `parse_case` gives the same case back.
 
-    If its run stopped before its end, the text may say why; `read_stopped` gives that back.
+    Parameters
+    ----------
+    case
+        What to write.
+    run
+        What to say of a run of it: ``engine``, and ``stopped``, why it stopped before its end. `read_run` gives that
+        back.
     """
-    import tomli_w
-
-    bha, bit = case.bha, case.bit
-    run = {} if stopped is None else {"run": {"stopped": stopped}}
-    document = {
-        "bha": {
-            "stabilizer_positions": list(bha.stabilizer_positions),
-            "stabilizer_clearances": list(bha.stabilizer_clearances),
-            "rss_position": bha.rss_position,
-            "distributed_weight": bha.distributed_weight,
-            "flexural_stiffness": bha.flexural_stiffness,
-        },
-        "bit": {
-            "lateral_steering_resistance": bit.lateral_steering_resistance,
-            "angular_steering_resistance": bit.angular_steering_resistance,
-            "tilt_limit_deg": _file_degrees(bit.tilt_limit),
-            "diameter": case.bit_diameter,
-        },
-        "drilling": {"active_weight_on_bit": case.active_weight_on_bit, "length": case.length},
-        "hole": {
-            "measured_depth": list(case.survey.measured_depth),
-            "inclination_deg": list(map(_file_degrees, case.survey.inclination)),
-        },
-        "rss": {"drilled_length": list(case.schedule.drilled_length), "force": list(case.schedule.rss_force)},
-    }
-    return tomli_w.dumps(document | run)
+    document: dict[str, dict[str, Any]] = {table: {} for table in TABLES if table != "run"}
+    for quantity in QUANTITIES:
+        if quantity.key and quantity.field:
+            table, key = quantity.key.split(".")
+            value = attrgetter(quantity.field)(case)
+            written = _file_degrees if key.endswith("_deg") else float
+            document[table][key] = list(map(written, value)) if isinstance(value, tuple) else written(value)
+    told = {key: text for key, text in run.items() if text is not None}
+    if told:
+        document["run"] = told
+    return tomli_w.dumps(document)
 
 
 def _file_degrees(angle: float) -> float:

@@ -1,156 +1,162 @@
-"""What a case file must look like: its tables, keys and types. The ranges are the core's business."""
+"""What a case file must look like: the table of quantities has its keys, the dataclasses of the core their types."""
 
+import json
 import tomllib
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import asdict
 from difflib import get_close_matches
-from math import radians
+from math import degrees, radians
 from pathlib import Path
-from typing import Annotated, Self
+from typing import Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
-from pydantic_core import ErrorDetails, PydanticCustomError
+from pydantic import TypeAdapter, ValidationError
+from pydantic_core import ErrorDetails
 
+from ..core.checks import check_number
 from ..core.errors import ParameterError
+from ..core.quantities import QUANTITIES, Quantity, quantity_of
 from ..core.survey import Survey
-from ..core.system import BitRock, BottomHoleAssembly
 from ..errors import InputError, shown
 from .case import Case, Schedule
 from .tables import read_schedule, read_survey
 
+Document = dict[str, dict[str, Any]]  # table → key → value
 
-class _Table(BaseModel):
-    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False, frozen=True)
-
-
-class _Bha(_Table):
-    stabilizer_positions: list[float]
-    stabilizer_clearances: list[float]
-    rss_position: float
-    distributed_weight: float
-    flexural_stiffness: float
-
-
-class _Bit(_Table):
-    lateral_steering_resistance: float
-    angular_steering_resistance: float
-    tilt_limit_deg: Annotated[float, Field(gt=0.0, le=90.0)]
-    diameter: float
-
-
-class _Drilling(_Table):
-    active_weight_on_bit: float
-    length: float
-
-
-class _Columns(_Table):
-    """A table of columns, or the name of a file that holds them."""
-
-    @model_validator(mode="after")
-    def _one_source(self) -> Self:
-        file, *columns = type(self).model_fields
-        if self.model_fields_set not in ({file}, set(columns)):
-            constraint = f"must hold either {' and '.join(columns)}, or {file}"
-            raise PydanticCustomError("one_source", "{constraint}", {"constraint": constraint})
-        return self
-
-
-class _Hole(_Columns):
-    survey: str | None = None
-    measured_depth: list[float] = []
-    inclination_deg: list[float] = []
-
-    def read(self, directory: Path) -> Survey:
-        if self.survey is not None:
-            return read_survey(directory / self.survey)
-        return Survey(tuple(self.measured_depth), tuple(map(radians, self.inclination_deg)))
-
-
-class _Rss(_Columns):
-    schedule: str | None = None
-    drilled_length: list[float] = []
-    force: list[float] = []
-
-    def read(self, directory: Path) -> Schedule:
-        if self.schedule is not None:
-            return read_schedule(directory / self.schedule)
-        return Schedule(tuple(self.drilled_length), tuple(self.force))
-
-
-class _Run(_Table):
-    """What became of the run of a case: in the case file beside it."""
-
-    stopped: str
-
-
-class _CaseFile(_Table):
-    bha: _Bha
-    bit: _Bit
-    drilling: _Drilling
-    hole: _Hole
-    rss: _Rss | None = None
-    run: _Run | None = None
-
-
-_TABLES: dict[str, type[_Table]] = {"bha": _Bha, "bit": _Bit, "drilling": _Drilling, "hole": _Hole, "rss": _Rss}
-KEYS = {key: f"{table}.{key}" for table, model in _TABLES.items() for key in model.model_fields} | {
-    "tilt_limit": "bit.tilt_limit_deg",
-    "bit_diameter": "bit.diameter",
-    "inclination": "hole.inclination_deg",
-    "rss_force": "rss.force",
+BY_KEY = {quantity.key: quantity for quantity in QUANTITIES if quantity.key}
+TABLES = ("bha", "bit", "drilling", "hole", "rss", "run")  # in the order in which a file has them
+OF_FILES: dict[str, tuple[str, Callable[[Path], Survey | Schedule]]] = {
+    "hole.survey": ("survey", read_survey),
+    "rss.schedule": ("schedule", read_schedule),
 }
-"""Name of a parameter in the core → table and key in the file."""
+"""Key that names a file of columns → the part of a `Case` that they are, and what reads them."""
+
+_CASE = TypeAdapter(Case)
 
 
 def parse(text: str, source: Path) -> Case:
-    """See `boreprop.case.parse_case`."""
+    """See `boreprop.case.file.parse_case`."""
     try:
-        file = _CaseFile.model_validate(tomllib.loads(text))
-        return _case(file, source.parent)
+        document = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{source}: must be TOML, got: {error}") from error
+    check_keys(document, source)
+    fields = case_fields(document) | read_files(document, source)
+    try:
+        # as JSON, in which strict types still make a dataclass of a table and a tuple of a list
+        return _CASE.validate_json(json.dumps(fields, default=str), strict=True)
     except ValidationError as error:
-        raise InputError(f"{source}: {_worst(error)}") from error
+        errors = error.errors(include_url=False)
+        more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
+        raise InputError(f"{source}: {_told(errors[0], document)}{more}") from error
+
+
+def check_keys(document: dict[str, Any], source: Path) -> None:
+    """Raise `InputError` unless all keys are known, texts are texts, and columns are here or in a file, not both."""
+    for table, content in document.items():
+        if table not in TABLES:
+            raise InputError(f"{source}: {table}: {_unknown(table)}, got {shown(content)}")
+        if not isinstance(content, dict):
+            raise InputError(f"{source}: {table}: must be a table, got {shown(content)}")
+        for key, value in content.items():
+            where = f"{table}.{key}"
+            if where not in BY_KEY:
+                raise InputError(f"{source}: {where}: {_unknown(key)}, got {shown(value)}")
+            if BY_KEY[where].kind == "String" and not isinstance(value, str):
+                raise InputError(f"{source}: {where}: must be a text, got {shown(value)}")
+    for where in OF_FILES:
+        table, _, file = where.partition(".")
+        columns = [key for key in _keys(table) if key != file]
+        if table in document and set(document[table]) not in ({file}, set(columns)):
+            constraint = f"must hold either {' and '.join(columns)}, or {file}"
+            raise InputError(f"{source}: {table}: {constraint}, got {shown(document[table])}")
+
+
+def case_fields(document: Document) -> dict[str, Any]:
+    """What a file says, as the fields of a `Case` and of its parts, in SI units."""
+    fields: dict[str, Any] = {}
+    for table, content in document.items():
+        for key, value in content.items():
+            quantity = BY_KEY[f"{table}.{key}"]
+            if quantity.field:
+                owner = fields.setdefault(quantity.part, {}) if quantity.part else fields
+                owner[quantity.attribute] = _radians(value) if key.endswith("_deg") else value
+    return fields
+
+
+def read_files(document: Document, source: Path) -> dict[str, Any]:
+    """The same of the columns that are in files of their own, which are looked up beside the case file."""
+    fields = {}
+    for where, (part, read) in OF_FILES.items():
+        table, _, key = where.partition(".")
+        if key in document.get(table, {}):
+            fields[part] = asdict(read(source.parent / document[table][key]))
+    return fields
+
+
+def _keys(table: str) -> list[str]:
+    return [key.removeprefix(f"{table}.") for key in BY_KEY if key.startswith(f"{table}.")]
+
+
+def _unknown(key: str) -> str:
+    """That a key is not known, with the one that may be meant, by its name in the file or in the model."""
+    names = {table: table for table in TABLES}
+    for where, quantity in BY_KEY.items():
+        names |= {quantity.name: where, quantity.attribute: where, where.partition(".")[2]: where}
+    meant = get_close_matches(key, names, n=1)
+    return "must be a known key" + (f" ({names[meant[0]]}?)" if meant else "")
+
+
+def _radians(value: Any) -> Any:
+    """Degrees in radians; what is no number, or too large for one, is left for the check of types to find."""
+    if isinstance(value, list):
+        return [_radians(element) for element in value]
+    with suppress(OverflowError):
+        if type(value) in (int, float):
+            return radians(value)
+    return value
+
+
+def _told(error: ErrorDetails, document: Document) -> str:
+    """A wrong value as "TABLE.KEY: CONSTRAINT, got VALUE", in the words and units of the file."""
+    if error["type"] == "value_error":
+        return _out_of_range(error["ctx"]["error"], document)
+    field = ".".join(part for part in error["loc"] if isinstance(part, str))
+    index = next((part + 1 for part in error["loc"] if isinstance(part, int)), None)
+    quantity = next((quantity for quantity in BY_KEY.values() if quantity.field == field), None)
+    if quantity is None:  # a part: then its table is not there
+        where = next(key for key, quantity in BY_KEY.items() if quantity.part == field).partition(".")[0]
+    else:
+        where = quantity.key + (f"[{index}]" if index else "")
+    if error["type"] == "missing":
+        return f"{where}: must be given, got nothing"
+    constraint = "must be a list" if error["type"] == "tuple_type" else error["msg"].replace("Input should", "must")
+    return f"{where}: {constraint}, got {shown(_written(document, where))}"
+
+
+def _out_of_range(error: ParameterError, document: Document) -> str:
+    quantity, constraint, value = quantity_of(error.name), error.constraint, error.value
+    where = quantity.key + error.name.removeprefix(quantity.name)
+    if quantity.key.endswith("_deg"):
+        value = _written(document, where)
+        constraint = _in_degrees(quantity, value) or constraint
+    return f"{where}: {constraint}, got {shown(value)}"
+
+
+def _in_degrees(quantity: Quantity, value: Any) -> str:
+    """What the range of an angle asks of a value in degrees; empty if it is met."""
+    bounds = {bound: degrees(getattr(quantity, bound)) for bound in ("above", "at_least", "at_most")}
+    try:
+        if isinstance(value, (int, float)):
+            check_number(quantity.key, value, **bounds)
     except ParameterError as error:
-        table, key = KEYS[error.name].split(".")
-        # the core has radians: show what the file says
-        value = getattr(getattr(file, table), key) if key.endswith("_deg") else error.value
-        raise InputError(f"{source}: {table}.{key}: {error.constraint}, got {shown(value)}") from error
+        return error.constraint
+    return ""
 
 
-def _case(file: _CaseFile, directory: Path) -> Case:
-    bha, bit = file.bha, file.bit
-    return Case(
-        bha=BottomHoleAssembly(
-            tuple(bha.stabilizer_positions),
-            tuple(bha.stabilizer_clearances),
-            bha.rss_position,
-            bha.distributed_weight,
-            bha.flexural_stiffness,
-        ),
-        bit=BitRock(bit.lateral_steering_resistance, bit.angular_steering_resistance, radians(bit.tilt_limit_deg)),
-        bit_diameter=bit.diameter,
-        active_weight_on_bit=file.drilling.active_weight_on_bit,
-        length=file.drilling.length,
-        survey=file.hole.read(directory),
-        schedule=file.rss.read(directory) if file.rss else Schedule(),
-    )
-
-
-def _worst(error: ValidationError) -> str:
-    """The error to mend first, as "TABLE.KEY: CONSTRAINT, got VALUE": a misspelt key rather than what it leaves out."""
-    errors = error.errors(include_url=False)
-    worst = next((e for e in errors if e["type"] == "extra_forbidden"), errors[0])
-    where = ".".join(str(part) for part in worst["loc"] if isinstance(part, str))
-    numbers = "".join(f"[{part + 1}]" for part in worst["loc"] if isinstance(part, int))
-    more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
-    if worst["type"] == "missing":
-        return f"{where}: must be given, got nothing{more}"
-    return f"{where}{numbers}: {_constraint(worst)}, got {shown(worst['input'])}{more}"
-
-
-def _constraint(error: ErrorDetails) -> str:
-    if error["type"] == "extra_forbidden":
-        meant = get_close_matches(str(error["loc"][-1]), [*KEYS, *_TABLES], n=1)
-        return "must be a known key" + (f" ({KEYS.get(meant[0], meant[0])}?)" if meant else "")
-    if error["type"] == "model_type":
-        return "must be a table"
-    return error["msg"].replace("Input should", "must")
+def _written(document: Document, where: str) -> Any:
+    """What the file says under "table.key" or "table.key[i]"."""
+    where, _, index = where.partition("[")
+    table, key = where.split(".")
+    value = document[table][key]
+    return value[int(index[:-1]) - 1] if index else value

@@ -24,8 +24,8 @@ def tolerance(text: str) -> float:
     """Parse an option that takes a relative_tolerance in the range of the table of quantities."""
     allowed = BY_NAME["relative_tolerance"]
     value = positive(text)
-    if not allowed.min <= value <= allowed.max:
-        raise typer.BadParameter(f"must be {allowed.min:g} to {allowed.max:g}, got {text!r}")
+    if not allowed.at_least <= value <= allowed.at_most:
+        raise typer.BadParameter(f"must be {allowed.at_least:g} to {allowed.at_most:g}, got {text!r}")
     return value
 
 

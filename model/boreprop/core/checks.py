@@ -4,6 +4,7 @@ from itertools import pairwise
 from math import inf, isfinite
 
 from .errors import ParameterError
+from .quantities import BY_NAME
 
 
 def check_number(name: str, value: float, *, above: float = -inf, at_least: float = -inf, at_most: float = inf) -> None:
@@ -16,6 +17,24 @@ def check_number(name: str, value: float, *, above: float = -inf, at_least: floa
         raise ParameterError(name, f"must be >= {at_least:g}", value)
     if value > at_most:
         raise ParameterError(name, f"must be <= {at_most:g}", value)
+
+
+def check_quantity(name: str, value: float | tuple[float, ...]) -> None:
+    """Raise `ParameterError` unless a value, or each element, is in the range that the table of quantities gives."""
+    quantity = BY_NAME[name]
+    above, at_least, at_most = quantity.above, quantity.at_least, quantity.at_most
+    if not isinstance(value, tuple):
+        check_number(name, value, above=above, at_least=at_least, at_most=at_most)
+    else:
+        for i, element in enumerate(value, 1):
+            check_number(f"{name}[{i}]", element, above=above, at_least=at_least, at_most=at_most)
+
+
+def check_part(part: str, fields: object) -> None:
+    """Raise `ParameterError` unless all that a part of a case has is in the ranges of the table of quantities."""
+    for quantity in BY_NAME.values():
+        if quantity.field and quantity.part == part:
+            check_quantity(quantity.name, getattr(fields, quantity.attribute))
 
 
 def check_increasing(name: str, values: tuple[float, ...]) -> None:

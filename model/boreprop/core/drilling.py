@@ -2,25 +2,23 @@
 
 from typing import Any
 
-from .checks import check_number
+from .checks import check_number, check_quantity
 from .errors import ParameterError
 from .modes import bit_tilt, left, wall
 from .propagation import RELATIVE_TOLERANCE, Propagation
-from .quantities import BY_NAME
 from .survey import Survey
 from .system import BitRock, BottomHoleAssembly, eta_pi, scale
 
 
 def check_inputs(rss_force: float, active_weight_on_bit: float) -> None:
     """Raise `ParameterError` unless the force is finite and the weight finite and positive."""
-    check_number("rss_force", rss_force)
-    check_number("active_weight_on_bit", active_weight_on_bit, above=0.0)
+    check_quantity("rss_force", rss_force)
+    check_quantity("active_weight_on_bit", active_weight_on_bit)
 
 
 def check_tolerance(relative_tolerance: float) -> None:
-    """Raise `ParameterError` unless the tolerance is in the range of the table of variables."""
-    allowed = BY_NAME["relative_tolerance"]
-    check_number("relative_tolerance", relative_tolerance, at_least=allowed.min, at_most=allowed.max)
+    """Raise `ParameterError` unless the tolerance is in the range of the table of quantities."""
+    check_quantity("relative_tolerance", relative_tolerance)
 
 
 class Drilling:
@@ -103,7 +101,7 @@ class Drilling:
         return failure
 
     def outputs(self) -> dict[str, float | int]:
-        """Every output of the table of variables where the bit is, by scalar name, in the order of the table."""
+        """Every output of the table of quantities where the bit is, by scalar name, in the order of the table."""
         p, l1, F_star = self._propagation, self._length, self._force
         scaled = p.scaled
         theta, _ = p.state()

@@ -1,21 +1,48 @@
 """The one table of everything that goes into or comes out of the model.
 
-Result files, the FMU's description and the viewer's labels all read it. `n` is the number of stabilizers, counted from
-the bit up; a variable of size "n" or "n-1" has one element per (non-ideal) stabilizer, named ``name[1]``, ``name[2]``, …
+The case file's keys and messages, the FMU's description, the C structs, result files, tables and pictures all follow
+from it. `n` is the number of stabilizers, counted from the bit up; a quantity of size "n" or "n-1" has one element for
+each (non-ideal) stabilizer, named ``name[1]``, ``name[2]``, …
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from math import inf, pi
-from typing import Literal
+from math import inf, isfinite, pi
+from typing import Any, Literal
 
-Role = Literal["input", "output", "parameter"]
+Role = Literal["input", "output", "parameter", "case"]  # "case": only a case has it, an FMU has not
 Kind = Literal["Real", "Integer", "String"]
-Size = Literal["1", "n", "n-1"]
+Size = Literal["1", "n", "n-1", "column"]  # "column": as long as the table that it is a column of
+
+MAX_STABILIZERS = 6
 
 
 @dataclass(frozen=True)
-class Variable:
-    """One quantity at the edge of the model, in SI units."""
+class Quantity:
+    """One quantity at the edge of the model, in SI units.
+
+    Parameters
+    ----------
+    name, role, unit, symbol, equation, meaning
+        What it is; symbol and equation are the paper's.
+    kind, size
+        Of its values.
+    above, at_least, at_most
+        The range of a value that is accepted: above < value, at_least <= value <= at_most. What several values must
+        do together (positions must increase) is checked where they come together.
+    nominal
+        The size that it usually has.
+    start
+        What it starts from where a case does not say so.
+    follows
+        Of an output, the inputs that it follows at once, without any drilling.
+    slope
+        Of an input, whether the native engine also takes its change per metre drilled.
+    key
+        Table and key in a case file, "bha.rss_position". A key that ends in _deg holds degrees.
+    field
+        Where a `Case` has it, "bha.rss_position".
+    """
 
     name: str
     role: Role
@@ -25,54 +52,131 @@ class Variable:
     meaning: str
     kind: Kind = "Real"
     size: Size = "1"
-    min: float = -inf
-    max: float = inf
-    nominal: float = 1.0  # the size it usually has
-    start: float | None = None  # None: taken from the case
+    above: float = -inf
+    at_least: float = -inf
+    at_most: float = inf
+    nominal: float = 1.0
+    start: float | str | None = None
+    follows: tuple[str, ...] = ()
+    slope: bool = False
+    key: str = ""
+    field: str = ""
 
     def names(self, n: int) -> list[str]:
-        """The scalar names of this variable for `n` stabilizers."""
-        if self.size == "1":
+        """The scalar names of this quantity for `n` stabilizers."""
+        if self.size in ("1", "column"):
             return [self.name]
-        return [f"{self.name}[{i}]" for i in range(1, (n if self.size == "n" else n - 1) + 1)]
+        return [f"{self.name}[{i}]" for i in range(1, self.count(n) + 1)]
+
+    def count(self, n: int) -> int:
+        """How many values it has for `n` stabilizers."""
+        return {"n": n, "n-1": n - 1}.get(self.size, 1)
+
+    @property
+    def part(self) -> str:
+        """The part of a `Case` that has it, "bha"; empty: the case itself."""
+        return self.field.rpartition(".")[0]
+
+    @property
+    def attribute(self) -> str:
+        """What it is called in that part."""
+        return self.field.rpartition(".")[2]
+
+    @property
+    def range(self) -> str:
+        """What is accepted, in words: "> 0, <= 1"; empty if everything is."""
+        bounds = ((">", self.above), (">=", self.at_least), ("<=", self.at_most))
+        return ", ".join(f"{sign} {bound:g}" for sign, bound in bounds if isfinite(bound))
 
 
-VARIABLES: tuple[Variable, ...] = (
-    Variable("rss_force", "input", "N", "F_RSS", "(21)", "force of the steering pads on the BHA, positive builds", nominal=1e4, start=0.0),
-    Variable("active_weight_on_bit", "input", "N", "Π F*", "(3)", "weight on bit that goes into drilling", min=0.0, nominal=1e4),
-    Variable("rate_of_penetration", "input", "m/s", "", "", "drilled length per time", min=0.0, start=1.0),
-    Variable("drilled_length", "output", "m", "ξ ℓ₁", "(17)", "length drilled since the start of the run", min=0.0, nominal=100.0),
-    Variable("bit_inclination", "output", "rad", "θ", "(17)", "inclination of the bit axis from the downward vertical"),
-    Variable("borehole_inclination", "output", "rad", "Θ", "(16)", "inclination of the borehole at the bit"),
-    Variable("bit_tilt", "output", "rad", "ψ", "(10)", "bit inclination minus borehole inclination", nominal=0.01),
-    Variable("average_inclination", "output", "rad", "⟨Θ⟩_i", "(6)", "borehole inclination averaged between stabilizers i−1 and i", size="n"),
-    Variable("stabilizer_deflection", "output", "m", "δ_i", "(5)", "offset of the BHA from the borehole axis, positive to the high side", size="n-1", nominal=1e-3),
-    Variable("stabilizer_force", "output", "N", "F_ℓi − F_ui", "(7)", "force of the wall on the stabilizer, positive from the lower wall", size="n-1", nominal=1e4),
-    Variable("stabilizer_contact", "output", "", "", "(7)", "1 on the lower wall, −1 on the upper wall, 0 free", kind="Integer", size="n-1", min=-1, max=1),
-    Variable("bit_tilt_saturation", "output", "", "", "(11)", "1 at +ψ*, −1 at −ψ*, 0 between", kind="Integer", min=-1, max=1),
-    Variable("bit_lateral_force", "output", "N", "F_0", "(14)", "lateral force on the bit", nominal=1e4),
-    Variable("bit_moment", "output", "N.m", "M_0", "(9)", "moment on the bit", nominal=1e4),
-    Variable("borehole_curvature", "output", "rad/m", "Θ'", "", "change of borehole inclination over the last ℓ₁, per length", nominal=1e-3),
-    Variable("displacement", "output", "m", "x", "", "horizontal position of the bit from the start of the run", nominal=100.0),
-    Variable("true_vertical_depth", "output", "m", "z", "", "depth of the bit below the start of the run", nominal=100.0),
-    Variable("eta_pi", "output", "", "ηΠ", "(9)", "lateral penetration stiffness of the rock over the BHA's bending stiffness", nominal=0.01),
-    Variable("stabilizer_position", "parameter", "m", "s_i", "", "distance of the stabilizer from the bit; the last one is ideal", size="n", min=0.0, nominal=10.0),
-    Variable("stabilizer_clearance", "parameter", "m", "y*_i", "(7)", "clearance between stabilizer and wall on each side", size="n-1", min=0.0, nominal=1e-3),
-    Variable("rss_position", "parameter", "m", "Δ", "", "distance of the steering pads from the bit", min=0.0),
-    Variable("distributed_weight", "parameter", "N/m", "w", "", "buoyant weight of the BHA per length", min=0.0, nominal=1e3),
-    Variable("flexural_stiffness", "parameter", "N.m2", "EI", "", "bending stiffness of the BHA", min=0.0, nominal=1e7),
-    Variable("lateral_steering_resistance", "parameter", "", "η", "(4)", "lateral over axial drilling resistance", min=0.0, nominal=10.0),
-    Variable("angular_steering_resistance", "parameter", "", "χ", "(4)", "angular over axial drilling resistance", min=0.0),
-    Variable("bit_tilt_limit", "parameter", "rad", "ψ*", "(10)", "tilt at which the bit gauge meets the wall", min=0.0, max=pi / 2, nominal=0.01),
-    Variable("relative_tolerance", "parameter", "", "", "", "local error of one step of the integrator, over 1 rad and ℓ₁", min=1e-12, max=1e-2, nominal=1e-7),
-    Variable("survey_file", "parameter", "", "", "", "survey of the existing hole (CSV); empty: the survey packed in the FMU", kind="String"),
+FORCE, FORCE_AND_WEIGHT = ("rss_force",), ("rss_force", "active_weight_on_bit")
+
+QUANTITIES: tuple[Quantity, ...] = (
+    Quantity("drilled_length", "output", "m", "ξ ℓ₁", "(17)", "length drilled since the start of the run", at_least=0.0, nominal=100.0, key="rss.drilled_length", field="schedule.drilled_length"),
+
+    Quantity("rss_force", "input", "N", "F_RSS", "(21)", "force of the steering pads on the BHA, positive builds", nominal=1e4, slope=True, key="rss.force", field="schedule.rss_force"),
+    Quantity("active_weight_on_bit", "input", "N", "Π F*", "(3)", "weight on bit that goes into drilling", above=0.0, nominal=1e4, key="drilling.active_weight_on_bit", field="active_weight_on_bit"),
+    Quantity("rate_of_penetration", "input", "m/s", "", "", "drilled length per time", at_least=0.0, start=1.0),
+
+    Quantity("bit_inclination", "output", "rad", "θ", "(17)", "inclination of the bit axis from the downward vertical"),
+    Quantity("borehole_inclination", "output", "rad", "Θ", "(16)", "inclination of the borehole at the bit", follows=FORCE_AND_WEIGHT),
+    Quantity("bit_tilt", "output", "rad", "ψ", "(10)", "bit inclination minus borehole inclination", nominal=0.01, follows=FORCE_AND_WEIGHT),
+    Quantity("average_inclination", "output", "rad", "⟨Θ⟩_i", "(6)", "borehole inclination averaged between stabilizers i−1 and i", size="n"),
+    Quantity("stabilizer_deflection", "output", "m", "δ_i", "(5)", "offset of the BHA from the borehole axis, positive to the high side", size="n-1", nominal=1e-3, follows=FORCE),
+    Quantity("stabilizer_force", "output", "N", "F_ℓi − F_ui", "(7)", "force of the wall on the stabilizer, positive from the lower wall", size="n-1", nominal=1e4, follows=FORCE),
+    Quantity("stabilizer_contact", "output", "", "", "(7)", "1 on the lower wall, −1 on the upper wall, 0 free", kind="Integer", size="n-1", at_least=-1, at_most=1, follows=FORCE),
+    Quantity("bit_tilt_saturation", "output", "", "", "(11)", "1 at +ψ*, −1 at −ψ*, 0 between", kind="Integer", at_least=-1, at_most=1, follows=FORCE_AND_WEIGHT),
+    Quantity("bit_lateral_force", "output", "N", "F_0", "(14)", "lateral force on the bit", nominal=1e4, follows=FORCE),
+    Quantity("bit_moment", "output", "N.m", "M_0", "(9)", "moment on the bit", nominal=1e4, follows=FORCE),
+    Quantity("borehole_curvature", "output", "rad/m", "Θ'", "", "change of borehole inclination over the last ℓ₁, per length", nominal=1e-3, follows=FORCE_AND_WEIGHT),
+    Quantity("displacement", "output", "m", "x", "", "horizontal position of the bit from the start of the run", nominal=100.0),
+    Quantity("true_vertical_depth", "output", "m", "z", "", "depth of the bit below the start of the run", nominal=100.0),
+    Quantity("eta_pi", "output", "", "ηΠ", "(9)", "lateral penetration stiffness of the rock over the BHA's bending stiffness", nominal=0.01, follows=("active_weight_on_bit",)),
+
+    Quantity("stabilizer_position", "parameter", "m", "s_i", "", "distance of the stabilizer from the bit; the last one is ideal", size="n", above=0.0, nominal=10.0, key="bha.stabilizer_positions", field="bha.stabilizer_positions"),
+    Quantity("stabilizer_clearance", "parameter", "m", "y*_i", "(7)", "clearance between stabilizer and wall on each side", size="n-1", at_least=0.0, nominal=1e-3, key="bha.stabilizer_clearances", field="bha.stabilizer_clearances"),
+    Quantity("rss_position", "parameter", "m", "Δ", "", "distance of the steering pads from the bit", at_least=0.0, key="bha.rss_position", field="bha.rss_position"),
+    Quantity("distributed_weight", "parameter", "N/m", "w", "", "buoyant weight of the BHA per length", at_least=0.0, nominal=1e3, key="bha.distributed_weight", field="bha.distributed_weight"),
+    Quantity("flexural_stiffness", "parameter", "N.m2", "EI", "", "bending stiffness of the BHA", above=0.0, nominal=1e7, key="bha.flexural_stiffness", field="bha.flexural_stiffness"),
+    Quantity("lateral_steering_resistance", "parameter", "", "η", "(4)", "lateral over axial drilling resistance", above=0.0, nominal=10.0, key="bit.lateral_steering_resistance", field="bit.lateral_steering_resistance"),
+    Quantity("angular_steering_resistance", "parameter", "", "χ", "(4)", "angular over axial drilling resistance", above=0.0, key="bit.angular_steering_resistance", field="bit.angular_steering_resistance"),
+    Quantity("bit_tilt_limit", "parameter", "rad", "ψ*", "(10)", "tilt at which the bit gauge meets the wall", above=0.0, at_most=pi / 2, nominal=0.01, key="bit.tilt_limit_deg", field="bit.tilt_limit"),
+    Quantity("relative_tolerance", "parameter", "", "", "", "local error of one step of the integrator, over 1 rad and ℓ₁", at_least=1e-12, at_most=1e-2, nominal=1e-7, start=1e-7),
+    Quantity("survey_file", "parameter", "", "", "", "survey of the existing hole (CSV); empty: the survey packed in the FMU", kind="String", start="", key="hole.survey"),
+
+    Quantity("bit_diameter", "case", "m", "", "", "diameter of the hole, for drawing", above=0.0, key="bit.diameter", field="bit_diameter"),
+    Quantity("length", "case", "m", "", "", "length to drill", above=0.0, key="drilling.length", field="length"),
+    Quantity("measured_depth", "case", "m", "", "", "stations along the existing hole, the last one is the bit", size="column", key="hole.measured_depth", field="survey.measured_depth"),
+    Quantity("inclination", "case", "rad", "Θ", "", "inclination of the existing hole at each station", size="column", key="hole.inclination_deg", field="survey.inclination"),
+    Quantity("schedule_file", "case", "", "", "", "steering force over the drilled length (CSV)", kind="String", key="rss.schedule"),
+    Quantity("engine", "case", "", "", "", "what drilled the run of the case, in the case file beside it", kind="String", key="run.engine"),
+    Quantity("stopped", "case", "", "", "", "why the run of the case ended before its length, in the case file beside it", kind="String", key="run.stopped"),
 )  # fmt: skip
 
-BY_NAME = {variable.name: variable for variable in VARIABLES}
-INPUTS = tuple(variable for variable in VARIABLES if variable.role == "input")
-OUTPUTS = tuple(variable for variable in VARIABLES if variable.role == "output")
+BY_NAME = {quantity.name: quantity for quantity in QUANTITIES}
+INPUTS = tuple(quantity for quantity in QUANTITIES if quantity.role == "input")
+OUTPUTS = tuple(quantity for quantity in QUANTITIES if quantity.role == "output")
+PARAMETERS = tuple(quantity for quantity in QUANTITIES if quantity.role == "parameter")
+VARIABLES = INPUTS + OUTPUTS + PARAMETERS  # what an FMU has
 
 
-def scalar_names(variables: tuple[Variable, ...], n: int) -> list[str]:
-    """The scalar names of `variables` for `n` stabilizers, in the order of the table."""
-    return [name for variable in variables for name in variable.names(n)]
+def scalar_names(quantities: tuple[Quantity, ...], n: int) -> list[str]:
+    """The scalar names of `quantities` for `n` stabilizers, in the order of the table."""
+    return [name for quantity in quantities for name in quantity.names(n)]
+
+
+def quantity_of(scalar_name: str) -> Quantity:
+    """The quantity that a scalar name, ``name`` or ``name[i]``, is a value of; `KeyError` if there is none."""
+    return BY_NAME[scalar_name.partition("[")[0]]
+
+
+# A part of a drilling system is a dataclass, say `BottomHoleAssembly`, whose fields the table names.
+
+
+def values_of(part: str, fields: Any) -> dict[str, float]:
+    """The inputs and parameters that a part of a drilling system has, by scalar name; a column by its first value.
+
+    Parameters
+    ----------
+    part
+        What the table calls it: "bha", "bit", …; empty: the case itself.
+    fields
+        The part.
+    """
+    values: dict[str, float] = {}
+    for quantity in INPUTS + PARAMETERS:
+        if quantity.field and quantity.part == part:
+            value = getattr(fields, quantity.attribute)
+            elements = value if isinstance(value, tuple) else (value,)
+            values |= zip(quantity.names(len(elements) + (quantity.size == "n-1")), elements, strict=False)
+    return values
+
+
+def fields_of(part: str, values: Mapping[str, float], n: int) -> dict[str, Any]:
+    """The fields of a part of a drilling system with `n` stabilizers: what `values_of` gives, put together again."""
+    fields: dict[str, Any] = {}
+    for quantity in INPUTS + PARAMETERS:
+        if quantity.field and quantity.part == part:
+            elements = tuple(values[name] for name in quantity.names(n))
+            fields[quantity.attribute] = elements[0] if quantity.size == "1" else elements
+    return fields

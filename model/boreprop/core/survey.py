@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from .checks import check_increasing, check_number
+from .checks import check_increasing, check_part
 from .errors import ParameterError
 
 
@@ -32,5 +32,4 @@ class Survey:
         check_increasing("measured_depth", self.measured_depth)
         if len(self.inclination) != len(self.measured_depth):
             raise ParameterError("inclination", f"must hold {len(self.measured_depth)} values", self.inclination)
-        for value in self.inclination:
-            check_number("inclination", value)
+        check_part("survey", self)

@@ -2,12 +2,11 @@
 
 from dataclasses import dataclass
 from itertools import pairwise
-from math import pi
 
-from .checks import check_increasing, check_number
+from .checks import check_increasing, check_number, check_part
 from .errors import ParameterError
+from .quantities import MAX_STABILIZERS
 
-MAX_STABILIZERS = 6
 LEAST_SPAN = 0.01  # m between stabilizers: none is shorter, and the force between closer ones is rounding
 
 
@@ -46,27 +45,23 @@ class BottomHoleAssembly:
         n = len(self.stabilizer_positions)
         if not 1 <= n <= MAX_STABILIZERS:
             raise ParameterError(
-                "stabilizer_positions",
+                "stabilizer_position",
                 f"must hold 1 to {MAX_STABILIZERS} positions",
                 self.stabilizer_positions,
             )
-        check_number("stabilizer_positions", self.stabilizer_positions[0], above=0.0)
-        check_increasing("stabilizer_positions", self.stabilizer_positions)
-        for before, after in pairwise((0.0, *self.stabilizer_positions)):
-            if after - before < LEAST_SPAN * (1 - 1e-9):  # 4.34 and 4.35 are that far apart, but for rounding
-                constraint = f"must be at least {LEAST_SPAN:g} m from each other and from the bit"
-                raise ParameterError("stabilizer_positions", constraint, (before, after))
         if len(self.stabilizer_clearances) != n - 1:
             raise ParameterError(
-                "stabilizer_clearances",
+                "stabilizer_clearance",
                 f"must hold one value per non-ideal stabilizer, here {n - 1}",
                 self.stabilizer_clearances,
             )
-        for clearance in self.stabilizer_clearances:
-            check_number("stabilizer_clearances", clearance, at_least=0.0)
-        check_number("rss_position", self.rss_position, at_least=0.0, at_most=self.stabilizer_positions[0])
-        check_number("distributed_weight", self.distributed_weight, at_least=0.0)
-        check_number("flexural_stiffness", self.flexural_stiffness, above=0.0)
+        check_part("bha", self)
+        check_increasing("stabilizer_position", self.stabilizer_positions)
+        for before, after in pairwise((0.0, *self.stabilizer_positions)):
+            if after - before < LEAST_SPAN * (1 - 1e-9):  # 4.34 and 4.35 are that far apart, but for rounding
+                constraint = f"must be at least {LEAST_SPAN:g} m from each other and from the bit"
+                raise ParameterError("stabilizer_position", constraint, (before, after))
+        check_number("rss_position", self.rss_position, at_most=self.length_scale)
 
     @property
     def length_scale(self) -> float:
@@ -111,9 +106,7 @@ class BitRock:
     tilt_limit: float
 
     def __post_init__(self) -> None:
-        check_number("lateral_steering_resistance", self.lateral_steering_resistance, above=0.0)
-        check_number("angular_steering_resistance", self.angular_steering_resistance, above=0.0)
-        check_number("tilt_limit", self.tilt_limit, above=0.0, at_most=pi / 2)
+        check_part("bit", self)
 
 
 @dataclass(frozen=True)

@@ -2,28 +2,17 @@
 #ifndef BOREPROP_ASSEMBLY_H
 #define BOREPROP_ASSEMBLY_H
 
-#include <math.h>
+#include "quantities.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_STABILIZERS = 6, MESSAGE = 512 };
-
-#define LEAST_SPAN 0.01 /* m between stabilizers: none is shorter, and the force between closer ones is rounding */
+enum { MESSAGE = 512 };
 
 /* FAILED: `why` says in one line what is wrong, and nothing has moved. FULL: the memory is too small. */
 typedef enum { DONE, FAILED, FULL } Status;
 
 typedef long long Count; /* of stations, and of pieces of hole: 32 bits are not enough for a long life */
-
-/* The parameters of the table of variables, in SI units. */
-typedef struct {
-    int n; /* stabilizers */
-    double stabilizer_position[MAX_STABILIZERS], stabilizer_clearance[MAX_STABILIZERS - 1];
-    double rss_position, distributed_weight, flexural_stiffness;
-    double lateral_steering_resistance, angular_steering_resistance, bit_tilt_limit;
-    double relative_tolerance;
-} System;
 
 /* The drilling system in the paper's numbers: lengths over ℓ₁, forces over F*, moments over F*ℓ₁. */
 typedef struct {
@@ -38,6 +27,9 @@ typedef struct {
 
 static inline double larger(double a, double b) { return b > a ? b : a; }
 static inline double smaller(double a, double b) { return b < a ? b : a; }
+
+/* How many values a quantity has for n stabilizers. */
+static inline int value_count(Size size, int n) { return size == ONE ? 1 : size == EACH_STABILIZER ? n : n - 1; }
 
 /* The number with so many digits, with a decimal point in every locale. */
 static inline const char *decimal(double value, int digits, char text[32]) {
@@ -118,24 +110,42 @@ static inline int check_spans(const char *name, int count, const double *positio
     return 1;
 }
 
+/* Whether a value, the one with this index where there are several, is in the range of the table of quantities. */
+static inline int check_quantity(const Quantity *quantity, int index, double value, char why[MESSAGE]) {
+    char name[64];
+    if (quantity->size == ONE) snprintf(name, sizeof name, "%s", quantity->name);
+    else snprintf(name, sizeof name, "%s[%d]", quantity->name, index + 1);
+    return check_number(name, value, quantity->above, quantity->at_least, quantity->at_most, why);
+}
+
+/* The system of n stabilizers with these parameters, one after the other in the order of the table; none are read for
+   an n that `check_system` refuses. */
+static inline System system_of(int n, const double *values) {
+    System system = {0};
+    system.n = n;
+    for (int k = 0; k < PARAMETER_COUNT && n >= 1 && n <= MAX_STABILIZERS; k++) {
+        int count = value_count(PARAMETER_TABLE[k].size, n);
+        memcpy((char *)&system + PARAMETER_TABLE[k].offset, values, (size_t)count * sizeof *values);
+        values += count;
+    }
+    return system;
+}
+
 static inline int check_system(const System *system, char why[MESSAGE]) {
     const double *positions = system->stabilizer_position;
     if (system->n < 1 || system->n > MAX_STABILIZERS) {
         snprintf(why, MESSAGE, "stabilizer_position: must hold 1 to %d positions, got %d", MAX_STABILIZERS, system->n);
         return 0;
     }
-    if (!check_positive("stabilizer_position", positions[0], why)) return 0;
-    if (!check_increasing("stabilizer_position", system->n, positions, why)) return 0;
-    if (!check_spans("stabilizer_position", system->n, positions, why)) return 0;
-    for (int i = 0; i < system->n - 1; i++)
-        if (!check_at_least("stabilizer_clearance", system->stabilizer_clearance[i], 0.0, why)) return 0;
-    return check_number("rss_position", system->rss_position, -INFINITY, 0.0, positions[0], why) &&
-           check_at_least("distributed_weight", system->distributed_weight, 0.0, why) &&
-           check_positive("flexural_stiffness", system->flexural_stiffness, why) &&
-           check_positive("lateral_steering_resistance", system->lateral_steering_resistance, why) &&
-           check_positive("angular_steering_resistance", system->angular_steering_resistance, why) &&
-           check_number("bit_tilt_limit", system->bit_tilt_limit, 0.0, -INFINITY, 1.5707963267948966, why) &&
-           check_number("relative_tolerance", system->relative_tolerance, -INFINITY, 1e-12, 1e-2, why);
+    for (int k = 0; k < PARAMETER_COUNT; k++) {
+        const Quantity *quantity = &PARAMETER_TABLE[k];
+        const double *values = (const double *)(const void *)((const char *)system + quantity->offset);
+        for (int i = 0; i < value_count(quantity->size, system->n); i++)
+            if (!check_quantity(quantity, i, values[i], why)) return 0;
+    }
+    return check_increasing("stabilizer_position", system->n, positions, why) &&
+           check_spans("stabilizer_position", system->n, positions, why) &&
+           check_number("rss_position", system->rss_position, -INFINITY, -INFINITY, positions[0], why);
 }
 
 /* ℓ₁, m: the distance from the bit to the first stabilizer. */

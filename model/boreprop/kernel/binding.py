@@ -3,6 +3,7 @@
 import ctypes
 import re
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,10 +13,11 @@ from ..core.checks import check_number
 from ..core.drilling import check_inputs, check_tolerance
 from ..core.errors import BorepropError, ParameterError
 from ..core.propagation import RELATIVE_TOLERANCE
-from ..core.quantities import OUTPUTS, scalar_names
+from ..core.quantities import OUTPUTS, scalar_names, values_of
 from ..core.survey import Survey
-from ..core.system import MAX_STABILIZERS, BitRock, BottomHoleAssembly
+from ..core.system import BitRock, BottomHoleAssembly
 from .compiler import library_path, sources_digest
+from .generate import SYSTEM, acting, quantities_digest
 
 MESSAGE = 512
 
@@ -24,31 +26,10 @@ class KernelError(BorepropError, RuntimeError):
     """The kernel is not there. The message says why, and what helps."""
 
 
-class System(ctypes.Structure):
-    """The parameters of the table of variables, as in assembly.h."""
-
-    _fields_ = (
-        ("n", ctypes.c_int),
-        ("stabilizer_position", ctypes.c_double * MAX_STABILIZERS),
-        ("stabilizer_clearance", ctypes.c_double * (MAX_STABILIZERS - 1)),
-        ("rss_position", ctypes.c_double),
-        ("distributed_weight", ctypes.c_double),
-        ("flexural_stiffness", ctypes.c_double),
-        ("lateral_steering_resistance", ctypes.c_double),
-        ("angular_steering_resistance", ctypes.c_double),
-        ("bit_tilt_limit", ctypes.c_double),
-        ("relative_tolerance", ctypes.c_double),
-    )
-
-
 class Inputs(ctypes.Structure):
-    """What acts from where the bit is, as in drilling.h."""
+    """What acts from where the bit is, as in quantities.h."""
 
-    _fields_ = (
-        ("rss_force", ctypes.c_double),
-        ("rss_force_slope", ctypes.c_double),
-        ("active_weight_on_bit", ctypes.c_double),
-    )
+    _fields_ = tuple((name, ctypes.c_double) for name, _, _ in acting())
 
 
 def numbers(values: Any, kind: Any = np.float64) -> Any:
@@ -63,9 +44,13 @@ def library() -> ctypes.CDLL:
     Raises
     ------
     KernelError
-        If it is not built, cannot be loaded, or is older than its sources.
+        If it is not built, cannot be loaded, or is not made from its sources and the table of quantities as they are.
     """
-    path = library_path()
+    return load(library_path())
+
+
+def load(path: Path) -> ctypes.CDLL:
+    """The kernel in a file, if it is one for this table of quantities; `KernelError` if not."""
     helps = "with a C compiler or ziglang (pip install ziglang==0.15.2) run: python -m boreprop.kernel"
     if not path.exists():
         raise KernelError(f"the native kernel must be built, got no {path.name}: {helps}")
@@ -76,9 +61,13 @@ def library() -> ctypes.CDLL:
     kernel.boreprop_sources_digest.restype = ctypes.c_char_p
     if kernel.boreprop_sources_digest().decode() != sources_digest():
         raise KernelError(f"{path.name} must be made from the sources beside it, got an older one: {helps}")
+    kernel.boreprop_quantities_digest.restype = ctypes.c_char_p
+    if kernel.boreprop_quantities_digest().decode() != quantities_digest():
+        helps = "run: python -m boreprop.kernel.generate, then: python -m boreprop.kernel"
+        raise KernelError(f"{path.name} must be made for this table of quantities, got another one's: {helps}")
     run, reals, whole, text = ctypes.c_void_p, _array(np.float64), ctypes.c_longlong, ctypes.c_char_p
     for name, result, arguments in (
-        ("start", run, (ctypes.POINTER(System), whole, reals, reals, ctypes.POINTER(Inputs), text)),
+        ("start", run, (ctypes.c_int, reals, whole, reals, reals, ctypes.POINTER(Inputs), text)),
         ("end", None, (run,)),
         ("follow", whole, (run, whole, reals, reals, ctypes.c_double, _array(np.intc), reals, text)),
         ("outputs", ctypes.c_int, (run, reals)),
@@ -137,28 +126,18 @@ class NativeDrilling:
         check_inputs(rss_force, active_weight_on_bit)
         check_tolerance(relative_tolerance)
         n = len(bha.stabilizer_positions)
-        system = System(
-            n,
-            bha.stabilizer_positions,
-            bha.stabilizer_clearances,
-            bha.rss_position,
-            bha.distributed_weight,
-            bha.flexural_stiffness,
-            bit.lateral_steering_resistance,
-            bit.angular_steering_resistance,
-            bit.tilt_limit,
-            relative_tolerance,
-        )
+        given = values_of("bha", bha) | values_of("bit", bit) | {"relative_tolerance": relative_tolerance}
         self.drilled_length = 0.0
         self._names = scalar_names(OUTPUTS, n)
         self._why = ctypes.create_string_buffer(MESSAGE)
         self._library = library()
         self._run = self._library.boreprop_start(
-            system,
+            n,
+            numbers([given[name] for name in scalar_names(SYSTEM, n)]),
             len(survey.measured_depth),
             numbers(survey.measured_depth),
             numbers(survey.inclination),
-            Inputs(rss_force, 0.0, active_weight_on_bit),
+            Inputs(rss_force=rss_force, active_weight_on_bit=active_weight_on_bit),
             self._why,
         )
         if not self._run:
@@ -195,7 +174,7 @@ class NativeDrilling:
         rows
             Which row of `table` the outputs at the end of each leg become, (legs,); −1: none.
         table
-            (…, outputs), C-contiguous, in the order of the table of variables.
+            (…, outputs), C-contiguous, in the order of the table of quantities.
 
         Returns
         -------

@@ -4,12 +4,7 @@
 
 #include "propagation.h"
 
-enum { LEAST_CAPACITY = 1024, MOST_OUTPUTS = 4 * MAX_STABILIZERS + 8 };
-
-/* RSS force, N, and its change per metre drilled, N/m, from where the bit is on; weight on bit, N. */
-typedef struct {
-    double rss_force, rss_force_slope, active_weight_on_bit;
-} Inputs;
+enum { LEAST_CAPACITY = 1024 };
 
 /* A borehole as it is drilled, from the end of the survey on. */
 typedef struct {
@@ -19,9 +14,9 @@ typedef struct {
 } Drilling;
 
 static inline int check_inputs(Inputs inputs, char why[MESSAGE]) {
-    return check_finite("rss_force", inputs.rss_force, why) &&
+    return check_quantity(&INPUT_TABLE[IN_RSS_FORCE], 0, inputs.rss_force, why) &&
            check_finite("rss_force_slope", inputs.rss_force_slope, why) &&
-           check_positive("active_weight_on_bit", inputs.active_weight_on_bit, why);
+           check_quantity(&INPUT_TABLE[IN_ACTIVE_WEIGHT_ON_BIT], 0, inputs.active_weight_on_bit, why);
 }
 
 /* The dimensionless inputs; 0, with `why`, if they are bad, in N or over F*. */
@@ -90,36 +85,72 @@ static inline Status drilling_advance(Drilling *d, double drilled_length, Inputs
 
 static inline void drilling_cancel(Drilling *d) { go_back(&d->propagation); }
 
-/* Every output of the table of variables where the bit is, in its order; returns how many. */
-static inline int drilling_outputs(Drilling *d, double out[MOST_OUTPUTS]) {
+/* What the outputs follow from: the state where the bit is. */
+typedef struct {
+    double l1, F_star, theta, Theta, psi, F_0, F[MAX_STABILIZERS], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
+    Loads loads;
+    const Mode *mode;
+} Present;
+
+static inline Present present(Drilling *d) {
     Propagation *p = &d->propagation;
     const State *now = &p->now;
-    int n = p->scaled.n;
-    double earlier = earlier_inclination(p, now->xi - 1.0), l1 = length_scale(&d->system), F_star = force_scale(&d->system), psi_star = p->scaled.psi_star;
-    double theta, Y, x, z, *next = out;
-    step_state(&now->step, now->xi, &theta, &Y);
-    Loads loads = present_loads(p);
-    const Mode *mode = settle(&p->modes, &loads, now->contact);
-    double F[MAX_STABILIZERS] = {0}, F_0 = row_value(&mode->F_0, &loads, n);
-    double psi = bit_tilt(F_0, now->inputs.eta_pi, psi_star), Theta = theta - psi;
-    for (int i = 0; i < n - 1; i++) F[i] = row_value(&mode->F[i], &loads, n);
-    position_at(now, now->xi, &x, &z);
-    *next++ = d->drilled_length;
-    *next++ = theta;
-    *next++ = Theta;
-    *next++ = psi;
-    for (int i = 0; i < n; i++) /* λ_i (⟨Θ⟩_i − θ) = e_i − e_{i−1} */
-        *next++ = theta + (loads.e[i] - (i ? loads.e[i - 1] : 0.0)) / lambda_(&p->scaled, i);
-    for (int i = 0; i < n - 1; i++) *next++ = row_value(&mode->delta[i], &loads, n) * l1;
-    for (int i = 0; i < n - 1; i++) *next++ = F[i] * F_star;
-    for (int i = 0; i < n - 1; i++) *next++ = wall(F[i]);
-    *next++ = left(F_0 / now->inputs.eta_pi, -psi_star, psi_star, ROUNDING);
-    *next++ = F_0 * F_star;
-    *next++ = -row_value(&mode->M, &loads, n) * F_star * l1;
-    *next++ = (Theta - earlier) / l1;
-    *next++ = x * l1;
-    *next++ = z * l1;
-    *next++ = now->inputs.eta_pi;
+    double Y;
+    Present at;
+    at.l1 = length_scale(&d->system), at.F_star = force_scale(&d->system);
+    at.earlier = earlier_inclination(p, now->xi - 1.0);
+    step_state(&now->step, now->xi, &at.theta, &Y);
+    at.loads = present_loads(p);
+    at.mode = settle(&p->modes, &at.loads, now->contact);
+    at.F_0 = row_value(&at.mode->F_0, &at.loads, p->scaled.n);
+    for (int i = 0; i < p->scaled.n - 1; i++) at.F[i] = row_value(&at.mode->F[i], &at.loads, p->scaled.n);
+    at.psi = bit_tilt(at.F_0, now->inputs.eta_pi, p->scaled.psi_star);
+    at.Theta = at.theta - at.psi;
+    position_at(now, now->xi, &at.x, &at.z);
+    return at;
+}
+
+/* One output; of several of a kind the one with this index. A compiler refuses it where one of the table is missing. */
+static inline double output(const Drilling *d, const Present *at, Output which, int i) {
+    const Scaled *scaled = &d->propagation.scaled;
+    const Loads *loads = &at->loads;
+    const ScaledInputs *inputs = &d->propagation.now.inputs;
+    double l1 = at->l1, F_star = at->F_star;
+    int n = scaled->n;
+    switch (which) {
+    case OUT_DRILLED_LENGTH: return d->drilled_length;
+    case OUT_BIT_INCLINATION: return at->theta;
+    case OUT_BOREHOLE_INCLINATION: return at->Theta;
+    case OUT_BIT_TILT: return at->psi;
+    case OUT_AVERAGE_INCLINATION: /* λ_i (⟨Θ⟩_i − θ) = e_i − e_{i−1} */
+        return at->theta + (loads->e[i] - (i ? loads->e[i - 1] : 0.0)) / lambda_(scaled, i);
+    case OUT_STABILIZER_DEFLECTION: return row_value(&at->mode->delta[i], loads, n) * l1;
+    case OUT_STABILIZER_FORCE: return at->F[i] * F_star;
+    case OUT_STABILIZER_CONTACT: return wall(at->F[i]);
+    case OUT_BIT_TILT_SATURATION: return left(at->F_0 / inputs->eta_pi, -scaled->psi_star, scaled->psi_star, ROUNDING);
+    case OUT_BIT_LATERAL_FORCE: return at->F_0 * F_star;
+    case OUT_BIT_MOMENT: return -row_value(&at->mode->M, loads, n) * F_star * l1;
+    case OUT_BOREHOLE_CURVATURE: return (at->Theta - at->earlier) / l1;
+    case OUT_DISPLACEMENT: return at->x * l1;
+    case OUT_TRUE_VERTICAL_DEPTH: return at->z * l1;
+    case OUT_ETA_PI: return inputs->eta_pi;
+    }
+    return NAN;
+}
+
+/* How many values `drilling_outputs` writes. */
+static inline int output_count(int n) {
+    int count = 0;
+    for (int k = 0; k < OUTPUT_COUNT; k++) count += value_count(OUTPUT_SIZE[k], n);
+    return count;
+}
+
+/* Every output of the table of quantities where the bit is, in its order; returns how many values. */
+static inline int drilling_outputs(Drilling *d, double out[MOST_OUTPUTS]) {
+    Present at = present(d);
+    double *next = out;
+    for (int k = 0; k < OUTPUT_COUNT; k++)
+        for (int i = 0; i < value_count(OUTPUT_SIZE[k], d->system.n); i++) *next++ = output(d, &at, (Output)k, i);
     return (int)(next - out);
 }
 

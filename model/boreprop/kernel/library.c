@@ -10,15 +10,20 @@
 /* Which sources this was made from. */
 EXPORT const char *boreprop_sources_digest(void) { return BOREPROP_SOURCES_DIGEST; }
 
-/* A run at the end of its survey; NULL, and `why`, where a parameter is bad. To be ended with `boreprop_end`. */
+/* Which table of quantities. */
+EXPORT const char *boreprop_quantities_digest(void) { return QUANTITIES_DIGEST; }
+
+/* A run of n stabilizers at the end of its survey, with parameters in the order of the table of quantities; NULL, and
+   `why`, where one is bad. To be ended with `boreprop_end`. */
 EXPORT Run *boreprop_start(
-    const System *system, Count count, const double *measured_depth, const double *inclination, const Inputs *inputs,
-    char why[MESSAGE]
+    int n, const double *parameters, Count count, const double *measured_depth, const double *inclination,
+    const Inputs *inputs, char why[MESSAGE]
 ) {
     Survey survey = {count, measured_depth, inclination};
+    System system = system_of(n, parameters);
     Run *run = calloc(1, sizeof *run);
     strcpy(why, "memory: must have room for a run, got too little");
-    if (run && run_prepare(run, system, why) == DONE && run_start(run, &survey, *inputs, why) == DONE) return run;
+    if (run && run_prepare(run, &system, why) == DONE && run_start(run, &survey, *inputs, why) == DONE) return run;
     run_end(run);
     return NULL;
 }
@@ -31,16 +36,16 @@ EXPORT Count boreprop_follow(
     Run *run, Count count, const double *lengths, const double *forces, double active_weight_on_bit, const int *rows,
     double *table, char why[MESSAGE]
 ) {
-    Count width = 4 * run->drilling.system.n + 8;
+    Count width = output_count(run->drilling.system.n);
     for (Count k = 0; k < count; k++) {
-        Inputs inputs = {forces[k], 0.0, active_weight_on_bit};
+        Inputs inputs = {.rss_force = forces[k], .active_weight_on_bit = active_weight_on_bit};
         if (run_advance(run, lengths[k], inputs, why) != DONE) return k;
         if (rows[k] >= 0) drilling_outputs(&run->drilling, table + rows[k] * width);
     }
     return count;
 }
 
-/* All outputs where the bit is, in the order of the table of variables; returns how many. */
+/* All outputs where the bit is, in the order of the table of quantities; returns how many. */
 EXPORT int boreprop_outputs(Run *run, double out[MOST_OUTPUTS]) { return drilling_outputs(&run->drilling, out); }
 
 /* m drilled. */

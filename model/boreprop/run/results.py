@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..case.case import Case
-from ..case.file import dump_case, load_case, parse_case, read_stopped
+from ..case.file import dump_case, load_case, parse_case, read_run
 from ..core.columns import read_columns
 from ..core.quantities import BY_NAME, INPUTS, OUTPUTS
 from ..errors import InputError
 from ..replacing import replacing
-from .trajectory import Trajectory, quantity_of
+from .trajectory import Trajectory, plain_name
 
 SUFFIXES = (".csv", ".parquet")
 CASE_KEY = b"boreprop.case"
@@ -95,12 +95,12 @@ def _ours(path: Path, headings: list[str]) -> dict[str, str]:
     components: dict[str, dict[str, str]] = {}
     for heading in headings:
         match = HEADING.fullmatch(heading)
-        if match and quantity_of(match["name"]) in IO_NAMES:
+        if match and plain_name(match["name"]) in IO_NAMES:
             components.setdefault(match["component"] or "", {}).setdefault(match["name"], heading)
     drilling = [names for names in components.values() if "drilled_length" in names]
     if not drilling:
         raise InputError(f"{path}: must have a column 'drilled_length', got {headings}")
-    outputs = [{name for name in names if quantity_of(name) in OUTPUT_NAMES} for names in drilling]
+    outputs = [{name for name in names if plain_name(name) in OUTPUT_NAMES} for names in drilling]
     ours = [names for names, own in zip(drilling, outputs, strict=True) if own >= set().union(*outputs)]
     if len(ours) != 1:
         found = ", ".join(names["drilled_length"] for names in drilling)
@@ -111,7 +111,7 @@ def _ours(path: Path, headings: list[str]) -> dict[str, str]:
 
 def _typed(trajectory: Trajectory) -> dict[str, NDArray[Any]]:
     """The columns, those of FMI's Integer variables as such."""
-    integers = {name for name in trajectory if (v := BY_NAME.get(quantity_of(name))) and v.kind == "Integer"}
+    integers = {name for name in trajectory if (v := BY_NAME.get(plain_name(name))) and v.kind == "Integer"}
     return {k: v.astype(np.int32) if k in integers else v for k, v in trajectory.items()}
 
 
@@ -127,7 +127,7 @@ def _write_csv(trajectory: Trajectory, path: Path) -> None:
             case_path(path).unlink(missing_ok=True)  # of a run that is overwritten
         else:
             with replacing(case_path(path)) as case_draft:
-                case_draft.write_text(dump_case(trajectory.case, trajectory.stopped), encoding="utf-8")
+                case_draft.write_text(_case_text(trajectory, trajectory.case), encoding="utf-8")
 
 
 def _read_csv(path: Path, case: Case | None) -> Trajectory:
@@ -139,13 +139,18 @@ def _read_csv(path: Path, case: Case | None) -> Trajectory:
     own = case_path(path)
     if not own.exists():
         return Trajectory(columns, case)
-    stopped = read_stopped(own.read_text("utf-8-sig", errors="replace"))
-    return Trajectory(columns, load_case(own) if case is None else case, stopped)
+    run = read_run(own.read_text("utf-8-sig", errors="replace"))
+    return Trajectory(columns, load_case(own) if case is None else case, run.get("stopped"), run.get("engine"))
+
+
+def _case_text(trajectory: Trajectory, case: Case) -> str:
+    """The case of a run, and what is to be told of the run."""
+    return dump_case(case, engine=trajectory.engine, stopped=trajectory.stopped)
 
 
 def _write_parquet(trajectory: Trajectory, path: Path) -> None:
     pyarrow, parquet = _pyarrow(path)
-    metadata = {} if trajectory.case is None else {CASE_KEY: dump_case(trajectory.case, trajectory.stopped)}
+    metadata = {} if trajectory.case is None else {CASE_KEY: _case_text(trajectory, trajectory.case)}
     with replacing(path) as draft:
         parquet.write_table(pyarrow.table(_typed(trajectory), metadata=metadata), draft)
 
@@ -162,7 +167,8 @@ def _read_parquet(path: Path, case: Case | None) -> Trajectory:
     if CASE_KEY not in metadata:
         return Trajectory(columns, case)
     own = metadata[CASE_KEY].decode()
-    return Trajectory(columns, parse_case(own, path) if case is None else case, read_stopped(own))
+    run = read_run(own)
+    return Trajectory(columns, parse_case(own, path) if case is None else case, run.get("stopped"), run.get("engine"))
 
 
 def _numbers(path: Path, name: str, column: Any) -> NDArray[np.float64]:

@@ -78,7 +78,7 @@ class Trajectory(Mapping[str, Floats]):
         """Number of stabilizers: the case's, or as many as there are average inclinations."""
         if self.case is not None:
             return len(self.case.bha.stabilizer_positions)
-        return sum(quantity_of(name) == "average_inclination" for name in self)
+        return sum(plain_name(name) == "average_inclination" for name in self)
 
     def stack(self, name: str) -> Floats:
         """The columns ``name[1]``, ``name[2]``, … side by side, shape (rows, n) or (rows, n − 1)."""
@@ -104,6 +104,6 @@ class Stopped(BorepropError):
         self.trajectory = trajectory
 
 
-def quantity_of(scalar_name: str) -> str:
+def plain_name(scalar_name: str) -> str:
     """The name of a quantity, without the number of its component."""
     return scalar_name.partition("[")[0]

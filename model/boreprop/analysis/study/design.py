@@ -1,24 +1,21 @@
 """What a study is made of: cases that differ from one in some parameters, on a grid or drawn from distributions."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import radians
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...case.case import Case, Schedule
-from ...core.quantities import BY_NAME
-from ...core.system import BitRock, BottomHoleAssembly
+from ...case.case import Case
+from ...case.parameters import parameters, with_parameters
+from ...core.quantities import BY_NAME, quantity_of
 from ...errors import InputError, shown
 
 T = TypeVar("T")
 
 MOST_VALUES = 5000  # on an axis of a picture
-
-CONVENIENT = {"eta_pi": "active_weight_on_bit", "bit_tilt_limit_deg": "bit_tilt_limit"}
-"""Names that a study knows besides those of the table of variables → what they stand for."""
 
 
 class Distribution(Protocol):
@@ -26,27 +23,6 @@ class Distribution(Protocol):
 
     def ppf(self, q: Any, /) -> Any:
         """The value below which a draw lies with probability `q`."""
-
-
-def parameters(case: Case) -> dict[str, float]:
-    """What of `case` can be varied, by the scalar names of the table of variables, SI units.
-
-    The force is the first one of the schedule.
-    """
-    bha, bit = case.bha, case.bit
-    n = len(bha.stabilizer_positions)
-    return {
-        "rss_force": case.schedule.rss_force[0],
-        "active_weight_on_bit": case.active_weight_on_bit,
-        **dict(zip(BY_NAME["stabilizer_position"].names(n), bha.stabilizer_positions, strict=True)),
-        **dict(zip(BY_NAME["stabilizer_clearance"].names(n), bha.stabilizer_clearances, strict=True)),
-        "rss_position": bha.rss_position,
-        "distributed_weight": bha.distributed_weight,
-        "flexural_stiffness": bha.flexural_stiffness,
-        "lateral_steering_resistance": bit.lateral_steering_resistance,
-        "angular_steering_resistance": bit.angular_steering_resistance,
-        "bit_tilt_limit": bit.tilt_limit,
-    }
 
 
 def vary(case: Case, values: Mapping[str, float]) -> Case:
@@ -58,7 +34,8 @@ def vary(case: Case, values: Mapping[str, float]) -> Case:
         What all else is taken from.
     values
         Names of `parameters` → values, SI units. Besides: "eta_pi", reached by the weight on bit, with the other
-        values in place; "bit_tilt_limit_deg". A "rss_force" acts from the start to the end, instead of the schedule.
+        values in place; an angle in degrees, "bit_tilt_limit_deg". A "rss_force" acts from the start to the end,
+        instead of the schedule.
 
     Raises
     ------
@@ -67,35 +44,37 @@ def vary(case: Case, values: Mapping[str, float]) -> Case:
     ParameterError
         If a value is out of range.
     """
-    known = parameters(case)
-    check_names(known, tuple(values))
-    p = {**known, **values}
-    if "bit_tilt_limit_deg" in p:
-        p["bit_tilt_limit"] = radians(p["bit_tilt_limit_deg"])
-    n = len(case.bha.stabilizer_positions)
-    bha = BottomHoleAssembly(
-        tuple(p[name] for name in BY_NAME["stabilizer_position"].names(n)),
-        tuple(p[name] for name in BY_NAME["stabilizer_clearance"].names(n)),
-        p["rss_position"],
-        p["distributed_weight"],
-        p["flexural_stiffness"],
-    )
-    bit = BitRock(p["lateral_steering_resistance"], p["angular_steering_resistance"], p["bit_tilt_limit"])
-    if "eta_pi" in p:
-        p["active_weight_on_bit"] = p["eta_pi"] * bha.force_scale / bit.lateral_steering_resistance
-    schedule = Schedule((0.0,), (p["rss_force"],)) if "rss_force" in values else case.schedule
-    return replace(case, bha=bha, bit=bit, active_weight_on_bit=p["active_weight_on_bit"], schedule=schedule)
+    check_names(case, tuple(values))
+    wanted = {
+        parameter_of(name): radians(value) if name.endswith("_deg") else value
+        for name, value in values.items()
+        if name != "eta_pi"
+    }
+    varied = with_parameters(case, wanted)
+    if "eta_pi" not in values:
+        return varied
+    weight = values["eta_pi"] * varied.bha.force_scale / varied.bit.lateral_steering_resistance
+    return with_parameters(varied, {"active_weight_on_bit": weight})
 
 
-def check_names(known: Mapping[str, float], names: tuple[str, ...]) -> None:
+def parameter_of(name: str) -> str:
+    """The parameter that is varied under a name: of "eta_pi" the weight, of an angle in degrees the angle."""
+    if name == "eta_pi":
+        return "active_weight_on_bit"
+    angle = BY_NAME.get(name.removesuffix("_deg"))
+    return angle.name if angle and angle.unit == "rad" else name
+
+
+def check_names(case: Case, names: tuple[str, ...]) -> None:
     """Raise `InputError` unless each of `names` can be varied, and no two are for one parameter."""
-    for name in names:
-        if CONVENIENT.get(name, name) not in known:
-            raise InputError(f"what is varied must be one of {', '.join([*known, *CONVENIENT])}, got {name!r}")
-    meant = [CONVENIENT.get(name, name) for name in names]
-    for name in meant:
-        if meant.count(name) > 1:
-            raise InputError(f"{name}: must be varied under one name, got {', '.join(names)}")
+    known = parameters(case)
+    besides = ["eta_pi", *(f"{name}_deg" for name in known if quantity_of(name).unit == "rad")]
+    meant = [parameter_of(name) for name in names]
+    for name, parameter in zip(names, meant, strict=True):
+        if parameter not in known:
+            raise InputError(f"what is varied must be one of {', '.join([*known, *besides])}, got {name!r}")
+        if meant.count(parameter) > 1:
+            raise InputError(f"{parameter}: must be varied under one name, got {', '.join(names)}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +104,7 @@ class Study:
     axes: Mapping[str, NDArray[np.float64]] | None = None
 
     def __post_init__(self) -> None:
-        check_names(parameters(self.case), self.names)
+        check_names(self.case, self.names)
 
     def __len__(self) -> int:
         return len(self.values)

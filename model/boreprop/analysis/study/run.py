@@ -47,9 +47,9 @@ from ...run.trajectory import Stopped
 from ...run.workers import WorkerLost, work
 from ..rippling import State
 from ..summary import summarize
-from .design import CONVENIENT as CONVENIENT
 from .design import Study as Study
 from .design import grid as grid
+from .design import parameter_of
 from .design import sample as sample
 from .design import vary as vary
 
@@ -351,8 +351,8 @@ def _attributes(name: str) -> dict[str, str]:
     name = name.partition("[")[0]
     if name in FIGURES:
         unit, meaning = FIGURES[name]
-    elif variable := BY_NAME.get(CONVENIENT.get(name, name) if name != "eta_pi" else name):
-        unit, meaning = "deg" if name.endswith("_deg") else variable.unit, variable.meaning
+    elif quantity := BY_NAME.get(name) or BY_NAME.get(parameter_of(name)):
+        unit, meaning = "deg" if name.endswith("_deg") else quantity.unit, quantity.meaning
     else:
         return {}
     return {"units": unit, "long_name": meaning}

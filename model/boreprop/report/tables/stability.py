@@ -4,6 +4,7 @@ from collections.abc import Container
 from math import degrees, log, pi
 
 from ...analysis.stability.roots import CriticalEtaPi, Roots, Verdict
+from ...units import UNITS
 
 HEADINGS = ("growth, per ℓ₁", "frequency, per ℓ₁", "what it does", "wavelength")
 MODE_HEADINGS = ("in contact", "bit tilt", "verdict", "what it does", "wavelength", "the case")
@@ -104,4 +105,4 @@ def stability_limit(contact: tuple[int, ...], critical: CriticalEtaPi | None) ->
 
 def weight(active_weight_on_bit: float) -> str:
     """An active weight on bit, N, in kN."""
-    return f"{active_weight_on_bit / 1000:.4g} kN"
+    return UNITS["N"].text(active_weight_on_bit, ".4g")

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from itertools import groupby
-from math import degrees, isfinite
+from math import isfinite
 
 from ...analysis.steering import (
     Piece,
@@ -14,14 +14,14 @@ from ...analysis.steering import (
 )
 from ...case.case import Case
 from ...core.system import eta_pi
-from ...units import BUILD_LENGTH
+from ...units import UNITS
 
 USUAL_FORCE = 30e3  # N: what the pads of a large tool can do
 READABLE = 0.01  # ° per `BUILD_LENGTH`: no survey sees less
 NEAR_REVERSAL = 0.8  # of the ηΠ at which the response changes sign: its numerator has lost four fifths
 HEADINGS = (
     "force\n(kN)",
-    f"build rate\n(°/{BUILD_LENGTH:g} m)",
+    f"build rate\n({UNITS['rad/m'].shown})",
     "per kN\n",
     "bit tilt\n(°)",
     "on a wall\n",
@@ -108,14 +108,14 @@ def lines(summary: SteeringSummary) -> list[tuple[str, str]]:
     )
     left_out = f"less than {READABLE:g}" if error < READABLE else f"up to {error:.2f}"
     return [
-        ("inclination at which the weight acts", f"{degrees(summary.inclination):.2f} °"),
+        ("inclination at which the weight acts", UNITS["rad"].text(summary.inclination)),
         ("active weight on bit", f"{kilonewtons(summary.active_weight_on_bit)}, ηΠ = {summary.eta_pi:.3g}"),
         ("force limit", f"±{limit}"),
         ("build rate without force", f"{rate(summary.free.build_rate)}, on a wall: {touching(summary.free)}"),
         ("force that holds the inclination", held or f"none up to ±{limit}"),
         ("highest build rate", at_force(summary.highest)),
         ("lowest build rate", at_force(summary.lowest)),
-        ("left out: gravity changes along the arc", f"{left_out} °/{BUILD_LENGTH:g} m"),
+        ("left out: gravity changes along the arc", f"{left_out} {UNITS['rad/m'].shown}"),
         *(("warning", text) for text in warnings(summary.curve, summary.eta_pi)),
     ]
 
@@ -128,15 +128,15 @@ def piece_lines(curve: tuple[Piece, ...]) -> list[tuple[str, ...]]:
             f"{per_build_length(piece.start.build_rate):+z.2f}…{per_build_length(piece.end.build_rate):+z.2f}",
             f"{per_build_length(piece.gain * 1e3):+z.3f}",
             (
-                f"{degrees(piece.start.bit_tilt):+z.2f} (limit)"
+                f"{tilt(piece.start)} (limit)"
                 if piece.start.bit_tilt_saturation
-                else f"{degrees(piece.start.bit_tilt):+z.2f}…{degrees(piece.end.bit_tilt):+z.2f}"
+                else f"{tilt(piece.start)}…{tilt(piece.end)}"
             ),
             touching(piece.start, piece.end),
             (
                 "–"
                 if piece.start.bit_tilt_saturation
-                else f"{piece.reversal_weight / 1e3:.4g} ({piece.reversal_eta_pi:.3g})"
+                else f"{UNITS['N'].number(piece.reversal_weight, '.4g')} ({piece.reversal_eta_pi:.3g})"
                 if isfinite(piece.reversal_eta_pi)
                 else "never"
             ),
@@ -163,7 +163,12 @@ def _warning(piece: Piece, eta_pi: float) -> str:
 
 def forces(start: SteadyResponse, end: SteadyResponse) -> str:
     """From which force to which, in kN."""
-    return f"{start.rss_force / 1e3:+z.2f}…{end.rss_force / 1e3:+z.2f}"
+    return "…".join(UNITS["N"].number(response.rss_force, "+z.2f") for response in (start, end))
+
+
+def tilt(response: SteadyResponse) -> str:
+    """The bit tilt of a response, in degrees."""
+    return UNITS["rad"].number(response.bit_tilt, "+z.2f")
 
 
 def touching(*responses: SteadyResponse) -> str:
@@ -175,12 +180,12 @@ def touching(*responses: SteadyResponse) -> str:
 
 def per_build_length(build_rate: float) -> float:
     """Degrees per `BUILD_LENGTH` of a build rate in rad/m."""
-    return degrees(build_rate) * BUILD_LENGTH
+    return UNITS["rad/m"].factor * build_rate
 
 
 def rate(build_rate: float) -> str:
     """A build rate, rad/m, with its sign and unit."""
-    return f"{per_build_length(build_rate):+z.2f} °/{BUILD_LENGTH:g} m"
+    return UNITS["rad/m"].text(build_rate, "+z.2f")
 
 
 def at_force(response: SteadyResponse) -> str:
@@ -190,4 +195,4 @@ def at_force(response: SteadyResponse) -> str:
 
 def kilonewtons(force: float, sign: str = "") -> str:
     """A force, N, in kN."""
-    return f"{force / 1e3:{sign}z.2f} kN"
+    return UNITS["N"].text(force, f"{sign}z.2f")

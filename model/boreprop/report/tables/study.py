@@ -1,23 +1,19 @@
 """A study in a table and a sentence, in the units people use."""
 
 from collections.abc import Iterable
-from math import degrees, isfinite
+from math import isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...analysis.study.run import probability, quantiles
-from ...units import BUILD_LENGTH
+from ...units import UNITS, Unit
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-SHOWN = {  # SI unit: the unit to show it in and how many of those it is
-    "rad": ("°", degrees(1.0)),
-    "rad/m": (f"°/{BUILD_LENGTH:g} m", degrees(BUILD_LENGTH)),
-    "N": ("kN", 1e-3),
-}
+DIGITS = ".4g"
 
 
 def lines(results: "Dataset", q: Iterable[float]) -> list[tuple[str, ...]]:
@@ -28,12 +24,13 @@ def lines(results: "Dataset", q: Iterable[float]) -> list[tuple[str, ...]]:
         kind, _, number = str(name).partition("[")
         if kind in ("ripples", "state"):
             continue  # of a yes or no, and of a code, quantiles say nothing
-        unit, factor = SHOWN.get(figure.attrs.get("units", ""), (figure.attrs.get("units", ""), 1.0))
+        si = figure.attrs.get("units", "")
+        unit = UNITS.get(si, Unit({}, si))
         what = figure.attrs.get("long_name", kind) + (f", stabilizer {number[:-1]}" if number else "")
         table.append(
             (
-                (f"{what} ({unit})" if unit else what) + _which(results, np.isfinite(results[name].values)),
-                *(f"{factor * v:.4g}" if isfinite(v) else "–" for v in figure.values),
+                (f"{what} ({unit.shown})" if unit.shown else what) + _which(results, np.isfinite(results[name].values)),
+                *(unit.number(value, DIGITS) if isfinite(value) else "–" for value in figure.values),
             )
         )
     return table

@@ -1,12 +1,8 @@
 """A run in a table."""
 
-from math import degrees
-
-import numpy as np
-
 from ...analysis.rippling import Rippling, State, Stretch
 from ...analysis.summary import Summary
-from ...units import BUILD_LENGTH
+from ...units import BUILD_LENGTH, SMALL_LENGTH, UNITS
 
 
 def lines(summary: Summary) -> list[tuple[str, str]]:
@@ -14,17 +10,17 @@ def lines(summary: Summary) -> list[tuple[str, str]]:
     mean = f"mean over {summary.averaging_length:.3g} m"
     stabilizers = enumerate(zip(summary.largest_contact_force, summary.contact_share, strict=True), 1)
     return [
-        ("drilled length", f"{summary.drilled_length:.1f} m"),
+        ("drilled length", UNITS["m"].text(summary.drilled_length)),
         *([("stopped", summary.stopped)] if summary.stopped else []),
-        (f"inclination at the start, {mean}", f"{np.degrees(summary.start_inclination):.2f} °"),
-        (f"inclination at the end, {mean}", f"{np.degrees(summary.end_inclination):.2f} °"),
-        ("build rate, mean", _rate(summary.build_rate)),
-        (f"build rate, largest over {BUILD_LENGTH:g} m", _rate(summary.largest_build_rate)),
+        (f"inclination at the start, {mean}", UNITS["rad"].text(summary.start_inclination)),
+        (f"inclination at the end, {mean}", UNITS["rad"].text(summary.end_inclination)),
+        ("build rate, mean", UNITS["rad/m"].text(summary.build_rate)),
+        (f"build rate, largest over {BUILD_LENGTH:g} m", UNITS["rad/m"].text(summary.largest_build_rate)),
         *(
             line
             for i, (force, share) in stabilizers
             for line in (
-                (f"stabilizer {i}: largest contact force", f"{force / 1e3:.1f} kN"),
+                (f"stabilizer {i}: largest contact force", UNITS["N"].text(force)),
                 (f"stabilizer {i}: in contact", f"{share:.0%} of the length"),
             )
         ),
@@ -34,17 +30,13 @@ def lines(summary: Summary) -> list[tuple[str, str]]:
     ]
 
 
-def _rate(change: float) -> str:
-    return f"{np.degrees(change) * BUILD_LENGTH:+.2f} °/{BUILD_LENGTH:g} m"
-
-
 def _wave_lines(wave: Rippling) -> list[tuple[str, str]]:
     if wave.state is State.NONE:
         return [("rippling", "no")]
     return [
         ("rippling", what_becomes_of(wave)),
-        ("ripple of the inclination", f"±{degrees(wave.amplitude):.3g} °"),
-        ("ripple of the hole axis", f"±{1e3 * wave.axis_amplitude:.3g} mm"),
+        ("ripple of the inclination", f"±{UNITS['rad'].text(wave.amplitude, '.3g')}"),
+        ("ripple of the hole axis", f"±{SMALL_LENGTH.text(wave.axis_amplitude)}"),
         ("ripple, from wave to wave", f"length ±{wave.spread:.2f} m"),
         ("ripple, from stand to stand", f"amplitude {100 * wave.growth_over(BUILD_LENGTH):+.1f} %/{BUILD_LENGTH:g} m"),
         ("ripple, at least half as large since", f"{wave.since:.0f} m"),

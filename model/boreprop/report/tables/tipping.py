@@ -7,7 +7,7 @@ from ...analysis.hysteresis import Bracket, Hysteresis
 from ...analysis.rippling import Rippling
 from ...analysis.tipping import FINEST, CriticalDogleg, DoglegMap
 from ...case.case import Case
-from ...units import BUILD_LENGTH
+from ...units import SMALL_LENGTH, UNITS
 
 SIDES = {1: "up", -1: "down"}
 
@@ -36,7 +36,7 @@ def _amount(found: CriticalDogleg, length: float, limit: float) -> str:
         return f"none needed: it ripples from a straight hole, but not after a turn of {turns}"
     if found.angle == 0.0:
         return "any: it ripples from a straight hole"
-    severity = f"{degrees(found.curvature) * BUILD_LENGTH:.1f} °/{BUILD_LENGTH:g} m"
+    severity = UNITS["rad/m"].text(found.curvature, ".1f")
     return f"{degrees(found.angle):.2f}° over {length:.4g} m ({severity}){exception}"
 
 
@@ -73,11 +73,11 @@ def ripples(wave: Rippling | None) -> bool:
 def amounts(case: Case, name: str) -> Callable[[float], str]:
     """How a value of a parameter is told in the units people use."""
     if name == "eta_pi":
-        per_unit = case.bha.force_scale / case.bit.lateral_steering_resistance / 1e3
-        return lambda value: f"ηΠ = {value:.4g} ({value * per_unit:.4g} kN)"
+        per_unit = case.bha.force_scale / case.bit.lateral_steering_resistance
+        return lambda value: f"ηΠ = {value:.4g} ({UNITS['N'].text(value * per_unit, '.4g')})"
     if name == "active_weight_on_bit":
-        return lambda value: f"{value / 1e3:.4g} kN"
-    return lambda value: f"{1e3 * value:.4g} mm"
+        return lambda value: UNITS["N"].text(value, ".4g")
+    return lambda value: SMALL_LENGTH.text(value, ".4g")
 
 
 def _between(bracket: Bracket, amount: Callable[[float], str]) -> str:

@@ -1,0 +1,141 @@
+"""Writes the C headers that follow from Python: ``python -m boreprop.kernel.generate``. A test compares them."""
+
+from collections.abc import Callable, Iterable
+from functools import cache
+from hashlib import sha256
+
+from ..core.quantities import INPUTS, MAX_STABILIZERS, OUTPUTS, PARAMETERS, Quantity
+from ..core.system import LEAST_SPAN
+from ..replacing import replacing
+from .compiler import FOLDER
+
+Table = tuple[Quantity, ...]
+SYSTEM = tuple(quantity for quantity in PARAMETERS if quantity.kind == "Real")
+"""The parameters that the kernel has, in the order in which it takes their values."""
+
+SIZES = {"1": "ONE", "n": "EACH_STABILIZER", "n-1": "EACH_NON_IDEAL"}
+ROOMS = {"1": "", "n": "[MAX_STABILIZERS]", "n-1": "[MAX_STABILIZERS - 1]"}
+
+QUANTITIES = """\
+/* The table of quantities, as C needs it. Written from core/quantities.py by `python -m boreprop.kernel.generate`. */
+#ifndef BOREPROP_QUANTITIES_H
+#define BOREPROP_QUANTITIES_H
+
+#include <math.h>
+#include <stddef.h>
+
+#define QUANTITIES_DIGEST "{digest}" /* of this file, but for this line */
+#define LEAST_SPAN {least_span!r} /* m between stabilizers, at least: between closer ones the force is rounding */
+
+enum {{ MAX_STABILIZERS = {most}, PARAMETER_COUNT = {parameters}, INPUT_COUNT = {inputs}, OUTPUT_COUNT = {outputs} }};
+
+/* The parameters, in SI units. */
+typedef struct {{
+    int n; /* stabilizers */
+{system}
+}} System;
+
+/* What acts from where the bit is: values, and the change of some per metre drilled. */
+typedef struct {{
+{acting}
+}} Inputs;
+
+/* How many values a quantity has. */
+typedef enum {{ {sizes} }} Size;
+
+/* A quantity that is given from outside: its range, above < value, at_least <= value <= at_most. */
+typedef struct {{
+    const char *name;
+    Size size;
+    size_t offset; /* of a parameter, in System */
+    double above, at_least, at_most;
+}} Quantity;
+
+static const Quantity PARAMETER_TABLE[PARAMETER_COUNT] = {{
+{parameter_table}
+}};
+
+enum {{ {input_names} }};
+static const Quantity INPUT_TABLE[INPUT_COUNT] = {{
+{input_table}
+}};
+
+/* The outputs, in their order. */
+typedef enum {{
+{output_names}
+}} Output;
+static const Size OUTPUT_SIZE[OUTPUT_COUNT] = {{
+{output_sizes}
+}};
+enum {{ MOST_OUTPUTS = {most_outputs} }}; /* values, of the largest assembly */
+
+#endif
+"""
+
+
+def acting(inputs: Table = INPUTS) -> list[tuple[str, str, str]]:
+    """Name, unit and meaning of the members of the C struct Inputs."""
+    members = []
+    for quantity in inputs:
+        if quantity.field:  # the rate of penetration, which no case has, does not act on the drilling system
+            members.append((quantity.name, quantity.unit, quantity.meaning))
+            if quantity.slope:
+                members.append((f"{quantity.name}_slope", f"{quantity.unit}/m", "its change per metre drilled"))
+    return members
+
+
+def quantities_header(system: Table = SYSTEM, inputs: Table = INPUTS, outputs: Table = OUTPUTS) -> str:
+    """The text of quantities.h."""
+    numbers = {
+        "least_span": LEAST_SPAN,
+        "most": MAX_STABILIZERS,
+        "parameters": len(system),
+        "inputs": len(inputs),
+        "outputs": len(outputs),
+        "system": _lines(f"double {q.name}{ROOMS[q.size]}; /* {_note(q.unit, q.meaning)} */" for q in system),
+        "acting": _lines(f"double {name}; /* {_note(unit, meaning)} */" for name, unit, meaning in acting(inputs)),
+        "sizes": ", ".join(SIZES.values()),
+        "parameter_table": _lines(_range_row(q, f"offsetof(System, {q.name})") for q in system),
+        "input_names": ", ".join(f"IN_{q.name.upper()}" for q in inputs),
+        "input_table": _lines(_range_row(q, "0") for q in inputs),
+        "output_names": _lines(f"OUT_{q.name.upper()}, /* {_note(q.unit, q.meaning)} */" for q in outputs),
+        "output_sizes": _lines(f"{SIZES[q.size]}, /* {q.name} */" for q in outputs),
+        "most_outputs": sum(q.count(MAX_STABILIZERS) for q in outputs),
+    }
+    return QUANTITIES.format(digest=_digest(QUANTITIES.format(digest="", **numbers)), **numbers)
+
+
+HEADERS: dict[str, Callable[[], str]] = {"quantities.h": quantities_header}  # file name → what gives its text
+
+
+@cache
+def quantities_digest() -> str:
+    """What quantities.h says that it was made from, if it is made from the table as it is now."""
+    return quantities_header().partition('QUANTITIES_DIGEST "')[2].partition('"')[0]
+
+
+def _digest(text: str) -> str:
+    return sha256(text.encode()).hexdigest()[:16]
+
+
+def _lines(lines: Iterable[str]) -> str:
+    return "\n".join(f"    {line}" for line in lines)
+
+
+def _note(unit: str, meaning: str) -> str:
+    return f"{unit}: {meaning}" if unit else meaning
+
+
+def _range_row(quantity: Quantity, offset: str) -> str:
+    bounds = ", ".join(_bound(bound) for bound in (quantity.above, quantity.at_least, quantity.at_most))
+    return f'{{"{quantity.name}", {SIZES[quantity.size]}, {offset}, {bounds}}},'
+
+
+def _bound(value: float) -> str:
+    return repr(float(value)).replace("inf", "INFINITY")
+
+
+if __name__ == "__main__":
+    for name, text in HEADERS.items():
+        with replacing(FOLDER / name) as draft:
+            draft.write_text(text(), encoding="utf-8", newline="\n")

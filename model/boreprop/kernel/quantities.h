@@ -1,0 +1,101 @@
+/* The table of quantities, as C needs it. Written from core/quantities.py by `python -m boreprop.kernel.generate`. */
+#ifndef BOREPROP_QUANTITIES_H
+#define BOREPROP_QUANTITIES_H
+
+#include <math.h>
+#include <stddef.h>
+
+#define QUANTITIES_DIGEST "719775283b845d8c" /* of this file, but for this line */
+#define LEAST_SPAN 0.01 /* m between stabilizers, at least: between closer ones the force is rounding */
+
+enum { MAX_STABILIZERS = 6, PARAMETER_COUNT = 9, INPUT_COUNT = 3, OUTPUT_COUNT = 15 };
+
+/* The parameters, in SI units. */
+typedef struct {
+    int n; /* stabilizers */
+    double stabilizer_position[MAX_STABILIZERS]; /* m: distance of the stabilizer from the bit; the last one is ideal */
+    double stabilizer_clearance[MAX_STABILIZERS - 1]; /* m: clearance between stabilizer and wall on each side */
+    double rss_position; /* m: distance of the steering pads from the bit */
+    double distributed_weight; /* N/m: buoyant weight of the BHA per length */
+    double flexural_stiffness; /* N.m2: bending stiffness of the BHA */
+    double lateral_steering_resistance; /* lateral over axial drilling resistance */
+    double angular_steering_resistance; /* angular over axial drilling resistance */
+    double bit_tilt_limit; /* rad: tilt at which the bit gauge meets the wall */
+    double relative_tolerance; /* local error of one step of the integrator, over 1 rad and ℓ₁ */
+} System;
+
+/* What acts from where the bit is: values, and the change of some per metre drilled. */
+typedef struct {
+    double rss_force; /* N: force of the steering pads on the BHA, positive builds */
+    double rss_force_slope; /* N/m: its change per metre drilled */
+    double active_weight_on_bit; /* N: weight on bit that goes into drilling */
+} Inputs;
+
+/* How many values a quantity has. */
+typedef enum { ONE, EACH_STABILIZER, EACH_NON_IDEAL } Size;
+
+/* A quantity that is given from outside: its range, above < value, at_least <= value <= at_most. */
+typedef struct {
+    const char *name;
+    Size size;
+    size_t offset; /* of a parameter, in System */
+    double above, at_least, at_most;
+} Quantity;
+
+static const Quantity PARAMETER_TABLE[PARAMETER_COUNT] = {
+    {"stabilizer_position", EACH_STABILIZER, offsetof(System, stabilizer_position), 0.0, -INFINITY, INFINITY},
+    {"stabilizer_clearance", EACH_NON_IDEAL, offsetof(System, stabilizer_clearance), -INFINITY, 0.0, INFINITY},
+    {"rss_position", ONE, offsetof(System, rss_position), -INFINITY, 0.0, INFINITY},
+    {"distributed_weight", ONE, offsetof(System, distributed_weight), -INFINITY, 0.0, INFINITY},
+    {"flexural_stiffness", ONE, offsetof(System, flexural_stiffness), 0.0, -INFINITY, INFINITY},
+    {"lateral_steering_resistance", ONE, offsetof(System, lateral_steering_resistance), 0.0, -INFINITY, INFINITY},
+    {"angular_steering_resistance", ONE, offsetof(System, angular_steering_resistance), 0.0, -INFINITY, INFINITY},
+    {"bit_tilt_limit", ONE, offsetof(System, bit_tilt_limit), 0.0, -INFINITY, 1.5707963267948966},
+    {"relative_tolerance", ONE, offsetof(System, relative_tolerance), -INFINITY, 1e-12, 0.01},
+};
+
+enum { IN_RSS_FORCE, IN_ACTIVE_WEIGHT_ON_BIT, IN_RATE_OF_PENETRATION };
+static const Quantity INPUT_TABLE[INPUT_COUNT] = {
+    {"rss_force", ONE, 0, -INFINITY, -INFINITY, INFINITY},
+    {"active_weight_on_bit", ONE, 0, 0.0, -INFINITY, INFINITY},
+    {"rate_of_penetration", ONE, 0, -INFINITY, 0.0, INFINITY},
+};
+
+/* The outputs, in their order. */
+typedef enum {
+    OUT_DRILLED_LENGTH, /* m: length drilled since the start of the run */
+    OUT_BIT_INCLINATION, /* rad: inclination of the bit axis from the downward vertical */
+    OUT_BOREHOLE_INCLINATION, /* rad: inclination of the borehole at the bit */
+    OUT_BIT_TILT, /* rad: bit inclination minus borehole inclination */
+    OUT_AVERAGE_INCLINATION, /* rad: borehole inclination averaged between stabilizers i−1 and i */
+    OUT_STABILIZER_DEFLECTION, /* m: offset of the BHA from the borehole axis, positive to the high side */
+    OUT_STABILIZER_FORCE, /* N: force of the wall on the stabilizer, positive from the lower wall */
+    OUT_STABILIZER_CONTACT, /* 1 on the lower wall, −1 on the upper wall, 0 free */
+    OUT_BIT_TILT_SATURATION, /* 1 at +ψ*, −1 at −ψ*, 0 between */
+    OUT_BIT_LATERAL_FORCE, /* N: lateral force on the bit */
+    OUT_BIT_MOMENT, /* N.m: moment on the bit */
+    OUT_BOREHOLE_CURVATURE, /* rad/m: change of borehole inclination over the last ℓ₁, per length */
+    OUT_DISPLACEMENT, /* m: horizontal position of the bit from the start of the run */
+    OUT_TRUE_VERTICAL_DEPTH, /* m: depth of the bit below the start of the run */
+    OUT_ETA_PI, /* lateral penetration stiffness of the rock over the BHA's bending stiffness */
+} Output;
+static const Size OUTPUT_SIZE[OUTPUT_COUNT] = {
+    ONE, /* drilled_length */
+    ONE, /* bit_inclination */
+    ONE, /* borehole_inclination */
+    ONE, /* bit_tilt */
+    EACH_STABILIZER, /* average_inclination */
+    EACH_NON_IDEAL, /* stabilizer_deflection */
+    EACH_NON_IDEAL, /* stabilizer_force */
+    EACH_NON_IDEAL, /* stabilizer_contact */
+    ONE, /* bit_tilt_saturation */
+    ONE, /* bit_lateral_force */
+    ONE, /* bit_moment */
+    ONE, /* borehole_curvature */
+    ONE, /* displacement */
+    ONE, /* true_vertical_depth */
+    ONE, /* eta_pi */
+};
+enum { MOST_OUTPUTS = 32 }; /* values, of the largest assembly */
+
+#endif
