@@ -15,8 +15,9 @@ from boreprop.case.case import Case
 from boreprop.core.quantities import BY_NAME, VARIABLES, scalar_names
 from boreprop.core.system import BottomHoleAssembly
 from boreprop.errors import InputError
-from boreprop_fmu.host.drive import Run, read_packed_case
-from boreprop_fmu.pack.build import CASE_FILE, pack_code, read_modules
+from boreprop_fmu.host.drive import FmuRun
+from boreprop_fmu.packed_case import CASE_FILE, read_packed_case
+from boreprop_fmu.pack.python import pack_code
 from flavours import Flavour, both_flavours, build_to_read
 
 
@@ -169,4 +170,4 @@ def test_an_fmu_without_our_names_is_refused(fmu: Path, tmp_path: Path) -> None:
     with zipfile.ZipFile(fmu) as archive, zipfile.ZipFile(tmp_path / "other.fmu", "w") as other:
         other.writestr("modelDescription.xml", archive.read("modelDescription.xml").replace(b"rss_force", b"pad_force"))
     with pytest.raises(InputError, match=r"other.fmu: must have a variable 'rss_force', got pad_force, "):
-        Run(tmp_path / "other.fmu")
+        FmuRun(tmp_path / "other.fmu")

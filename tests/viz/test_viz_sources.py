@@ -23,14 +23,14 @@ from rrd import read, stacked
 
 LIVE = """
 import sys
-from boreprop_fmu.host.drive import Run
+from boreprop_fmu.host.drive import FmuRun
 from boreprop_viz import source
 from boreprop_viz.record import record
 
 fmu, live, stored = sys.argv[1:]
 source.BATCH = 50
-record({"live": Run(fmu, step=0.25, stop=60.0)}, save=live)
-record({"stored": Run(fmu, step=0.25, stop=60.0).trajectory()}, save=stored)
+record({"live": FmuRun(fmu, step=0.25, stop=60.0)}, save=live)
+record({"stored": FmuRun(fmu, step=0.25, stop=60.0).trajectory()}, save=stored)
 """
 
 
@@ -94,11 +94,11 @@ def test_the_vertical_section_grows_with_a_live_run_that_leaves_it(case: Case, t
     fmu = build_fmu(steep, tmp_path / "short.fmu")
     blueprints = """
 import sys
-from boreprop_fmu.host.drive import Run
+from boreprop_fmu.host.drive import FmuRun
 from boreprop_viz import record
 sections = []
 record.blueprint, make = lambda look, tracks: sections.append(look.section) or make(look, tracks), record.blueprint
-record.record({"live": Run(sys.argv[1], step=0.5, stop=200.0)}, save=sys.argv[2])
+record.record({"live": FmuRun(sys.argv[1], step=0.5, stop=200.0)}, save=sys.argv[2])
 print(len(sections), sections[0].x[1], sections[-1].x[1])
 """
     done = subprocess.run(

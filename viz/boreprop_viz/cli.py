@@ -74,9 +74,9 @@ def view(
 
     def open_source(name: str, path: Path) -> Source:
         if path.suffix == ".fmu":
-            from boreprop_fmu.host.drive import Run
+            from boreprop_fmu.host.drive import FmuRun
 
-            return live(name, Run(path, forces, step=step, stop=stop), planned)
+            return live(name, FmuRun(path, forces, step=step, stop=stop), planned)
         try:
             run = load_run(path, case, fmu)
         except Stopped as error:
@@ -126,7 +126,7 @@ def load_run(source: Path, case: Path | None, fmu: Path | None) -> Trajectory:
     if source.suffix not in SUFFIXES:
         raise InputError(f"{source}: must end in {', '.join(SUFFIXES)}, .fmu or .toml, got {source.suffix!r}")
     if fmu is not None:
-        from boreprop_fmu.host.drive import read_packed_case
+        from boreprop_fmu.packed_case import read_packed_case
 
         packed = read_packed_case(fmu)
         if packed is None:

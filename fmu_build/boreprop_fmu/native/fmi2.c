@@ -19,64 +19,7 @@
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
 #endif
-#include "instance.h"
-
-/* What every call asks first */
-
-/* The instance; NULL, logged, if it does not allow the function in its present phase. */
-static Component *called(fmi2Component instance, const char *function, int phases) {
-    Component *c = instance;
-    char why[LINE];
-    if (!c || c->phase & phases) return c;
-    explain(why, "%s: must be called in another phase, got %s", function,
-            c->phase == INSTANTIATED     ? "instantiated"
-            : c->phase == INITIALIZATION ? "initialization"
-            : c->phase == STEPPING       ? "stepping"
-                                         : "terminated");
-    fail(c, fmi2Error, why);
-    return NULL;
-}
-
-/* Whether there is something at both addresses, which hold `count` values. */
-static int has(const Component *c, const char *function, size_t count, const void *first, const void *second) {
-    char why[LINE];
-    if (!count || (first && second)) return 1;
-    explain(why, "%s: must be given addresses to read from and write to, got NULL", function);
-    fail(c, fmi2Error, why);
-    return 0;
-}
-
-/* Whether the value reference is that of a variable of this kind. */
-static int is_of_kind(const Component *c, fmi2ValueReference reference, Kind kind) {
-    char why[LINE];
-    if (reference >= VARIABLES)
-        explain(why, "value reference: must be 0 to %d, got %lu", VARIABLES - 1, (unsigned long)reference);
-    else if (VARIABLE[reference].kind != kind)
-        explain(
-            why, "%s: must be used as %s, got '%s'", VARIABLE[reference].name, KIND[VARIABLE[reference].kind],
-            KIND[kind]
-        );
-    else return 1;
-    fail(c, fmi2Error, why);
-    return 0;
-}
-
-/* Whether a variable has a value now. */
-static int known(Component *c, fmi2ValueReference reference, Kind kind) {
-    return is_of_kind(c, reference, kind) && (VARIABLE[reference].role != OUTPUT || refreshed(c));
-}
-
-/* Whether a variable may be set to another value now. */
-static int settable(const Component *c, fmi2ValueReference reference, const char *got) {
-    char why[LINE];
-    const Variable *variable = &VARIABLE[reference];
-    if (variable->role == OUTPUT) explain(why, "%s: must not be set, it is an output, got %s", variable->name, got);
-    else if (variable->role == PARAMETER && c->phase == STEPPING)
-        explain(why, "%s: must not change after initialization, got %s", variable->name, got);
-    else return 1;
-    fail(c, fmi2Error, why);
-    return 0;
-}
+#include "calls.h"
 
 /* Inquiry, logging, life */
 
@@ -181,7 +124,7 @@ fmi2Status fmi2GetReal(fmi2Component instance, const fmi2ValueReference vr[], si
     fmi2Status status = fmi2OK;
     if (!c || !has(c, "fmi2GetReal", count, vr, value)) return fmi2Error;
     for (size_t i = 0; i < count; i++) {
-        int there = known(c, vr[i], REAL);
+        int there = has_value(c, vr[i], REAL);
         value[i] = there ? c->value[vr[i]] : (double)NAN;
         if (!there) status = fmi2Error;
     }
@@ -193,7 +136,7 @@ fmi2Status fmi2GetInteger(fmi2Component instance, const fmi2ValueReference vr[],
     fmi2Status status = fmi2OK;
     if (!c || !has(c, "fmi2GetInteger", count, vr, value)) return fmi2Error;
     for (size_t i = 0; i < count; i++) {
-        int there = known(c, vr[i], INTEGER);
+        int there = has_value(c, vr[i], INTEGER);
         value[i] = there ? (int)c->value[vr[i]] : 0;
         if (!there) status = fmi2Error;
     }
@@ -213,7 +156,7 @@ fmi2Status fmi2GetString(fmi2Component instance, const fmi2ValueReference vr[], 
     fmi2Status status = fmi2OK;
     if (!c || !has(c, "fmi2GetString", count, vr, value)) return fmi2Error;
     for (size_t i = 0; i < count; i++) {
-        int there = known(c, vr[i], STRING);
+        int there = has_value(c, vr[i], STRING);
         value[i] = there ? c->survey_file : "";
         if (!there) status = fmi2Error;
     }
