@@ -17,7 +17,6 @@ from boreprop.core.system import BottomHoleAssembly
 from boreprop.errors import InputError
 from boreprop_fmu.host.drive import FmuRun
 from boreprop_fmu.packed_case import CASE_FILE, read_packed_case
-from boreprop_fmu.pack.python import pack_code
 from flavours import Flavour, both_flavours, build_to_read
 
 
@@ -143,18 +142,6 @@ def test_another_case_is_another_fmu_with_the_same_code(
         assert guids[0] != guids[1]
         packed = [name for name in a.namelist() if name.startswith(("resources/", "sources/"))]
         assert {name for name in packed if a.read(name) != b.read(name)} == {CASE_FILE, flavour.numbers}
-
-
-def test_names_of_packed_modules_follow_their_content(monkeypatch: pytest.MonkeyPatch) -> None:
-    def names() -> set[str]:
-        return {path.split("/")[1] for path in pack_code()} - {"slavemodule.txt"}
-
-    before = names()
-    monkeypatch.setattr(
-        "boreprop_fmu.pack.build.read_modules", lambda package: {**read_modules(package), "beam.py": b"# changed"}
-    )
-    assert len(before) == len(names()) == 2
-    assert before.isdisjoint(names())
 
 
 @both_flavours

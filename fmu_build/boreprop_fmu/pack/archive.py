@@ -1,4 +1,4 @@
-"""The archive that an FMU is: its files by name, the same bytes for the same content, and the identity it has from it."""
+"""The archive that an FMU is: the same bytes for the same files, and an identity that follows from them."""
 
 import zipfile
 from collections.abc import Mapping
