@@ -90,7 +90,7 @@ def view(
             raise InputError(f"{path}: {error}") from error
 
     opened = [open_source(name, path) for name, path in zip(names(sources), sources, strict=True)]
-    rows = sum(source.rows for source in opened)
+    rows = sum(source.row_count for source in opened)
     spawn = spawn or (save is None and not serve and connect is None)
     with (
         open_recording(save=save, spawn=spawn, serve=serve, connect=connect) as rec,
