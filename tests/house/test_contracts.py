@@ -16,6 +16,8 @@ SOURCE_ROOTS = ("model", "fmu_build", "viz")
 DOWNWARDS = "Arrows run downwards: viewer, FMU, model"
 MODEL = "The model knows nothing of FMI and Rerun"
 CORE = "The core, which travels inside the FMU, needs the standard library only"
+PACK_AND_HOST = "Packing an FMU and driving one know nothing of each other"
+VIEWER = "The viewer draws whatever gives rows: FMUs are its command's business"
 
 
 @pytest.fixture
@@ -31,7 +33,7 @@ def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_the_contract_holds(copy: Path, command: Command) -> None:
     result = command("lint-imports", "--no-cache")
     assert result.returncode == 0, result.stdout
-    for contract in (DOWNWARDS, MODEL, CORE):
+    for contract in (DOWNWARDS, MODEL, CORE, PACK_AND_HOST, VIEWER):
         assert f"{contract} KEPT" in result.stdout
 
 
@@ -44,6 +46,8 @@ def test_the_contract_holds(copy: Path, command: Command) -> None:
         ("model/boreprop", "import boreprop_fmu", DOWNWARDS),
         ("fmu_build/boreprop_fmu", "import boreprop_viz", DOWNWARDS),
         ("model/boreprop/core", "import numpy", CORE),
+        ("fmu_build/boreprop_fmu/host", "from boreprop_fmu import pack", PACK_AND_HOST),
+        ("viz/boreprop_viz", "import boreprop_fmu", VIEWER),
     ],
 )
 def test_the_contract_fails_when(copy: Path, command: Command, package: str, statement: str, contract: str) -> None:

@@ -1,4 +1,4 @@
-"""What is logged once for all time: grid, places and scales of the views, names, and how everything looks.
+"""What is logged once, for all time: grid, places and scales of the views, names, and how everything looks.
 
 Views are in metres with y down the screen. In the bit frame the hole runs up the screen, the high side is to the right,
 and the lateral axis is multiplied by the factor that the view's name gives.
@@ -68,7 +68,7 @@ def log_styles(track: Track) -> None:
 
 
 def log_stroke(rec: rr.RecordingStream, entity: str, stroke: Stroke) -> None:
-    """How lines scales."""
+    """How the lines of an entity look."""
     radii = rr.Radius.ui_points(stroke.width / 2)
     strips = rr.LineStrips2D.from_fields(colors=stroke.colour, radii=radii, draw_order=stroke.layer)
     rec.log(entity, strips, static=True)

@@ -1,14 +1,14 @@
 /* The borehole as an FMI 2.0 co-simulation FMU: the kernel behind the functions of fmi2Functions.h.
 
-   What a call does when it cannot do what it was asked, with one line to the logger (outputs that are missing: one):
+   A call that cannot do what it was asked logs one line and gives one of two statuses. The instance goes on after both.
    - fmi2Discard, from fmi2DoStep: an input or the step is bad, or the integrator fails. Nothing has moved, and the next
      step with good values works.
-   - fmi2Error: the call itself is wrong; the parameters make no drilling system (then every step, until fmi2Reset or a
-     good state); outputs cannot be computed (they are NaN); a state is not one of this FMU's (the instance keeps what it
-     had). The instance goes on.
+   - fmi2Error: the call itself is wrong; the parameters make no drilling system (then every step gives this, until
+     fmi2Reset or a good state); outputs cannot be computed (they are NaN, and the line is logged once); a state is not
+     one of this FMU's (the instance keeps its own).
 
-   Derivatives of inputs, of first order, act over the next step that is done and are zero after it: FMI 2.0 sets inputs
-   and their derivatives with respect to the beginning of a communication step. Over the step the rate of penetration is
+   First derivatives of inputs act over the next step that is completed, and are zero after it: FMI 2.0 sets inputs and
+   their derivatives with respect to the beginning of a communication step. Over the step the rate of penetration is
    linear in time; the force and the weight on bit are linear in the drilled length, between the values that they have
    at its two ends in time. After the step an input has the value that it had at the end.
 
@@ -106,7 +106,7 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component instance) {
     Component *c = called(instance, "fmi2ExitInitializationMode", INITIALIZATION);
     if (!c) return fmi2Error;
     c->phase = STEPPING;
-    if (c->outputs == MISSING) c->outputs = STALE; /* say it again: here it counts */
+    if (c->outputs == MISSING) c->outputs = STALE; /* logged again: it is here that the host asks */
     return refreshed(c) ? fmi2OK : fmi2Error;
 }
 
@@ -292,7 +292,7 @@ static fmi2Status unanswered(fmi2Component instance, const char *function, fmi2S
     Component *c = called(instance, function, ANY);
     char why[LINE];
     if (!c) return fmi2Error;
-    explain(why, "%s: must be asked for what it answers, got fmi2StatusKind %d", function, (int)kind);
+    explain(why, "%s: must be asked for a status that this FMU has, got fmi2StatusKind %d", function, (int)kind);
     return fail(c, fmi2Discard, why);
 }
 
