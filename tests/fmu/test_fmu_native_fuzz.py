@@ -1,7 +1,7 @@
 """The native FMU under sanitizers: random lives of it, and the tests of its flavour.
 
 $BOREPROP_FUZZ lives are led, 30 000 if it is not set; a million take some minutes:
-BOREPROP_FUZZ=1000000 pytest tests/test_fmu_native_fuzz.py -k live
+BOREPROP_FUZZ=1000000 pytest tests/fmu/test_fmu_native_fuzz.py -k live
 """
 
 import os

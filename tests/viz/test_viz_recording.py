@@ -242,7 +242,7 @@ def test_a_plan_that_ends_above_the_start_is_refused(run: Trajectory, tmp_path: 
     assert not list(tmp_path.iterdir())
 
 
-def test_the_card_names_the_case_and_the_verdict(tmp_path: Path, paper_case: Path) -> None:
+def test_the_card_names_the_case_and_whether_it_ripples(tmp_path: Path, paper_case: Path) -> None:
     ripples = load_case(paper_case)
     more = replace(ripples, active_weight_on_bit=16 * ripples.active_weight_on_bit)
     record({"a": simulate(ripples), "b": simulate(more)}, save=tmp_path / "two.rrd")

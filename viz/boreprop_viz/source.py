@@ -1,4 +1,4 @@
-"""What is drawn: runs that are there and runs that are being drilled, in stretches of rows with the hole around."""
+"""What is drawn: stored runs and live ones, as stretches of consecutive rows with the hole behind them."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -42,7 +42,7 @@ class LiveRun(Protocol):
 
 @dataclass(frozen=True)
 class Stretch:
-    """Consecutive rows of a run with what the hole says of them, and the hole around them."""
+    """Consecutive rows of a run, with the columns that follow from the hole, and the hole behind the bit."""
 
     rows: Trajectory  # with the columns of `hole_columns`
     hole: HolePath  # reaches far enough behind the first row
@@ -76,7 +76,7 @@ class Source:
     stretches: Iterator[Stretch]
 
     def likely_positions(self) -> Array:
-        """Where the bit comes along: known, or guessed to go straight on from the survey, (N, 2)."""
+        """Where the bit passes, (N, 2): as the run says; of a live run, straight on from the end of the survey."""
         if not self.live:
             return bit_positions(self.beginning)
         inclination = self.case.survey.inclination[-1]
@@ -155,7 +155,7 @@ def trajectory_of(run: LiveRun, rows: Sequence[Sequence[float]]) -> Trajectory:
 
 
 def stretches(runs: Iterable[Trajectory], case: Case, plan: Survey | None) -> Iterator[Stretch]:
-    """Consecutive rows with the hole behind them; no more of it is kept than what is drawn of the next rows needs."""
+    """Add to consecutive rows the hole behind them. Of the hole no more is kept than drawing the next rows needs."""
     half = case.bha.half_length
     reach = max(2 * REACH_ABOVE_BHA * half, BUILD_LENGTH + half, 2 * AXIS_REACH * half) + half
     hole = existing_hole(case.survey, reach, spacing=half / 25)
@@ -167,7 +167,7 @@ def stretches(runs: Iterable[Trajectory], case: Case, plan: Survey | None) -> It
 
 
 def hole_columns(length: Array, hole: HolePath, case: Case, plan: Survey | None) -> dict[str, Array]:
-    """What the hole behind the bit says: its build rate, its dogleg severity, rad/m, and what is planned, rad."""
+    """Build rate and dogleg severity of the hole behind the bit, rad/m, and with a plan its inclination there, rad."""
     half = case.bha.half_length
     columns = {
         "build_rate": turning(hole, length, over=BUILD_LENGTH, chord=half),

@@ -54,15 +54,7 @@ def open_instance(
     FMICallException
         If a call fails.
     """
-
-    def log(*arguments: Any) -> None:  # environment, instance, status, category, message
-        messages.append(arguments[4].decode(errors="replace").replace("%%", "%"))
-
-    callbacks = fmi2CallbackFunctions(
-        logger=fmi2CallbackLoggerTYPE(log),
-        allocateMemory=defaultCallbacks.allocateMemory,
-        freeMemory=defaultCallbacks.freeMemory,
-    )
+    callbacks = _log_to(messages)
     identifier = description.coSimulation.modelIdentifier
     with TemporaryDirectory(prefix="boreprop-fmu-") as directory:
         fmpy.extract(fmu, directory)
@@ -93,6 +85,19 @@ def open_instance(
                 slave.fmi2FreeInstance(slave.component)
                 _release_runtime(slave.dll)
                 slave.freeLibrary()
+
+
+def _log_to(messages: deque[str]) -> fmi2CallbackFunctions:
+    """Callbacks for an instance that logs to `messages`; they must live as long as it does."""
+
+    def log(*arguments: Any) -> None:  # environment, instance, status, category, message
+        messages.append(arguments[4].decode(errors="replace").replace("%%", "%"))
+
+    return fmi2CallbackFunctions(
+        logger=fmi2CallbackLoggerTYPE(log),
+        allocateMemory=defaultCallbacks.allocateMemory,
+        freeMemory=defaultCallbacks.freeMemory,
+    )
 
 
 def _library(directory: str, identifier: str, platform: str | None) -> str | None:

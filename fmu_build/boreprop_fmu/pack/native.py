@@ -73,7 +73,7 @@ def pack_sources() -> dict[str, bytes]:
 
 
 def case_header(case: Case, guid: str) -> bytes:
-    """The numbers, and the table of variables, as a C header."""
+    """The case, and the table of variables with their start values, as a C header."""
     start = start_values(case)
     n = len(case.bha.stabilizer_positions)
     scalars = [(name, variable) for variable in VARIABLES for name in variable.names(n)]
@@ -107,7 +107,7 @@ def _lines(values: Sequence[float]) -> str:
 
 
 def check_targets(platforms: Sequence[str] | None, compiler: str | None) -> None:
-    """Raise `InputError` unless platforms and compiler are known ones, and go together; None is what there is here."""
+    """Raise `InputError` unless the platforms and the compiler exist and go together; None leaves the choice open."""
     for platform in platforms or ():
         if platform not in PLATFORMS:
             raise InputError(f"platforms: must be among {', '.join(PLATFORMS)}, got {platform!r}")
