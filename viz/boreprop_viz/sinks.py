@@ -231,7 +231,7 @@ def open_viewer(path: Path, spawn: bool, serve: bool, connect: str | None, requi
 
 
 def reach(address: str) -> tuple[str, int]:
-    """IP address and port of the viewer at `address`; `InputError` if that is bad, `ConnectionError` if there is none."""
+    """IP address and port of a viewer; `InputError` if its address is bad, `ConnectionError` if none is there."""
     expected = f"the viewer must listen at rerun+http://HOST:PORT/proxy, got {address!r}"
     try:
         url = urlsplit(address)
