@@ -578,8 +578,8 @@ def test_a_bad_survey_file_is_refused_in_the_same_words(one: Instance, tmp_path:
     [
         (b"measured_depth,inclination_deg\n2,0\n1,0\n", "measured_depth: must increase, got (2.0, 1.0) (survey_file)"),
         (b"measured_depth,inclination_deg\n", "measured_depth: must hold at least one station, got () (survey_file)"),
-        (bytes(range(256)), "must be a readable CSV file, got: text that is not UTF-8 (survey_file)"),
-        (b"measured_depth\0", "must be a readable CSV file, got: text that is not UTF-8 (survey_file)"),
+        (bytes(range(256)), "must be a readable CSV file, got: bytes that are no UTF-8 text (survey_file)"),
+        (b"measured_depth\0", "must be a readable CSV file, got: bytes that are no UTF-8 text (survey_file)"),
     ],
 )
 def test_a_survey_that_is_none_is_refused(one: Instance, tmp_path: Path, content: bytes, message: str) -> None:

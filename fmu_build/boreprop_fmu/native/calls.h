@@ -8,7 +8,7 @@
 static Component *called(fmi2Component instance, const char *function, int phases) {
     Component *c = instance;
     char why[LINE];
-    if (!c || c->phase & phases) return c;
+    if (!c || (int)c->phase & phases) return c;
     explain(why, "%s: must be called in another phase, got %s", function,
             c->phase == INSTANTIATED     ? "instantiated"
             : c->phase == INITIALIZATION ? "initialization"

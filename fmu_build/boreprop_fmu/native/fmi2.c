@@ -387,8 +387,9 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component instance, const fmi2Byte bytes[
     *kept = NULL;
     if (!is_sealed((const unsigned char *)bytes, size, GUID, why)) return fail(c, fmi2Error, why);
     Saved *state = malloc(sizeof *state);
-    if (state && (state->bytes = malloc(size))) {
-        memcpy(state->bytes, bytes + SEAL, state->size = size - SEAL);
+    if (state) state->size = size - SEAL, state->bytes = malloc(size);
+    if (state && state->bytes) {
+        memcpy(state->bytes, bytes + SEAL, state->size);
         *kept = state;
         return fmi2OK;
     }

@@ -45,7 +45,7 @@ static char *read_text(const char *path, char why[LINE]) {
     if (file) fclose(file);
     if (!fault) {
         text[size] = '\0';
-        if (strlen(text) != size || !is_utf8(text)) fault = "text that is not UTF-8";
+        if (strlen(text) != size || !is_utf8(text)) fault = "bytes that are no UTF-8 text";
     }
     if (!fault) return text;
     free(text);
