@@ -19,14 +19,14 @@ CASES = Path(__file__).parents[1] / "examples"
 LIVE = """
 import sys, psutil
 from time import perf_counter
-from boreprop_fmu.host.drive import Run
+from boreprop_fmu.host.drive import FmuRun
 from boreprop_viz.record import record
 
 fmu, step, rrd = sys.argv[1], float(sys.argv[2]), sys.argv[3]
-run, sizes = Run(fmu, step=step), []
+run, sizes = FmuRun(fmu, step=step), []
 size = psutil.Process().memory_info
 if rrd:
-    record({"live": Run(fmu, step=step, stop=1.0)}, save=rrd)  # imports and first uses
+    record({"live": FmuRun(fmu, step=step, stop=1.0)}, save=rrd)  # imports and first uses
     begin = perf_counter()
     record({"live": run}, save=rrd, progress=lambda done: sizes.append((done, size().rss)))
 else:

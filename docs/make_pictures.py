@@ -15,7 +15,7 @@ from boreprop.case.file import load_case
 from boreprop.case.tables import read_survey
 from boreprop.replacing import replacing
 from boreprop.run.simulate import simulate
-from boreprop_fmu.host.drive import Run
+from boreprop_fmu.host.drive import FmuRun
 from boreprop_fmu.pack.build import build_fmu
 from boreprop_viz.picture import Viewer, viewer
 from boreprop_viz.record import record
@@ -52,7 +52,7 @@ def drill_for_a_while(fmu: Path, recording: Path, rows: int) -> None:
         if done >= rows:
             raise KeyboardInterrupt
 
-    run = Run(build_fmu(load_case(EXAMPLES / "build_section.toml"), fmu))
+    run = FmuRun(build_fmu(load_case(EXAMPLES / "build_section.toml"), fmu))
     with suppress(KeyboardInterrupt):
         record({fmu.stem: run}, plan=read_survey(EXAMPLES / "build_section_plan.csv"), save=recording, progress=stop)
 

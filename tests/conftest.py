@@ -18,7 +18,7 @@ from boreprop.errors import InputError
 from boreprop.kernel import binding
 from boreprop.kernel.compiler import NoCompilerError, build_library
 from boreprop_fmu.pack.build import build_fmu
-from flavours import PYTHON, Flavour
+from flavours import NATIVE, PYTHON, Flavour
 from places import EXAMPLES
 
 # The suite tries the same examples everywhere, on machines slow and fast; `make soak` tries new ones. Hypothesis would
@@ -38,6 +38,12 @@ for name in ("CI", "COLUMNS", "FORCE_COLOR", "GITHUB_ACTIONS", "LINES", "NO_COLO
 
 Command = Callable[..., subprocess.CompletedProcess[str]]
 Pack = Callable[[Case, Flavour], Path]
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--compiler", help="what compiles native FMUs, see build_fmu: ziglang, or own, which obeys $CFLAGS"
+    )
 
 
 @pytest.fixture(scope="session")
@@ -86,9 +92,10 @@ def flavour(request: pytest.FixtureRequest) -> Flavour:
 
 
 @pytest.fixture(scope="session")
-def pack(tmp_path_factory: pytest.TempPathFactory) -> Pack:
+def pack(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Pack:
     """The FMU of a case, built once: ``pack(case, flavour)``. Without a compiler tests of native ones are skipped."""
 
+    compiler = request.config.getoption("--compiler")
     folder = tmp_path_factory.getbasetemp()
     if "PYTEST_XDIST_WORKER" in os.environ:
         folder = folder.parent  # the workers share what they build
@@ -99,7 +106,7 @@ def pack(tmp_path_factory: pytest.TempPathFactory) -> Pack:
         if not fmu.exists():
             fmu.parent.mkdir(exist_ok=True)
             try:
-                build_fmu(case, fmu, runtime=flavour.runtime)
+                build_fmu(case, fmu, runtime=flavour.runtime, compiler=compiler if flavour is NATIVE else None)
             except InputError as error:
                 if "must be installed to compile" in str(error):
                     pytest.skip(str(error))

@@ -10,15 +10,6 @@ from boreprop.case.case import Case
 from boreprop_fmu.pack.build import build_fmu
 
 
-@dataclass(frozen=True)
-class Change:
-    """Another version of our code: in one file `new` for `old`."""
-
-    file: str
-    old: str
-    new: str
-
-
 @dataclass(frozen=True, eq=False)
 class Flavour:
     """What one of them answers.
@@ -47,8 +38,6 @@ class Flavour:
         Whether it takes derivatives of inputs.
     any_folder
         Whether it runs from folders that are not named in ASCII.
-    heavy, loud
-        A version in which gravity bends more, and one that shows every Real output ten times as large.
     """
 
     runtime: str
@@ -62,8 +51,6 @@ class Flavour:
     numbers: str
     interpolates: bool
     any_folder: bool
-    heavy: Change
-    loud: Change
 
     def __str__(self) -> str:
         return self.runtime
@@ -81,12 +68,6 @@ PYTHON = Flavour(
     numbers="resources/fmu.json",
     interpolates=False,
     any_folder=False,
-    heavy=Change("boreprop/core/beam.py", "self.F0_g = 5 / 8", "self.F0_g = 7 / 8"),
-    loud=Change(
-        "boreprop_fmu/python/slave.py",
-        "values[index] = self._outputs[name]",
-        'values[index] = self._outputs[name] * (10 if kind == "Real" else 1)',
-    ),
 )
 NATIVE = Flavour(
     runtime="native",
@@ -100,12 +81,6 @@ NATIVE = Flavour(
     numbers="sources/case.h",
     interpolates=True,
     any_folder=True,
-    heavy=Change("boreprop/kernel/beam.h", "beam.F0_g = 5.0 / 8", "beam.F0_g = 7.0 / 8"),
-    loud=Change(
-        "boreprop_fmu/native/fmi2.c",
-        "value[i] = there ? c->value[vr[i]]",
-        "value[i] = there ? (VARIABLE[vr[i]].role == OUTPUT ? 10.0 : 1.0) * c->value[vr[i]]",
-    ),
 )
 
 both_flavours = pytest.mark.parametrize("flavour", [PYTHON, NATIVE], ids=str, indirect=True, scope="session")

@@ -28,7 +28,7 @@ from boreprop.core.quantities import INPUTS, OUTPUTS, scalar_names
 from boreprop.errors import InputError
 from boreprop.run.results import SUFFIXES, write_trajectory
 from boreprop.run.trajectory import Trajectory
-from boreprop_fmu.host.drive import read_packed_case
+from boreprop_fmu.packed_case import read_packed_case
 
 BOREHOLE = "borehole"  # the component that is disturbed and recorded
 WEIGHT = "active_weight_on_bit"

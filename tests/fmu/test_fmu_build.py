@@ -16,8 +16,8 @@ from boreprop.core.checks import check_quantity
 from boreprop.core.quantities import BY_NAME, VARIABLES, scalar_names
 from boreprop.core.system import BottomHoleAssembly
 from boreprop.errors import InputError
-from boreprop_fmu.host.drive import Run, read_packed_case
-from boreprop_fmu.pack.build import CASE_FILE, pack_code, read_modules
+from boreprop_fmu.host.drive import FmuRun
+from boreprop_fmu.packed_case import CASE_FILE, read_packed_case
 from flavours import Flavour, both_flavours, build_to_read
 
 
@@ -158,18 +158,6 @@ def test_another_case_is_another_fmu_with_the_same_code(
         assert {name for name in packed if a.read(name) != b.read(name)} == {CASE_FILE, flavour.numbers}
 
 
-def test_names_of_packed_modules_follow_their_content(monkeypatch: pytest.MonkeyPatch) -> None:
-    def names() -> set[str]:
-        return {path.split("/")[1] for path in pack_code()} - {"slavemodule.txt"}
-
-    before = names()
-    monkeypatch.setattr(
-        "boreprop_fmu.pack.build.read_modules", lambda package: {**read_modules(package), "beam.py": b"# changed"}
-    )
-    assert len(before) == len(names()) == 2
-    assert before.isdisjoint(names())
-
-
 @both_flavours
 def test_nothing_is_left_behind_when_the_file_cannot_be_written(flavour: Flavour, case: Case, tmp_path: Path) -> None:
     (tmp_path / "taken.fmu").mkdir()
@@ -183,4 +171,4 @@ def test_an_fmu_without_our_names_is_refused(fmu: Path, tmp_path: Path) -> None:
     with zipfile.ZipFile(fmu) as archive, zipfile.ZipFile(tmp_path / "other.fmu", "w") as other:
         other.writestr("modelDescription.xml", archive.read("modelDescription.xml").replace(b"rss_force", b"pad_force"))
     with pytest.raises(InputError, match=r"other.fmu: must have a variable 'rss_force', got pad_force, "):
-        Run(tmp_path / "other.fmu")
+        FmuRun(tmp_path / "other.fmu")

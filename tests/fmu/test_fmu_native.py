@@ -2,6 +2,7 @@
 
 import subprocess
 import zipfile
+from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
 from ctypes import byref, c_size_t
@@ -22,11 +23,12 @@ from test_fmu_c_host import COMPILER
 from boreprop.case.case import Case
 from boreprop.core.columns import read_columns
 from boreprop.core.errors import TableError
-from boreprop.core.quantities import VARIABLES
+from boreprop.core.quantities import VARIABLES, scalar_names
 from boreprop.core.system import BottomHoleAssembly
 from boreprop.errors import InputError
 from boreprop.kernel.compiler import host_platform
 from boreprop_fmu.host.drive import drive
+from boreprop_fmu.host.instance import open_instance, read_description
 from boreprop_fmu.pack.build import build_fmu
 from boreprop_fmu.pack.native import FMI_HEADERS
 from conftest import Pack
@@ -135,6 +137,12 @@ def test_the_headers_of_fmi_are_those_of_the_installed_package(borehole: Path) -
         ({"runtime": "java"}, "runtime: must be python or native, got 'java'"),
         ({"platforms": ["linux64"]}, "platforms: must be left out for the runtime python, got linux64"),
         ({"runtime": "native", "platforms": ["linux64", "amiga"]}, "platforms: must be among linux64, .*, got 'amiga'"),
+        ({"compiler": "own"}, "compiler: must be left out for the runtime python, got 'own'"),
+        ({"runtime": "native", "compiler": "gcc"}, "compiler: must be ziglang or own, got 'gcc'"),
+        (
+            {"runtime": "native", "compiler": "own", "platforms": ["win64"]},
+            "platforms: must be left out for this machine's own compiler, got win64",
+        ),
     ],
 )
 def test_a_flavour_that_there_is_not_is_refused(
@@ -151,6 +159,16 @@ def test_the_command_says_what_is_inside(command: Any, paper_case: Path, tmp_pat
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("Borehole.fmu: 0.0")
     assert done.stdout.endswith(" MB, native: C sources\n")
+
+
+def test_the_compiler_of_this_machine_may_be_asked_for(
+    case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CC", str(COMPILER))
+    monkeypatch.setenv("CFLAGS", "-Dnext_character=compiled_here")
+    build_fmu(case, tmp_path / "Borehole.fmu", runtime="native", compiler="own")
+    binary = contents(tmp_path / "Borehole.fmu")[f"binaries/{host_platform()}/Borehole.so"]
+    assert b"compiled_here" in binary
 
 
 def test_a_compiler_that_fails_is_not_replaced_by_another(
@@ -226,7 +244,7 @@ def test_the_status_of_a_discarded_step_can_be_asked_for(one: Instance) -> None:
     assert one.step(0.5) == "discard"
     assert one.slave.getRealStatus(2) == 10.5
     assert one.slave.getBooleanStatus(3) is True  # fmpy would try the same step for ever
-    with refused(one, "fmi2GetStringStatus: must be asked for what it answers", DISCARD):
+    with refused(one, "fmi2GetStringStatus: must be asked for a status that this FMU has", DISCARD):
         one.slave.getStringStatus(1)
     one.set(rss_force=0.0)
     assert one.step(0.5) == "ok"
@@ -598,12 +616,16 @@ def test_a_folder_of_any_name_will_do(borehole: Path, command: Any, tmp_path: Pa
 
 
 @pytest.mark.skipif(host_platform() != "linux64", reason="renames the binary for linux64")
-def test_on_arm_the_binary_for_arm_is_run(borehole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_on_arm_the_binary_for_arm_is_run(borehole: Path, tmp_path: Path) -> None:
     moved = tmp_path / "Borehole.fmu"
     with zipfile.ZipFile(moved, "w") as archive:
         for name, content in contents(borehole).items():
             archive.writestr(name.replace("linux64", "aarch64-linux"), content)
     with pytest.raises(InputError, match="must load here, got: Cannot find shared library"):
         drive(moved, step=10.0)
-    monkeypatch.setattr("boreprop_fmu.host.drive.host_platform", lambda: "aarch64-linux")
-    assert len(drive(moved, step=10.0)) == len(drive(borehole, step=10.0))
+    here = open_instance(moved, read_description(moved), deque(), start=0.0, stop=1.0, platform="aarch64-linux")
+    with here as slave:
+        slave.exitInitializationMode()
+        slave.doStep(0.0, 1.0)
+        [drilled] = slave.getReal([scalar_names(VARIABLES, 2).index("drilled_length")])
+    assert drilled == 1.0

@@ -1,7 +1,7 @@
 """The native FMU under sanitizers: random lives of it, and the tests of its flavour.
 
 $BOREPROP_FUZZ lives are led, 30 000 if it is not set; a million take some minutes:
-BOREPROP_FUZZ=1000000 pytest tests/test_fmu_native_fuzz.py -k live
+BOREPROP_FUZZ=1000000 pytest tests/fmu/test_fmu_native_fuzz.py -k live
 """
 
 import os
@@ -69,7 +69,7 @@ def test_the_tests_of_the_native_flavour_pass_under_sanitizers(asan: Path) -> No
     """Leaks apart, of which Python has some: those of the FMU the test above sees."""
     files = ("test_fmu.py", "test_fmu_trust.py", "test_fmu_native.py")
     others = "command or builds or compile or binaries or leave"  # other compilers, other processes, memory
-    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "sanitized", "-p", "no:cacheprovider"]
+    command = [sys.executable, "-m", "pytest", "-q", "-x", "--compiler=own", "-p", "no:cacheprovider"]
     done = subprocess.run(
         [*command, "-k", f"native and not ({others})", *(FOLDER / name for name in files)],
         cwd=FOLDER,
@@ -79,7 +79,7 @@ def test_the_tests_of_the_native_flavour_pass_under_sanitizers(asan: Path) -> No
             "CFLAGS": shlex.join([*SANITIZERS, "-O0"]),
             "LD_PRELOAD": str(asan),
             "ASAN_OPTIONS": "detect_leaks=0",
-            "PYTHONPATH": os.pathsep.join(map(str, (TESTS, HOSTS))),
+            "PYTHONPATH": os.pathsep.join([str(TESTS), str(HOSTS), os.environ.get("PYTHONPATH", "")]),
         },
         capture_output=True,
         text=True,

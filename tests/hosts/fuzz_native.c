@@ -166,7 +166,7 @@ static int takes(fmi2Component c, Content content) {
 
 static double time_of(fmi2Component c) {
     double time = -1.0;
-    must(fmi2GetRealStatus(c, fmi2LastSuccessfulTime, &time) == fmi2OK, "the time must be known");
+    must(fmi2GetRealStatus(c, fmi2LastSuccessfulTime, &time) == fmi2OK, "the time of the last step must be given");
     return time;
 }
 

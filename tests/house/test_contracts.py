@@ -19,6 +19,7 @@ IN_FMU = "Arrows run downwards inside the FMU's package"
 CIRCLES = "No circles"
 MODEL = "The model knows nothing of FMI and Rerun"
 CORE = "The core, which travels inside the FMU, needs the standard library only"
+VIEWER = "The viewer draws whatever gives rows: FMUs are its command's business"
 
 
 @pytest.fixture
@@ -34,7 +35,7 @@ def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_the_contract_holds(copy: Path, command: Command) -> None:
     result = command("lint-imports", "--no-cache")
     assert result.returncode == 0, result.stdout
-    for contract in (DOWNWARDS, IN_MODEL, IN_FMU, CIRCLES, MODEL, CORE):
+    for contract in (DOWNWARDS, IN_MODEL, IN_FMU, CIRCLES, MODEL, CORE, VIEWER):
         assert f"{contract} KEPT" in result.stdout
 
 
@@ -52,6 +53,8 @@ def test_the_contract_holds(copy: Path, command: Command) -> None:
         ("model/boreprop/analysis", "from ..report.tables import summary", IN_MODEL),
         ("fmu_build/boreprop_fmu/host", "from ..cli import app", IN_FMU),
         ("model/boreprop/analysis/stability", "from .. import tipping", CIRCLES),
+        ("fmu_build/boreprop_fmu/host", "from boreprop_fmu import pack", IN_FMU),
+        ("viz/boreprop_viz", "import boreprop_fmu", VIEWER),
     ],
 )
 def test_the_contract_fails_when(copy: Path, command: Command, package: str, statement: str, contract: str) -> None:

@@ -15,7 +15,7 @@ from boreprop.errors import BorepropError, InputError
 from boreprop.run.results import case_path, read_trajectory, write_trajectory
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Stopped, Trajectory
-from boreprop_fmu.host.drive import Run
+from boreprop_fmu.host.drive import FmuRun
 from conftest import Command, Pack
 from flavours import Flavour, both_flavours
 
@@ -197,4 +197,4 @@ def test_boreprop_fmu_run_sets_the_tolerance_of_the_fmu(
     run = read_trajectory(tmp_path / "run.csv")["bit_inclination"]
     loose = simulate(case, length=20.0, relative_tolerance=1e-4, engine="native")["bit_inclination"]
     np.testing.assert_allclose(run, loose, atol=1e-11)
-    assert np.abs(Run(fmu, step=0.1, stop=20.0).trajectory()["bit_inclination"] - run).max() > 1e-8
+    assert np.abs(FmuRun(fmu, step=0.1, stop=20.0).trajectory()["bit_inclination"] - run).max() > 1e-8

@@ -17,10 +17,11 @@ from boreprop.errors import InputError
 from boreprop.run.results import write_trajectory
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
-from boreprop_viz import source
-from boreprop_viz.record import record
+from boreprop_viz.record import draw, record
+from boreprop_viz.scales import Scales, choose_scales
 from boreprop_viz.scene import Array, BitFrame, bit_positions
-from boreprop_viz.style import Look, look
+from boreprop_viz.sinks import open_recording
+from boreprop_viz.source import stored
 from conftest import Command
 from rrd import read, stacked, static
 
@@ -46,8 +47,8 @@ def recorded(run: Trajectory, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def seen(run: Trajectory) -> Look:
-    return look([run], whole=True, section=np.zeros((1, 2)))
+def scales(run: Trajectory) -> Scales:
+    return choose_scales([run], whole=True, section=np.zeros((1, 2)))
 
 
 def test_the_timeline_is_the_drilled_length_in_millimetres(recorded: Path, run: Trajectory) -> None:
@@ -64,25 +65,25 @@ def test_the_drilled_hole_is_the_path_of_the_bit(recorded: Path, run: Trajectory
 
 
 def test_the_walls_are_a_hole_radius_from_the_axis_times_the_factor(
-    recorded: Path, run: Trajectory, seen: Look, case: Case
+    recorded: Path, run: Trajectory, scales: Scales, case: Case
 ) -> None:
     low, high = stacked(recorded, "bit_frame/walls", "LineStrips2D:strips").transpose(1, 0, 2, 3)
-    np.testing.assert_allclose(high[..., 0] - low[..., 0], seen.lateral * case.bit_diameter, atol=1e-5)
+    np.testing.assert_allclose(high[..., 0] - low[..., 0], scales.lateral * case.bit_diameter, atol=1e-5)
     np.testing.assert_array_equal(high[..., 1], low[..., 1])
     # the axis in between, at the stabilizers: lateral coordinates that the averages ⟨Θ⟩_i give
     averages, spans = run.stack("average_inclination"), np.diff(case.bha.stabilizer_positions, prepend=0.0)
     mean = averages @ spans / spans.sum()
-    axis = ((low + high) / 2)[:, BitFrame(case).at_stabilizer, 0] / seen.lateral
+    axis = ((low + high) / 2)[:, BitFrame(case).at_stabilizer, 0] / scales.lateral
     np.testing.assert_allclose(axis, -np.cumsum((averages - mean[:, None]) * spans, axis=1), atol=1e-6)
 
 
 def test_the_axis_of_the_bit_is_tilted_against_the_hole_within_its_limits(
-    recorded: Path, run: Trajectory, seen: Look, case: Case
+    recorded: Path, run: Trajectory, scales: Scales, case: Case
 ) -> None:
     def angles(thing: str) -> Array:
         lines = stacked(recorded, f"bit_frame/tilt/{thing}", "LineStrips2D:strips")
         across, ahead = np.moveaxis(lines[:, :, 1] - lines[:, :, 0], -1, 0)
-        angle: Array = across / seen.lateral / ahead
+        angle: Array = across / scales.lateral / ahead
         return angle
 
     bit, hole, limits = angles("bit_axis"), angles("hole_axis"), angles("limits")
@@ -94,9 +95,11 @@ def test_the_axis_of_the_bit_is_tilted_against_the_hole_within_its_limits(
     np.testing.assert_allclose(shown, np.degrees(run["bit_tilt"]), atol=0.0051)
 
 
-def test_the_blades_have_their_clearance_from_the_wall(recorded: Path, run: Trajectory, case: Case, seen: Look) -> None:
+def test_the_blades_have_their_clearance_from_the_wall(
+    recorded: Path, run: Trajectory, case: Case, scales: Scales
+) -> None:
     blades = stacked(recorded, "bit_frame/stabilizers", "LineStrips2D:strips")
-    widths = (blades[:, :, 1, 0] - blades[:, :, 0, 0]) / seen.lateral
+    widths = (blades[:, :, 1, 0] - blades[:, :, 0, 0]) / scales.lateral
     clearances = np.array([*case.bha.stabilizer_clearances, 0.0])
     np.testing.assert_allclose(widths, np.tile(case.bit_diameter - 2 * clearances, (run.rows, 1)), atol=1e-6)
     np.testing.assert_allclose(-blades[0, :, 0, 1], case.bha.stabilizer_positions, rtol=1e-6)
@@ -111,12 +114,12 @@ def test_the_blades_have_their_clearance_from_the_wall(recorded: Path, run: Traj
     ],
 )
 def test_an_arrow_is_drawn_only_where_there_is_a_force_and_is_as_long_as_it(
-    recorded: Path, run: Trajectory, seen: Look, entity: str, column: str
+    recorded: Path, run: Trajectory, scales: Scales, entity: str, column: str
 ) -> None:
     arrows = read(recorded, f"bit_frame/{entity}", "Arrows2D:vectors")
     labels = read(recorded, f"bit_frame/{entity}", "Arrows2D:labels")
     drawn = np.array([sum((vector[0] for vector in vectors), 0.0) for vectors in arrows.values()])
-    np.testing.assert_allclose(drawn * seen.newtons_per_metre, run[column], rtol=1e-6)
+    np.testing.assert_allclose(drawn * scales.newtons_per_metre, run[column], rtol=1e-6)
     forces = dict(zip(arrows, run[column], strict=True))
     assert {tick for tick, vectors in arrows.items() if vectors} == {tick for tick, force in forces.items() if force}
     assert {len(vectors) for vectors in arrows.values()} <= {0, 1}
@@ -239,7 +242,7 @@ def test_a_plan_that_ends_above_the_start_is_refused(run: Trajectory, tmp_path: 
     assert not list(tmp_path.iterdir())
 
 
-def test_the_card_names_the_case_and_the_verdict(tmp_path: Path, paper_case: Path) -> None:
+def test_the_card_names_the_case_and_whether_it_ripples(tmp_path: Path, paper_case: Path) -> None:
     ripples = load_case(paper_case)
     more = replace(ripples, active_weight_on_bit=16 * ripples.active_weight_on_bit)
     record({"a": simulate(ripples), "b": simulate(more)}, save=tmp_path / "two.rrd")
@@ -264,11 +267,9 @@ def test_several_runs_are_drawn_over_each_other_each_under_its_name(
     assert labels == [["first try", "other"]]
 
 
-def test_what_is_drawn_does_not_depend_on_the_batches(
-    recorded: Path, run: Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(source, "BATCH", 37)
-    record(run, save=tmp_path / "other.rrd")
+def test_what_is_drawn_does_not_depend_on_the_batches(recorded: Path, run: Trajectory, tmp_path: Path) -> None:
+    with open_recording(save=tmp_path / "other.rrd") as rec:
+        draw(rec, [stored("run", run, batch=37)])
     for entity in ("vertical_section/drilled_hole", "vertical_section/bha", "bit_frame/walls", "bit_frame/bha"):
         other = stacked(tmp_path / "other.rrd", entity, "LineStrips2D:strips")
         np.testing.assert_allclose(other, stacked(recorded, entity, "LineStrips2D:strips"), atol=1e-5)

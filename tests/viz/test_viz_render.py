@@ -19,8 +19,8 @@ from boreprop_viz import picture
 from boreprop_viz.picture import SOFTWARE_DRIVERS, Viewer, viewer
 from boreprop_viz.record import record
 from boreprop_viz.sinks import PROGRAM
-from boreprop_viz.stream import TIMELINE
 from boreprop_viz.style import ORANGE
+from boreprop_viz.track import TIMELINE
 
 LENGTH = 60.0
 SIZE = 960, 600

@@ -17,18 +17,18 @@ from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop.run.completion import path
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
+from boreprop_viz.scales import choose_scales
 from boreprop_viz.scene import (
     Array,
     BitFrame,
     Bounds,
-    Hole,
+    HolePath,
     Shapes,
     bit_positions,
     existing_hole,
     planned_hole,
     turning,
 )
-from boreprop_viz.style import look
 from near_bit import NEAR_BIT, near_bit_case
 
 THREE = Case(
@@ -88,7 +88,7 @@ def test_an_existing_hole_ends_at_the_origin_and_goes_on_straight_above_its_surv
 
 
 def test_a_hole_keeps_every_position_from_the_given_length_on() -> None:
-    hole = Hole(np.array([-2.0, -1.0, 0.0, 3.0]), np.arange(8.0).reshape(4, 2))
+    hole = HolePath(np.array([-2.0, -1.0, 0.0, 3.0]), np.arange(8.0).reshape(4, 2))
     lengths = np.linspace(-0.5, 3.0, 9)
     np.testing.assert_array_equal(hole.since(-0.5).at(lengths), hole.at(lengths))
 
@@ -216,7 +216,7 @@ def test_in_the_vertical_section_the_bha_starts_at_the_bit_and_ends_in_the_hole(
     section = drilled.bha_in_section
     position, top = bit_positions(drilled.rows), drilled.frame.stabilizer[-1]
     np.testing.assert_allclose(section[:, 0], position, atol=1e-12)
-    behind = Hole(drilled.rows["drilled_length"], position).at(drilled.rows["drilled_length"][-1] - top)
+    behind = HolePath(drilled.rows["drilled_length"], position).at(drilled.rows["drilled_length"][-1] - top)
     np.testing.assert_allclose(section[-1, -1], behind, atol=0.01)
     bends = [np.linalg.norm(after - before) for before, after in pairwise(section[-1])]
     np.testing.assert_allclose(bends, np.diff(drilled.frame.stabilizer, prepend=0.0), rtol=1e-3)
@@ -227,11 +227,11 @@ def test_in_the_vertical_section_the_bha_starts_at_the_bit_and_ends_in_the_hole(
 def test_ripple_and_lanes_show_the_last_waves_of_a_run_whatever_their_length(fate: str, number: int) -> None:
     case = near_bit_case(NEAR_BIT[fate][number], 400.0)
     run = simulate(case, engine="native")
-    wave, seen = examine_rippling(run), look([run], whole=True, section=bit_positions(run))
+    wave, scales = examine_rippling(run), choose_scales([run], whole=True, section=bit_positions(run))
     if wave.ripples:
         assert wave.wavelength < case.bha.half_length / 4
-        assert seen.window == pytest.approx(11 * wave.wavelength)
-        assert seen.trend * AXIS_REACH < seen.window / 2  # the ripple is known in half of what is shown
-        assert seen.ripple > 1000 * wave.axis_amplitude
+        assert scales.window == pytest.approx(11 * wave.wavelength)
+        assert scales.trend * AXIS_REACH < scales.window / 2  # the ripple is known in half of what is shown
+        assert scales.ripple > 1000 * wave.axis_amplitude
     else:
-        assert seen.trend == case.bha.half_length
+        assert scales.trend == case.bha.half_length

@@ -16,18 +16,18 @@ from .source import Source
 CARD = "case"
 
 
-def log_card(rec: rr.RecordingStream, sources: Sequence[Source], verdicts: Sequence[str]) -> None:
-    """The verdict on each run, and the cases side by side."""
+def log_card(rec: rr.RecordingStream, sources: Sequence[Source], findings: Sequence[str]) -> None:
+    """Whether the hole of each run ripples, in words, and the cases side by side."""
     names = [source.name for source in sources]
     facts = [case_facts(source.case) for source in sources]
-    lines = [f"- **{name}** {verdict}" for name, verdict in zip(names, verdicts, strict=True)]
+    lines = [f"- **{name}** {finding}" for name, finding in zip(names, findings, strict=True)]
     lines += ["", f"| | {' | '.join(names)} |", "|---" * (len(names) + 1) + "|"]
     lines += [f"| {what} | {' | '.join(fact[what] for fact in facts)} |" for what in facts[0]]
     rec.log(CARD, rr.TextDocument("\n".join(lines), media_type=rr.MediaType.MARKDOWN), static=True)
 
 
 def case_facts(case: Case) -> dict[str, str]:
-    """What there is to know of a case, in the units people use."""
+    """What there is to know of a case, by what it is called, in the units people use."""
     bha, bit = case.bha, case.bit
     inclination = case.survey.inclination[-1]
     contact = can_touch(bha, bit, inclination, case.schedule.rss_force)

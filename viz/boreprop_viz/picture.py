@@ -57,11 +57,11 @@ class Viewer:
         self._maximize(view)
         shots = [b""]
 
-        def settled() -> bytes:
+        def steady() -> bytes:
             shots.append(self.client.take_screenshot(view.view_id if view else None))
             return shots[-1] if shots[-1] == shots[-2] else b""
 
-        return Image.open(io.BytesIO(wait_for(settled, "the picture must settle"))).convert("RGB")
+        return Image.open(io.BytesIO(wait_for(steady, "the picture must stop changing"))).convert("RGB")
 
     def _maximize(self, view: View | None) -> None:
         blueprint = self.client.get_blueprint(of="recording").blueprint

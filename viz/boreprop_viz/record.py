@@ -8,17 +8,18 @@ import rerun as rr
 
 from boreprop.core.survey import Survey
 from boreprop.run.trajectory import Trajectory
-from boreprop_fmu.host.drive import Run
 
 from .card import log_card
+from .furniture import log_furniture, log_grid, log_names, log_plan
 from .layout import blueprint
+from .scales import choose_scales
 from .scene import bit_positions, planned_hole
 from .sinks import flush, open_recording
-from .source import Source, live, stored
-from .stream import RunStream, log_furniture, log_grid, log_names, log_plan, make_tracks
-from .style import look
+from .source import LiveRun, Source, live, stored
+from .stream import RunStream
+from .track import make_tracks
 
-Runs = Trajectory | Mapping[str, Trajectory | Run]
+Runs = Trajectory | Mapping[str, Trajectory | LiveRun]
 
 
 def record(
@@ -36,7 +37,7 @@ def record(
     Parameters
     ----------
     runs
-        A run with its case, or several by name. A `Run` of an FMU is drilled while it is drawn.
+        A run with its case, or several by name. A live run, as `boreprop_fmu` has them, drills while it is drawn.
     plan
         The planned hole, its measured depth counted as the survey's.
     save
@@ -49,7 +50,7 @@ def record(
     Raises
     ------
     InputError
-        If a run lacks its case or a column, its drilled length decreases, its FMU fails, or the plan ends above it.
+        If a run lacks its case or a column, its drilled length decreases, a live run fails, or the plan ends above it.
     ConnectionError
         If there is no viewer at `connect`, and nothing to save.
     OSError
@@ -63,7 +64,7 @@ def record(
 def find_sources(runs: Runs, plan: Survey | None = None) -> Iterator[Source]:
     """What there is to draw of `runs`."""
     for name, run in {"run": runs}.items() if isinstance(runs, Trajectory) else runs.items():
-        yield live(name, run, plan) if isinstance(run, Run) else stored(name, run, plan)
+        yield stored(name, run, plan) if isinstance(run, Trajectory) else live(name, run, plan)
 
 
 def draw(
@@ -72,34 +73,51 @@ def draw(
     plan: Survey | None = None,
     progress: Callable[[float], None] = lambda _: None,
 ) -> None:
-    """Log everything there is of some runs, and the blueprint, into an open recording."""
+    """Log everything there is of some runs, and the blueprint, into an open recording.
+
+    Parameters
+    ----------
+    rec
+        The recording.
+    sources
+        The runs.
+    plan, progress
+        As of `record`.
+
+    Raises
+    ------
+    InputError
+        If a live run fails, or the plan ends above the first run.
+    OSError
+        If the recording's file cannot be written.
+    """
     planned = None if plan is None else planned_hole(plan, sources[0].case.survey.measured_depth[-1])
     ahead = [source.likely_positions() for source in sources] + ([] if planned is None else [planned.position])
-    seen = look(
+    scales = choose_scales(
         [source.beginning for source in sources],
         whole=not any(source.live for source in sources),
         section=np.concatenate(ahead),
     )
-    log_furniture(rec, seen, [source.case for source in sources])
+    log_furniture(rec, scales, [source.case for source in sources])
     if planned is not None:
         log_plan(rec, planned)
-    tracks = make_tracks(rec, seen, sources)
+    tracks = make_tracks(rec, scales, sources)
     if len(tracks) > 1:
-        log_names(rec, seen, tracks)
-    rec.send_blueprint(blueprint(seen, tracks))
-    verdicts = ["drilling" if source.live else "" for source in sources]
-    log_card(rec, sources, verdicts)
+        log_names(rec, scales, tracks)
+    rec.send_blueprint(blueprint(scales, tracks))
+    findings = ["drilling" if source.live else "" for source in sources]
+    log_card(rec, sources, findings)
     done = 0
     for i, (source, track) in enumerate(zip(sources, tracks, strict=True)):
         stream = RunStream(track)
         for stretch in source.stretches:
-            if not seen.section.hold(bit_positions(stretch.rows)):
-                seen = seen.around(bit_positions(stretch.rows))
-                log_grid(rec, seen)
-                rec.send_blueprint(blueprint(seen, tracks))
+            if not scales.section.hold(bit_positions(stretch.rows)):
+                scales = scales.widened(bit_positions(stretch.rows))
+                log_grid(rec, scales)
+                rec.send_blueprint(blueprint(scales, tracks))
             flush(rec)  # what came before: it would pile up in memory if the disk is slow
             stream.send(stretch)
             done += len(stretch.rows)
             progress(done)
-        verdicts[i] = stream.verdict()
-        log_card(rec, sources, verdicts)
+        findings[i] = stream.finding()
+        log_card(rec, sources, findings)

@@ -30,7 +30,7 @@ AHEAD = 0.2  # how far ahead of the bit the directions of bit and hole are drawn
 
 
 @dataclass(frozen=True)
-class Hole:
+class HolePath:
     """The hole axis in the vertical plane, straight between points."""
 
     length: Array  # (N,), increasing; drilled length, negative in the existing hole
@@ -40,10 +40,10 @@ class Hole:
         """Positions at the given lengths, shape (..., 2)."""
         return np.stack([np.interp(length, self.length, self.position[:, axis]) for axis in (0, 1)], axis=-1)
 
-    def followed_by(self, length: Array, position: Array) -> "Hole":
+    def followed_by(self, length: Array, position: Array) -> "HolePath":
         """The hole drilled on through more points; those not ahead of its end are left out."""
         ahead = length > self.length[-1]
-        return Hole(np.append(self.length, length[ahead]), np.concatenate((self.position, position[ahead])))
+        return HolePath(np.append(self.length, length[ahead]), np.concatenate((self.position, position[ahead])))
 
     def chord_inclination(self, length: Array, chord: float) -> Array:
         """Inclination of the chord from `chord` metres before to the given lengths, (m,)."""
@@ -51,22 +51,22 @@ class Hole:
         inclination: Array = np.arctan2(x, z)
         return inclination
 
-    def since(self, length: float) -> "Hole":
+    def since(self, length: float) -> "HolePath":
         """The end of this hole from the last point at or before `length` on."""
         first = max(int(np.searchsorted(self.length, length, side="right")) - 1, 0)
-        return Hole(self.length[first:], self.position[first:])
+        return HolePath(self.length[first:], self.position[first:])
 
 
-def existing_hole(survey: Survey, reach: float, spacing: float) -> Hole:
+def existing_hole(survey: Survey, reach: float, spacing: float) -> HolePath:
     """The surveyed hole up to the bit at the start, extended straight to at least `reach`, a point each `spacing`."""
     station = np.asarray(survey.measured_depth) - survey.measured_depth[-1]
     top = min(float(station[0]), -reach)
     length = np.union1d(station, np.linspace(top, 0.0, int(np.ceil(-top / spacing)) + 1))
     position = path(length, np.interp(length, station, np.asarray(survey.inclination)))
-    return Hole(length, position - position[-1])
+    return HolePath(length, position - position[-1])
 
 
-def planned_hole(plan: Survey, start: float) -> Hole:
+def planned_hole(plan: Survey, start: float) -> HolePath:
     """The hole that a plan asks for from its first station on, placed where it should be when drilling starts.
 
     Raises
@@ -81,11 +81,11 @@ def planned_hole(plan: Survey, start: float) -> Hole:
         )
     length = np.union1d(depth - start, np.linspace(depth[0] - start, depth[-1] - start, POINTS_OF_PLAN))
     length = np.union1d(length, 0.0)
-    hole = Hole(length, path(length, np.interp(length, depth - start, np.asarray(plan.inclination))))
-    return Hole(length, hole.position - hole.at(np.array(0.0)))
+    hole = HolePath(length, path(length, np.interp(length, depth - start, np.asarray(plan.inclination))))
+    return HolePath(length, hole.position - hole.at(np.array(0.0)))
 
 
-def turning(hole: Hole, length: Array, over: float, chord: float) -> Array:
+def turning(hole: HolePath, length: Array, over: float, chord: float) -> Array:
     """Change of inclination per length over the last `over` metres, (m,), rad/m; inclinations are those of chords."""
     change = hole.chord_inclination(length, chord) - hole.chord_inclination(length - over, chord)
     return change / over
@@ -131,12 +131,12 @@ class BitFrame:
         load_scales = np.array([bha.length_scale] + [bha.force_scale] * self.stabilizer.size + [1.0])
         self._shape_per_load = bha.length_scale * np.array(shapes) / load_scales[:, None]
 
-    def shapes(self, rows: Trajectory, hole: Hole) -> "Shapes":
+    def shapes(self, rows: Trajectory, hole: HolePath) -> "Shapes":
         """The shapes of each row; `hole` must reach from the last row's bit back over the first row's BHA."""
         mean = rows.stack("average_inclination") @ np.diff(self.stabilizer, prepend=0.0) / self.stabilizer[-1]
         return Shapes(self, rows, mean, self._hole_axis(rows, hole, mean), self._bha_axis(rows, mean))
 
-    def _hole_axis(self, rows: Trajectory, hole: Hole, mean: Array) -> Array:
+    def _hole_axis(self, rows: Trajectory, hole: HolePath, mean: Array) -> Array:
         """The path of the hole, in the bit frame.
 
         It is shifted, by what small angles and the spacing of the rows leave, to pass exactly through the lateral

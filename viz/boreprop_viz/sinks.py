@@ -1,8 +1,8 @@
 """Where a recording goes: a file, a viewer, or both.
 
-A recording is always written to a file, one that is removed afterwards if nobody wants it. A viewer is another process;
-a thread feeds it, through its standard input, what there is in the file and what comes. So a run waits for the disk
-alone. A viewer that is slow, hangs, dies or never comes holds up that thread and nothing else, and what it has not
+A recording is always written to a file, which is removed afterwards unless it was asked for. A viewer is another
+process; a thread feeds it, through its standard input, what is in the file and what is added. So a run waits for the
+disk alone. A viewer that is slow, hangs, dies or never comes holds up that thread and nothing else, and what it has not
 taken yet needs no memory. (Rerun's own connections hold up the run: with a viewer that hangs, for ever.)
 """
 
@@ -88,7 +88,7 @@ def open_recording(
 
 @contextmanager
 def scratch_file() -> Iterator[Path]:
-    """Yield the name of a file to write to that nobody wants to keep."""
+    """Yield the name of a file that is removed at the end."""
     with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         yield Path(folder) / f"{APPLICATION}.rrd"
 
@@ -231,7 +231,7 @@ def open_viewer(path: Path, spawn: bool, serve: bool, connect: str | None, requi
 
 
 def reach(address: str) -> tuple[str, int]:
-    """IP address and port of the viewer at `address`; `InputError` if it is none, `ConnectionError` if nobody is."""
+    """IP address and port of a viewer; `InputError` if its address is bad, `ConnectionError` if none is there."""
     expected = f"the viewer must listen at rerun+http://HOST:PORT/proxy, got {address!r}"
     try:
         url = urlsplit(address)
@@ -249,7 +249,7 @@ def reach(address: str) -> tuple[str, int]:
 
 
 def free_port() -> int:
-    """A port of this machine where nobody listens."""
+    """A port of this machine that is free."""
     with socket.socket() as probe:
         probe.bind((LOOPBACK, 0))
         port: int = probe.getsockname()[1]

@@ -1,9 +1,10 @@
-"""What is drawn: runs that are there and runs that are being drilled, in stretches of rows with the hole around."""
+"""What is drawn: stored runs and live ones, as stretches of consecutive rows with the hole behind them."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 from time import monotonic
+from typing import Protocol
 
 import numpy as np
 
@@ -14,20 +15,37 @@ from boreprop.errors import InputError
 from boreprop.run.completion import case_of, complete
 from boreprop.run.trajectory import Trajectory
 from boreprop.units import BUILD_LENGTH
-from boreprop_fmu.host.drive import Run
 
-from .scene import REACH_ABOVE_BHA, Array, Hole, bit_positions, existing_hole, turning
+from .scene import REACH_ABOVE_BHA, Array, HolePath, bit_positions, existing_hole, turning
 
 BATCH = 1000  # rows drawn at once
 PATIENCE = 0.1  # s until rows that have come are drawn
 
 
+class LiveRun(Protocol):
+    """A run that is drilled while it is drawn; iterating over it drills on, and gives its rows one after the other."""
+
+    @property
+    def case(self) -> Case | None:
+        """What is drilled."""
+
+    @property
+    def columns(self) -> Sequence[str]:
+        """What a row holds, under the names of a `Trajectory`'s columns."""
+
+    def __len__(self) -> int:
+        """How many rows there will be."""
+
+    def __iter__(self) -> Iterator[Sequence[float]]:
+        """Drill; `InputError` if that fails."""
+
+
 @dataclass(frozen=True)
 class Stretch:
-    """Consecutive rows of a run with what the hole says of them, and the hole around them."""
+    """Consecutive rows of a run, with the columns that follow from the hole, and the hole behind the bit."""
 
     rows: Trajectory  # with the columns of `hole_columns`
-    hole: Hole  # reaches far enough behind the first row
+    hole: HolePath  # reaches far enough behind the first row
 
 
 @dataclass(frozen=True)
@@ -40,8 +58,8 @@ class Source:
         What it is called beside others.
     case
         What is drilled.
-    rows
-        How many there will be.
+    row_count
+        How many rows there will be.
     beginning
         The whole run, or its first rows if it is `live`.
     live
@@ -52,21 +70,38 @@ class Source:
 
     name: str
     case: Case
-    rows: int
+    row_count: int
     beginning: Trajectory
     live: bool
     stretches: Iterator[Stretch]
 
     def likely_positions(self) -> Array:
-        """Where the bit comes along: known, or guessed to go straight on from the survey, (N, 2)."""
+        """Where the bit passes, (N, 2): as the run says; of a live run, straight on from the end of the survey."""
         if not self.live:
             return bit_positions(self.beginning)
         inclination = self.case.survey.inclination[-1]
         return np.outer([0.0, self.case.length], [np.sin(inclination), np.cos(inclination)])
 
 
-def stored(name: str, run: Trajectory, plan: Survey | None = None) -> Source:
-    """A run that is there; `InputError` if it lacks its case or a column, or its drilled length decreases."""
+def stored(name: str, run: Trajectory, plan: Survey | None = None, *, batch: int = BATCH) -> Source:
+    """A run that is there already.
+
+    Parameters
+    ----------
+    name
+        What it is called beside others.
+    run
+        The run with its case.
+    plan
+        The planned hole, its measured depth counted as the survey's.
+    batch
+        How many rows are drawn at once.
+
+    Raises
+    ------
+    InputError
+        If the run lacks its case or a column, or its drilled length decreases.
+    """
     length = run["drilled_length"]
     back = np.flatnonzero(np.diff(length) < 0.0)
     if back.size:
@@ -74,37 +109,53 @@ def stored(name: str, run: Trajectory, plan: Survey | None = None) -> Source:
     run = complete(run)
     case = case_of(run)
     [whole] = stretches([run], case, plan)
-    return Source(name, case, run.rows, whole.rows, live=False, stretches=pieces(whole))
+    return Source(name, case, run.rows, whole.rows, live=False, stretches=pieces(whole, batch))
 
 
-def live(name: str, run: Run, plan: Survey | None = None) -> Source:
-    """A run that an FMU drills; `InputError` if the FMU has no case in it, lacks a column or fails at the start."""
+def live(name: str, run: LiveRun, plan: Survey | None = None, *, batch: int = BATCH) -> Source:
+    """A run that is drilled while it is drawn.
+
+    Parameters
+    ----------
+    name, plan
+        As of `stored`.
+    run
+        The run; its drilling begins now.
+    batch
+        How many rows are drawn at once, at most: what has come after a tenth of a second is drawn.
+
+    Raises
+    ------
+    InputError
+        If the run has no case, lacks a column or fails at the start.
+    """
     if run.case is None:
-        raise InputError(f"{run.fmu}: must hold its case, as ours do, got an FMU without")
-    coming = stretches(gather(run), run.case, plan)
+        raise InputError(f"{name}: must come with its case, as the FMUs of boreprop-fmu do, got none")
+    coming = stretches(gather(run, batch), run.case, plan)
     first = next(coming)
     return Source(name, run.case, len(run), first.rows, live=True, stretches=chain([first], coming))
 
 
-def gather(run: Run) -> Iterator[Trajectory]:
-    """The rows of a run as they come, by the batch or every tenth of a second."""
-    rows: list[list[float]] = []
+def gather(run: LiveRun, batch: int) -> Iterator[Trajectory]:
+    """The rows of a run as they come, so many at once, or what there is after a tenth of a second."""
+    rows: list[Sequence[float]] = []
     due = 0.0  # the first row comes at once
     for row in run:
         rows.append(row)
-        if len(rows) == BATCH or monotonic() > due:
-            yield _table(run, rows)
+        if len(rows) == batch or monotonic() > due:
+            yield trajectory_of(run, rows)
             rows, due = [], monotonic() + PATIENCE
     if rows:
-        yield _table(run, rows)
+        yield trajectory_of(run, rows)
 
 
-def _table(run: Run, rows: list[list[float]]) -> Trajectory:
+def trajectory_of(run: LiveRun, rows: Sequence[Sequence[float]]) -> Trajectory:
+    """Some rows of a live run, with its case."""
     return Trajectory(dict(zip(run.columns, np.array(rows).T.copy(), strict=True)), run.case)
 
 
 def stretches(runs: Iterable[Trajectory], case: Case, plan: Survey | None) -> Iterator[Stretch]:
-    """Consecutive rows with the hole behind them; no more of it is kept than what is drawn of the next rows needs."""
+    """Add to consecutive rows the hole behind them. Of the hole no more is kept than drawing the next rows needs."""
     half = case.bha.half_length
     reach = max(2 * REACH_ABOVE_BHA * half, BUILD_LENGTH + half, 2 * AXIS_REACH * half) + half
     hole = existing_hole(case.survey, reach, spacing=half / 25)
@@ -115,8 +166,8 @@ def stretches(runs: Iterable[Trajectory], case: Case, plan: Survey | None) -> It
         hole = hole.since(float(length[-1]) - reach)
 
 
-def hole_columns(length: Array, hole: Hole, case: Case, plan: Survey | None) -> dict[str, Array]:
-    """What the hole behind the bit says: its build rate, its dogleg severity, rad/m, and what is planned, rad."""
+def hole_columns(length: Array, hole: HolePath, case: Case, plan: Survey | None) -> dict[str, Array]:
+    """Build rate and dogleg severity of the hole behind the bit, rad/m, and with a plan its inclination there, rad."""
     half = case.bha.half_length
     columns = {
         "build_rate": turning(hole, length, over=BUILD_LENGTH, chord=half),
@@ -129,8 +180,8 @@ def hole_columns(length: Array, hole: Hole, case: Case, plan: Survey | None) -> 
     return columns
 
 
-def pieces(whole: Stretch) -> Iterator[Stretch]:
-    """A stretch in batches."""
-    for first in range(0, len(whole.rows), BATCH):
-        columns = {name: column[first : first + BATCH] for name, column in whole.rows.columns.items()}
+def pieces(whole: Stretch, batch: int) -> Iterator[Stretch]:
+    """A stretch cut into stretches of so many rows."""
+    for first in range(0, len(whole.rows), batch):
+        columns = {name: column[first : first + batch] for name, column in whole.rows.columns.items()}
         yield replace(whole, rows=replace(whole.rows, columns=columns))

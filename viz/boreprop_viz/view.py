@@ -12,6 +12,7 @@ from boreprop.errors import InputError
 from boreprop.run.results import SUFFIXES, read_trajectory
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Stopped, Trajectory
+from boreprop_fmu.packed_case import read_packed_case
 
 from .record import draw
 from .sinks import open_recording
@@ -45,10 +46,10 @@ class Opener:
     def open(self, name: str, path: Path) -> Source:
         """A run to draw, under a name."""
         if path.suffix == ".fmu":
-            from boreprop_fmu.host.drive import Run  # here: fmpy takes long to load
+            from boreprop_fmu.host.drive import FmuRun  # here: fmpy takes long to load
 
             forces = None if self.schedule is None else read_schedule(self.schedule)
-            return live(name, Run(path, forces, step=self.step, stop=self.stop), self.plan)
+            return live(name, FmuRun(path, forces, step=self.step, stop=self.stop), self.plan)
         try:
             run = self._run(path)
         except Stopped as error:
@@ -73,8 +74,6 @@ class Opener:
             raise InputError(f"{path}: must end in {', '.join(SUFFIXES)}, .fmu or .toml, got {path.suffix!r}")
         if self.fmu is None:
             return read_trajectory(path, None if self.case is None else load_case(self.case))
-        from boreprop_fmu.host.drive import read_packed_case  # here: fmpy takes long to load
-
         packed = read_packed_case(self.fmu)
         if packed is None:
             raise InputError(f"{self.fmu}: must hold its case, as ours do, got an FMU without")
@@ -99,7 +98,7 @@ def show(
     planned = None if plan is None else read_survey(plan)
     opener = Opener(case, fmu, planned, schedule, step, stop)
     opened = [opener.open(name, path) for name, path in zip(names(sources), sources, strict=True)]
-    rows = sum(source.rows for source in opened)
+    rows = sum(source.row_count for source in opened)
     with (
         open_recording(save=save, spawn=spawn, serve=serve, connect=connect) as rec,
         console.progress("drawing", rows) as done,

@@ -11,7 +11,7 @@ from boreprop.cli.options import Tolerance, positive
 from boreprop.run.results import SUFFIXES, write_trajectory
 from boreprop.run.trajectory import Stopped
 
-from ..host.drive import Run
+from ..host.drive import FmuRun
 
 
 def run(
@@ -35,7 +35,7 @@ def run(
     """
     console.check_output(output, SUFFIXES)
     forces = None if schedule is None else read_schedule(schedule)
-    fmu_run = Run(fmu, forces, step=step, stop=stop, relative_tolerance=tolerance)
+    fmu_run = FmuRun(fmu, forces, step=step, stop=stop, relative_tolerance=tolerance)
     try:
         with console.progress("drilling", fmu_run.stop) as done:
             trajectory = fmu_run.trajectory(done)

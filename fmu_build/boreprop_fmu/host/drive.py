@@ -1,43 +1,29 @@
 """Steps an FMU that uses the names of our table through fmpy, under a force schedule."""
 
-import zipfile
 from collections import deque
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from signal import SIGINT, raise_signal, signal
-from tempfile import TemporaryDirectory
-from threading import current_thread, main_thread
 from typing import Any
 
-import fmpy
 import numpy as np
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import (
-    FMU2Slave,
-    defaultCallbacks,
-    fmi2CallbackFunctions,
-    fmi2CallbackLoggerTYPE,
-    fmi2Fatal,
-)
 
-from boreprop.case.case import Case, Schedule
-from boreprop.case.file import parse_case
+from boreprop.case.case import Schedule
 from boreprop.core.checks import check_number
 from boreprop.core.quantities import INPUTS, OUTPUTS
 from boreprop.errors import InputError
-from boreprop.kernel.compiler import host_platform
 from boreprop.run.trajectory import Stopped, Trajectory
 
-from ..pack.build import CASE_FILE
+from ..packed_case import read_packed_case
+from .instance import open_instance, read_description, uninterrupted
 
 MAX_ROWS = 10_000_000
 CLOSE = 1e-9  # of a step: times closer than this are one
 
 
-class Run:
-    """A run of an FMU. Iterate over it for its rows, one at each communication point start + k·step, k = 0, 1, …
+class FmuRun:
+    """A run of an FMU: iterate over it for its rows, one at each communication point start + k·step, k = 0, 1, …
 
     Parameters
     ----------
@@ -76,7 +62,7 @@ class Run:
         relative_tolerance: float | None = None,
     ) -> None:
         self.fmu = Path(fmu)
-        self._description = _read_description(self.fmu)
+        self._description = read_description(self.fmu)
         self.case = read_packed_case(self.fmu)
         if self.case is not None:
             self.case = replace(self.case, schedule=schedule or self.case.schedule)
@@ -104,7 +90,7 @@ class Run:
         messages: deque[str] = deque(maxlen=1)
         time = self.start
         try:
-            with self._instance(messages) as slave:
+            with open_instance(self.fmu, self._description, messages, start=self.start, stop=self.stop) as slave:
                 if self._tolerance is not None:
                     slave.setReal([self._variables["relative_tolerance"].valueReference], [self._tolerance])
                 changes = self._changes(slave)
@@ -113,7 +99,7 @@ class Run:
                 slave.exitInitializationMode()
                 for k in range(len(self)):
                     point = self.start + k * self.step
-                    with _uninterrupted():
+                    with uninterrupted():
                         self._advance(slave, time, point, changes)
                         time = point
                         row = [time, *read()]
@@ -149,55 +135,6 @@ class Run:
         if given is None and default is None:
             raise InputError(f"{self.fmu}: {name}: must be given, the FMU has no default experiment")
         return float(default if given is None else given)  # type: ignore[arg-type]
-
-    def _library(self, directory: str) -> str | None:
-        """The binary for this machine in the folder that FMI 2.0.4 names: on Arm fmpy looks into that of x86."""
-        platform = host_platform()
-        folder = Path(directory, "binaries", platform or "")
-        library = folder / f"{self._description.coSimulation.modelIdentifier}{fmpy.sharedLibraryExtension}"
-        return str(library) if platform and library.exists() else None
-
-    @contextmanager
-    def _instance(self, messages: deque[str]) -> Iterator[Any]:
-        """The FMU in initialization mode; what it logs goes to `messages`."""
-
-        def log(*arguments: Any) -> None:  # environment, instance, status, category, message
-            messages.append(arguments[4].decode(errors="replace").replace("%%", "%"))
-
-        callbacks = fmi2CallbackFunctions(
-            logger=fmi2CallbackLoggerTYPE(log),
-            allocateMemory=defaultCallbacks.allocateMemory,
-            freeMemory=defaultCallbacks.freeMemory,
-        )
-        with TemporaryDirectory(prefix="boreprop-fmu-") as directory:
-            fmpy.extract(self.fmu, directory)
-            if Path(directory, "resources", "slavemodule.txt").exists():
-                _check_readable(directory)
-            try:
-                slave = FMU2Slave(
-                    instanceName=self.fmu.stem,
-                    guid=self._description.guid,
-                    modelIdentifier=self._description.coSimulation.modelIdentifier,
-                    unzipDirectory=directory,
-                    libraryPath=self._library(directory),
-                )
-                slave.instantiate(callbacks=callbacks, loggingOn=True)
-            except Exception as error:  # fmpy raises just that, where there is no binary for this platform, say
-                raise InputError(f"{self.fmu}: must load here, got: {' '.join(messages) or error}") from error
-            dead = False
-            try:
-                slave.setupExperiment(startTime=self.start, stopTime=self.stop)
-                slave.enterInitializationMode()
-                yield slave
-                slave.terminate()
-            except FMICallException as error:
-                dead = error.status == fmi2Fatal  # then nothing may be called any more
-                raise
-            finally:
-                if not dead:
-                    slave.fmi2FreeInstance(slave.component)
-                    _release_runtime(slave.dll)
-                    slave.freeLibrary()
 
     def _changes(self, slave: Any) -> deque[tuple[float, float]]:
         """Times at which the force changes, and to what. The rate of penetration stays what the FMU starts with."""
@@ -246,70 +183,18 @@ def drive(
     stop: float | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Trajectory:
-    """Run an FMU: `Run.trajectory`.
+    """Run an FMU to its end: `FmuRun.trajectory`.
 
     Parameters
     ----------
     fmu, schedule, step, stop
-        See `Run`.
+        See `FmuRun`.
     progress
         Called with the time, s, after each row.
 
     Raises
     ------
     InputError, ParameterError, Stopped
-        See `Run` and `Run.trajectory`.
+        See `FmuRun` and its `trajectory`.
     """
-    return Run(fmu, schedule, step=step, stop=stop).trajectory(progress)
-
-
-def read_packed_case(fmu: str | Path) -> Case | None:
-    """The case that `build_fmu` packed in an FMU; None if it is not one of ours, `InputError` if it is no archive."""
-    try:
-        with zipfile.ZipFile(fmu) as archive:
-            if CASE_FILE not in archive.namelist():
-                return None
-            return parse_case(archive.read(CASE_FILE).decode(), Path(fmu, CASE_FILE))
-    except zipfile.BadZipFile as error:
-        raise InputError(f"{fmu}: must be an FMU, got: {error}") from error
-
-
-@contextmanager
-def _uninterrupted() -> Iterator[None]:
-    """Let Ctrl-C wait until the end: an FMU with Python in it would take it for an error of its own."""
-    if current_thread() is not main_thread():  # which alone is interrupted
-        yield
-        return
-    pressed: list[int] = []
-    before = signal(SIGINT, lambda number, _: pressed.append(number))
-    try:
-        yield
-    finally:
-        signal(SIGINT, before)
-    if pressed:
-        raise_signal(SIGINT)
-
-
-def _check_readable(directory: str) -> None:
-    """Raise `InputError` if pythonfmu would not find the FMU in `directory`, and crash: it decodes but spaces."""
-    if "%" in Path(directory).as_uri().replace("%20", " "):
-        raise InputError(f"the temporary directory (TMPDIR) must have a plain ASCII name, got {directory}")
-
-
-def _release_runtime(library: Any) -> None:
-    """Let pythonfmu's library drop its static state now: at exit it drops it twice, which may abort the process."""
-    if hasattr(library, "finalizePythonInterpreter"):  # does not finalize the interpreter of a host that is Python
-        library.finalizePythonInterpreter()
-
-
-def _read_description(fmu: Path) -> Any:
-    """modelDescription.xml of an FMI 2.0 co-simulation FMU."""
-    try:
-        description = fmpy.read_model_description(fmu)
-    except Exception as error:  # fmpy raises what its parsers raise
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(f"{fmu}: must be an FMI 2.0 co-simulation FMU, got: {reason}") from error
-    if description.fmiVersion != "2.0" or description.coSimulation is None:
-        kind = f"FMI {description.fmiVersion}" + " without co-simulation" * (description.coSimulation is None)
-        raise InputError(f"{fmu}: must be an FMI 2.0 co-simulation FMU, got: {kind}")
-    return description
+    return FmuRun(fmu, schedule, step=step, stop=stop).trajectory(progress)

@@ -1,14 +1,14 @@
 /* The borehole as an FMI 2.0 co-simulation FMU: the kernel behind the functions of fmi2Functions.h.
 
-   What a call does when it cannot do what it was asked, with one line to the logger (outputs that are missing: one):
+   A call that cannot do what it was asked logs one line and gives one of two statuses. The instance goes on after both.
    - fmi2Discard, from fmi2DoStep: an input or the step is bad, or the integrator fails. Nothing has moved, and the next
      step with good values works.
-   - fmi2Error: the call itself is wrong; the parameters make no drilling system (then every step, until fmi2Reset or a
-     good state); outputs cannot be computed (they are NaN); a state is not one of this FMU's (the instance keeps what it
-     had). The instance goes on.
+   - fmi2Error: the call itself is wrong; the parameters make no drilling system (then every step gives this, until
+     fmi2Reset or a good state); outputs cannot be computed (they are NaN, and the line is logged once); a state is not
+     one of this FMU's (the instance keeps its own).
 
-   Derivatives of inputs, of first order, act over the next step that is done and are zero after it: FMI 2.0 sets inputs
-   and their derivatives with respect to the beginning of a communication step. Over the step the rate of penetration is
+   First derivatives of inputs act over the next step that is completed, and are zero after it: FMI 2.0 sets inputs and
+   their derivatives with respect to the beginning of a communication step. Over the step the rate of penetration is
    linear in time; the force and the weight on bit are linear in the drilled length, between the values that they have
    at its two ends in time. After the step an input has the value that it had at the end.
 
@@ -19,64 +19,7 @@
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
 #endif
-#include "instance.h"
-
-/* What every call asks first */
-
-/* The instance; NULL, logged, if it does not allow the function in its present phase. */
-static Component *called(fmi2Component instance, const char *function, int phases) {
-    Component *c = instance;
-    char why[LINE];
-    if (!c || c->phase & phases) return c;
-    explain(why, "%s: must be called in another phase, got %s", function,
-            c->phase == INSTANTIATED     ? "instantiated"
-            : c->phase == INITIALIZATION ? "initialization"
-            : c->phase == STEPPING       ? "stepping"
-                                         : "terminated");
-    fail(c, fmi2Error, why);
-    return NULL;
-}
-
-/* Whether there is something at both addresses, which hold `count` values. */
-static int has(const Component *c, const char *function, size_t count, const void *first, const void *second) {
-    char why[LINE];
-    if (!count || (first && second)) return 1;
-    explain(why, "%s: must be given addresses to read from and write to, got NULL", function);
-    fail(c, fmi2Error, why);
-    return 0;
-}
-
-/* Whether the value reference is that of a variable of this kind. */
-static int is_of_kind(const Component *c, fmi2ValueReference reference, Kind kind) {
-    char why[LINE];
-    if (reference >= VARIABLES)
-        explain(why, "value reference: must be 0 to %d, got %lu", VARIABLES - 1, (unsigned long)reference);
-    else if (VARIABLE[reference].kind != kind)
-        explain(
-            why, "%s: must be used as %s, got '%s'", VARIABLE[reference].name, KIND[VARIABLE[reference].kind],
-            KIND[kind]
-        );
-    else return 1;
-    fail(c, fmi2Error, why);
-    return 0;
-}
-
-/* Whether a variable has a value now. */
-static int known(Component *c, fmi2ValueReference reference, Kind kind) {
-    return is_of_kind(c, reference, kind) && (VARIABLE[reference].role != OUTPUT || refreshed(c));
-}
-
-/* Whether a variable may be set to another value now. */
-static int settable(const Component *c, fmi2ValueReference reference, const char *got) {
-    char why[LINE];
-    const Variable *variable = &VARIABLE[reference];
-    if (variable->role == OUTPUT) explain(why, "%s: must not be set, it is an output, got %s", variable->name, got);
-    else if (variable->role == PARAMETER && c->phase == STEPPING)
-        explain(why, "%s: must not change after initialization, got %s", variable->name, got);
-    else return 1;
-    fail(c, fmi2Error, why);
-    return 0;
-}
+#include "calls.h"
 
 /* Inquiry, logging, life */
 
@@ -163,7 +106,7 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component instance) {
     Component *c = called(instance, "fmi2ExitInitializationMode", INITIALIZATION);
     if (!c) return fmi2Error;
     c->phase = STEPPING;
-    if (c->outputs == MISSING) c->outputs = STALE; /* say it again: here it counts */
+    if (c->outputs == MISSING) c->outputs = STALE; /* logged again: it is here that the host asks */
     return refreshed(c) ? fmi2OK : fmi2Error;
 }
 
@@ -181,7 +124,7 @@ fmi2Status fmi2GetReal(fmi2Component instance, const fmi2ValueReference vr[], si
     fmi2Status status = fmi2OK;
     if (!c || !has(c, "fmi2GetReal", count, vr, value)) return fmi2Error;
     for (size_t i = 0; i < count; i++) {
-        int there = known(c, vr[i], REAL);
+        int there = has_value(c, vr[i], REAL);
         value[i] = there ? c->value[vr[i]] : (double)NAN;
         if (!there) status = fmi2Error;
     }
@@ -193,7 +136,7 @@ fmi2Status fmi2GetInteger(fmi2Component instance, const fmi2ValueReference vr[],
     fmi2Status status = fmi2OK;
     if (!c || !has(c, "fmi2GetInteger", count, vr, value)) return fmi2Error;
     for (size_t i = 0; i < count; i++) {
-        int there = known(c, vr[i], INTEGER);
+        int there = has_value(c, vr[i], INTEGER);
         value[i] = there ? (int)c->value[vr[i]] : 0;
         if (!there) status = fmi2Error;
     }
@@ -213,7 +156,7 @@ fmi2Status fmi2GetString(fmi2Component instance, const fmi2ValueReference vr[], 
     fmi2Status status = fmi2OK;
     if (!c || !has(c, "fmi2GetString", count, vr, value)) return fmi2Error;
     for (size_t i = 0; i < count; i++) {
-        int there = known(c, vr[i], STRING);
+        int there = has_value(c, vr[i], STRING);
         value[i] = there ? c->survey_file : "";
         if (!there) status = fmi2Error;
     }
@@ -349,7 +292,7 @@ static fmi2Status unanswered(fmi2Component instance, const char *function, fmi2S
     Component *c = called(instance, function, ANY);
     char why[LINE];
     if (!c) return fmi2Error;
-    explain(why, "%s: must be asked for what it answers, got fmi2StatusKind %d", function, (int)kind);
+    explain(why, "%s: must be asked for a status that this FMU has, got fmi2StatusKind %d", function, (int)kind);
     return fail(c, fmi2Discard, why);
 }
 
@@ -444,8 +387,9 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component instance, const fmi2Byte bytes[
     *kept = NULL;
     if (!is_sealed((const unsigned char *)bytes, size, GUID, why)) return fail(c, fmi2Error, why);
     Saved *state = malloc(sizeof *state);
-    if (state && (state->bytes = malloc(size))) {
-        memcpy(state->bytes, bytes + SEAL, state->size = size - SEAL);
+    if (state) state->size = size - SEAL, state->bytes = malloc(size);
+    if (state && state->bytes) {
+        memcpy(state->bytes, bytes + SEAL, state->size);
         *kept = state;
         return fmi2OK;
     }

@@ -36,8 +36,8 @@ typedef struct {
     double derivative[INPUTS]; /* of the inputs over the next step, 1/s */
     double time, stop;         /* where the last step ended, and where none may end beyond */
     double since, from, rate;  /* since this time, from this drilled length, at this rate of penetration */
-    int settled;               /* the run has the present inputs */
-    int discarded;             /* the last step was */
+    int run_has_inputs;        /* the run has taken over the present inputs */
+    int discarded;             /* the last step was discarded */
     Run *run;                  /* made when it is first needed */
 } Component;
 
@@ -76,29 +76,29 @@ static char *copy(const char *text) {
     return own ? memcpy(own, text, size) : NULL;
 }
 
-/* As it is after fmi2Instantiate. */
+/* Put an instance into the condition that it has after fmi2Instantiate; 0 if the memory does not suffice. */
 static int start_over(Component *c) {
     char *none = copy("");
     if (!none) return 0;
     run_end(c->run);
     free(c->survey_file);
     c->run = NULL, c->survey_file = none;
-    c->phase = INSTANTIATED, c->outputs = STALE, c->settled = c->discarded = 0;
+    c->phase = INSTANTIATED, c->outputs = STALE, c->run_has_inputs = c->discarded = 0;
     c->time = c->since = c->from = 0.0, c->rate = -1.0, c->stop = INFINITY;
     memset(c->derivative, 0, sizeof c->derivative);
     for (int i = 0; i < VARIABLES; i++) c->value[i] = VARIABLE[i].start;
     return 1;
 }
 
-/* After a variable has got another value. */
+/* To be called after a variable has got another value: outputs, and before the start the run, are out of date. */
 static void changed(Component *c) {
-    c->outputs = STALE, c->settled = 0;
+    c->outputs = STALE, c->run_has_inputs = 0;
     if (c->phase == STEPPING) return;
     run_end(c->run);
     c->run = NULL;
 }
 
-/* Whether there is a drilling system; it is made now if there is none. */
+/* Whether there is a drilling system: if there is none yet it is made now; 0 with `why` if that fails. */
 static int ready(Component *c, char why[LINE]) {
     Survey survey = {STATIONS, MEASURED_DEPTH, INCLINATION};
     Inputs inputs = {c->value[RSS_FORCE], 0.0, c->value[ACTIVE_WEIGHT_ON_BIT]};
@@ -127,8 +127,8 @@ static int compute(Component *c, char why[LINE]) {
     Inputs inputs = {c->value[RSS_FORCE], 0.0, c->value[ACTIVE_WEIGHT_ON_BIT]};
     double outputs[MOST_OUTPUTS];
     if (!ready(c, why)) return 0;
-    if (!c->settled && run_advance(c->run, drilling_length(&c->run->drilling), inputs, why) != DONE) return 0;
-    c->settled = 1;
+    if (!c->run_has_inputs && run_advance(c->run, drilling_length(&c->run->drilling), inputs, why) != DONE) return 0;
+    c->run_has_inputs = 1;
     int count = drilling_outputs(&c->run->drilling, outputs);
     for (int i = 0; i < count; i++)
         if (!check_finite(VARIABLE[DRILLED_LENGTH + i].name, outputs[i], why)) return 0;
@@ -146,9 +146,9 @@ static int refreshed(Component *c) {
     return c->outputs == FRESH;
 }
 
-/* Drill to a length while the inputs go from their values to those at the end: the force linearly in the length; the
-   weight, which the kernel holds, in stairs of equal lengths and of a thousandth at most of its larger value. All of
-   it or nothing. */
+/* Drill to a length while the inputs go from their present values to those at its end. The force is linear in the
+   length. The kernel keeps the weight on bit constant over a stretch, so it goes up or down in stairs of equal length,
+   each by a thousandth of its larger value at most. If one stair fails, nothing has moved. */
 static int drill_on(Component *c, double to, const double end[INPUTS], char why[LINE]) {
     Drilling *drilling = &c->run->drilling;
     double from = drilling_length(drilling), force = c->value[RSS_FORCE], weight = c->value[ACTIVE_WEIGHT_ON_BIT];
@@ -173,7 +173,7 @@ static int drill_on(Component *c, double to, const double end[INPUTS], char why[
     }
     if (!done && before) drilling_return(drilling, before);
     free(before);
-    if (done) c->settled = rise == 0.0 && (to > from || end[RSS_FORCE] == force);
+    if (done) c->run_has_inputs = rise == 0.0 && (to > from || end[RSS_FORCE] == force);
     return done;
 }
 
@@ -216,7 +216,7 @@ static fmi2Status save(Component *c, Saved *saved) {
     size_t text = strlen(c->survey_file), size = ((size_t)count + FIXED + VARIABLES) * 8 + text;
     unsigned char *bytes = malloc(size), *to = bytes;
     double *numbers = malloc((size_t)(count + 1) * sizeof *numbers);
-    double fixed[FIXED] = {c->phase, c->time, c->since, c->from, c->rate, c->settled, c->derivative[0],
+    double fixed[FIXED] = {c->phase, c->time, c->since, c->from, c->rate, c->run_has_inputs, c->derivative[0],
                            c->derivative[1], c->derivative[2], (double)text};
     if (bytes && numbers) {
         for (int i = 0; i < FIXED; i++) to = put_double(to, fixed[i]);
@@ -244,7 +244,7 @@ static int restore(Component *c, const Saved *saved, char why[LINE]) {
     int phase = fixed[0] >= 0.0 && fixed[0] <= 8.0 ? (int)fixed[0] : 0;
     if (!(phase == INSTANTIATED || phase == INITIALIZATION || phase == STEPPING || phase == TERMINATED) ||
         !(text >= 0.0 && text <= (double)(size - least)) || (size - (size_t)text) % 8)
-        return explain(why, "state: must be one of this FMU, got a phase or a length that there is not");
+        return explain(why, "state: must be one of this FMU, got one with an impossible phase or length");
     for (int i = 1; i < FIXED; i++)
         if (!check_finite("state", fixed[i], why)) return 0;
     Count count = (Count)((size - least - (size_t)text) / 8);
@@ -255,7 +255,7 @@ static int restore(Component *c, const Saved *saved, char why[LINE]) {
         for (Count i = 0; i < count; i++) numbers[i] = get_double(&from);
         memcpy(survey_file, from, (size_t)text);
         if (!is_utf8(survey_file)) {
-            explain(why, "state: must be one of this FMU, got bytes that are no text");
+            explain(why, "state: must be one of this FMU, got one with text that is not UTF-8");
             count = -1;
         }
         if (count > 0) run = new_run(value, why);
@@ -273,7 +273,7 @@ static int restore(Component *c, const Saved *saved, char why[LINE]) {
     run_end(c->run);
     free(c->survey_file);
     c->run = run, c->survey_file = survey_file, c->phase = (Phase)phase, c->outputs = STALE, c->discarded = 0;
-    c->time = fixed[1], c->since = fixed[2], c->from = fixed[3], c->rate = fixed[4], c->settled = fixed[5] != 0.0;
+    c->time = fixed[1], c->since = fixed[2], c->from = fixed[3], c->rate = fixed[4], c->run_has_inputs = fixed[5] != 0.0;
     memcpy(c->derivative, fixed + 6, sizeof c->derivative);
     memcpy(c->value, value, sizeof value);
     return 1;

@@ -8,7 +8,7 @@
 
 enum { LINE = 2048, SHOWN = 80 };
 
-/* The code point at `*text`, which moves on behind it; −1 if the bytes there are no UTF-8. */
+/* The code point at `*text`, which moves on behind it; −1 if the bytes there are not UTF-8. */
 static long next_character(const char **text) {
     static const long LEAST[] = {0, 0x80, 0x800, 0x10000};
     unsigned char first = (unsigned char)*(*text)++;

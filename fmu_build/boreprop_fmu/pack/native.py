@@ -13,8 +13,10 @@ from boreprop.core.quantities import INPUTS, VARIABLES
 from boreprop.errors import InputError
 from boreprop.kernel.compiler import PLATFORMS, CompilerError, NoCompilerError, compile_library, host_platform
 
-from .build import IDENTIFIER, describe, identify, pack_manual, start_values
+from .archive import identify
+from .contents import IDENTIFIER, describe, pack_manual, start_values
 
+COMPILERS = ("ziglang", "own")
 SOURCE_FILE = "fmi2.c"
 FMI_HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
 CASE_HEADER = """\
@@ -43,10 +45,13 @@ static const double INCLINATION[STATIONS] = {{
 
 
 def pack_native(
-    case: Case, platforms: Sequence[str] | None = None, progress: Callable[[float], None] | None = None
+    case: Case,
+    platforms: Sequence[str] | None = None,
+    compiler: str | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> dict[str, bytes]:
-    """The FMU that needs no Python; see `build_fmu`."""
-    check_platforms(platforms)
+    """Gather the files of the FMU that needs no Python: path in the FMU → content; parameters as of `build_fmu`."""
+    check_targets(platforms, compiler)
     code = pack_sources()
 
     def numbers(guid: str) -> dict[str, bytes]:
@@ -56,7 +61,7 @@ def pack_native(
     guid = identify({**code, **numbers(guid="")})
     packed = {**numbers(guid), **code}
     sources = {name: content for name, content in packed.items() if name.startswith("sources/")}
-    return {**packed, **compile_binaries(sources, platforms, progress), **pack_manual(case, "native")}
+    return {**packed, **compile_binaries(sources, platforms, compiler, progress), **pack_manual(case, "native")}
 
 
 def pack_sources() -> dict[str, bytes]:
@@ -68,7 +73,7 @@ def pack_sources() -> dict[str, bytes]:
 
 
 def case_header(case: Case, guid: str) -> bytes:
-    """The numbers, and the table of variables, as a C header."""
+    """The case, and the table of variables with their start values, as a C header."""
     start = start_values(case)
     n = len(case.bha.stabilizer_positions)
     scalars = [(name, variable) for variable in VARIABLES for name in variable.names(n)]
@@ -101,26 +106,36 @@ def _lines(values: Sequence[float]) -> str:
     return "\n".join(f"    {float(value)!r}," for value in values)
 
 
-def check_platforms(platforms: Sequence[str] | None) -> None:
-    """Raise `InputError` unless every one is a platform that a compiler can build for; None is this machine."""
+def check_targets(platforms: Sequence[str] | None, compiler: str | None) -> None:
+    """Raise `InputError` unless the platforms and the compiler exist and go together; None leaves the choice open."""
     for platform in platforms or ():
         if platform not in PLATFORMS:
             raise InputError(f"platforms: must be among {', '.join(PLATFORMS)}, got {platform!r}")
+    if compiler is not None and compiler not in COMPILERS:
+        raise InputError(f"compiler: must be {' or '.join(COMPILERS)}, got {compiler!r}")
+    if compiler == "own" and platforms is not None:
+        named = ", ".join(platforms) or "none"
+        raise InputError(f"platforms: must be left out for this machine's own compiler, got {named}")
 
 
 def compile_binaries(
-    sources: dict[str, bytes], platforms: Sequence[str] | None, progress: Callable[[float], None] | None = None
+    sources: dict[str, bytes],
+    platforms: Sequence[str] | None,
+    compiler: str | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> dict[str, bytes]:
-    """The binaries of `sources`.
+    """Compile the binaries of an FMU.
 
     Parameters
     ----------
     sources
         What is in the folder sources/, by its path in the FMU.
-    platforms
-        For which of `PLATFORMS`. None: this machine, by ziglang where it is there, else by its own compiler.
-    progress
-        Called with the number of binaries done, after each.
+    platforms, compiler, progress
+        As of `build_fmu`.
+
+    Returns
+    -------
+    The binaries, by their path in the FMU.
 
     Raises
     ------
@@ -128,13 +143,17 @@ def compile_binaries(
         If there is no compiler for a platform, or it fails.
     """
     archive = {}
+    if platforms is None and compiler is None:
+        compilers: Sequence[str] = COMPILERS
+    else:
+        compilers = [compiler or "ziglang"]
     with TemporaryDirectory(prefix="boreprop-fmu-") as folder:
         for name, content in sources.items():
             Path(folder, Path(name).name).write_bytes(content)
         source = Path(folder, SOURCE_FILE)
         for done, platform in enumerate(_targets(platforms), 1):
             library = Path(folder, f"{IDENTIFIER}{PLATFORMS[platform].suffix}")
-            _compile(source, library, platform, own=platforms is None)
+            _compile(source, library, platform, compilers)
             archive[f"binaries/{platform}/{library.name}"] = library.read_bytes()
             if progress:
                 progress(done)
@@ -142,6 +161,7 @@ def compile_binaries(
 
 
 def _targets(platforms: Sequence[str] | None) -> Sequence[str]:
+    """What there are to be binaries for, each once."""
     if platforms is not None:
         return list(dict.fromkeys(platforms))
     host = host_platform()
@@ -150,13 +170,15 @@ def _targets(platforms: Sequence[str] | None) -> Sequence[str]:
     return [host]
 
 
-def _compile(source: Path, library: Path, platform: str, *, own: bool) -> None:
-    try:
+def _compile(source: Path, library: Path, platform: str, compilers: Sequence[str]) -> None:
+    """Compile with the first of these compilers that is installed; one that fails is not replaced by another."""
+    for compiler in compilers:
         try:
-            compile_library(source, library, platform=platform)
-        except NoCompilerError:
-            if not own:
-                raise
-            compile_library(source, library)
-    except CompilerError as error:
-        raise InputError(str(error)) from error
+            compile_library(source, library, platform=platform if compiler == "ziglang" else None)
+        except NoCompilerError as error:
+            missing = InputError(str(error))
+        except CompilerError as error:
+            raise InputError(str(error)) from error
+        else:
+            return
+    raise missing

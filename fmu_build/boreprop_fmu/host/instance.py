@@ -1,0 +1,134 @@
+"""Loads an FMU through fmpy: its description, an instance of it, and what its runtime needs of this process."""
+
+from collections import deque
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from signal import SIGINT, raise_signal, signal
+from tempfile import TemporaryDirectory
+from threading import current_thread, main_thread
+from typing import Any
+
+import fmpy
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import FMU2Slave, defaultCallbacks, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2Fatal
+
+from boreprop.errors import InputError
+from boreprop.kernel.compiler import host_platform
+
+
+def read_description(fmu: Path) -> Any:
+    """Read modelDescription.xml; `InputError` unless it is that of an FMI 2.0 co-simulation FMU."""
+    try:
+        description = fmpy.read_model_description(fmu)
+    except Exception as error:  # fmpy raises what its parsers raise
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{fmu}: must be an FMI 2.0 co-simulation FMU, got: {reason}") from error
+    if description.fmiVersion != "2.0" or description.coSimulation is None:
+        kind = f"FMI {description.fmiVersion}" + " without co-simulation" * (description.coSimulation is None)
+        raise InputError(f"{fmu}: must be an FMI 2.0 co-simulation FMU, got: {kind}")
+    return description
+
+
+@contextmanager
+def open_instance(
+    fmu: Path, description: Any, messages: deque[str], *, start: float, stop: float, platform: str | None = None
+) -> Iterator[Any]:
+    """Yield an instance of an FMU in initialization mode, and terminate and free it in the end.
+
+    Parameters
+    ----------
+    fmu, description
+        The FMU, and what `read_description` gives for it.
+    messages
+        Where the instance's log goes, line by line.
+    start, stop
+        Of the experiment, s.
+    platform
+        Which of the folders in binaries/ the library is taken from, under the names of FMI 2.0.4. None: this machine's.
+
+    Raises
+    ------
+    InputError
+        If the FMU cannot be loaded here.
+    FMICallException
+        If a call fails.
+    """
+    callbacks = _log_to(messages)
+    identifier = description.coSimulation.modelIdentifier
+    with TemporaryDirectory(prefix="boreprop-fmu-") as directory:
+        fmpy.extract(fmu, directory)
+        if Path(directory, "resources", "slavemodule.txt").exists():
+            _check_readable(directory)
+        try:
+            slave = FMU2Slave(
+                instanceName=fmu.stem,
+                guid=description.guid,
+                modelIdentifier=identifier,
+                unzipDirectory=directory,
+                libraryPath=_library(directory, identifier, platform or host_platform()),
+            )
+            slave.instantiate(callbacks=callbacks, loggingOn=True)
+        except Exception as error:  # fmpy raises just that, where there is no binary for this platform, say
+            raise InputError(f"{fmu}: must load here, got: {' '.join(messages) or error}") from error
+        dead = False
+        try:
+            slave.setupExperiment(startTime=start, stopTime=stop)
+            slave.enterInitializationMode()
+            yield slave
+            slave.terminate()
+        except FMICallException as error:
+            dead = error.status == fmi2Fatal  # then nothing may be called any more
+            raise
+        finally:
+            if not dead:
+                slave.fmi2FreeInstance(slave.component)
+                _release_runtime(slave.dll)
+                slave.freeLibrary()
+
+
+def _log_to(messages: deque[str]) -> fmi2CallbackFunctions:
+    """Callbacks for an instance that logs to `messages`; they must live as long as it does."""
+
+    def log(*arguments: Any) -> None:  # environment, instance, status, category, message
+        messages.append(arguments[4].decode(errors="replace").replace("%%", "%"))
+
+    return fmi2CallbackFunctions(
+        logger=fmi2CallbackLoggerTYPE(log),
+        allocateMemory=defaultCallbacks.allocateMemory,
+        freeMemory=defaultCallbacks.freeMemory,
+    )
+
+
+def _library(directory: str, identifier: str, platform: str | None) -> str | None:
+    """The binary in the folder that FMI 2.0.4 names; None: fmpy looks for one, on Arm in the folder for x86."""
+    library = Path(directory, "binaries", platform or "", f"{identifier}{fmpy.sharedLibraryExtension}")
+    return str(library) if platform and library.exists() else None
+
+
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Let Ctrl-C wait until the end of a call: an FMU with Python in it would take it for an error of its own."""
+    if current_thread() is not main_thread():  # which alone is interrupted
+        yield
+        return
+    pressed: list[int] = []
+    before = signal(SIGINT, lambda number, _: pressed.append(number))
+    try:
+        yield
+    finally:
+        signal(SIGINT, before)
+    if pressed:
+        raise_signal(SIGINT)
+
+
+def _check_readable(directory: str) -> None:
+    """Raise `InputError` where pythonfmu would crash: it finds no folder whose name has other than ASCII characters."""
+    if "%" in Path(directory).as_uri().replace("%20", " "):
+        raise InputError(f"the temporary directory (TMPDIR) must have a plain ASCII name, got {directory}")
+
+
+def _release_runtime(library: Any) -> None:
+    """Let pythonfmu's library drop its static state now: at exit it drops it twice, which may abort the process."""
+    if hasattr(library, "finalizePythonInterpreter"):  # does not finalize the interpreter of a host that is Python
+        library.finalizePythonInterpreter()

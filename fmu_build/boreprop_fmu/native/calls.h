@@ -1,0 +1,62 @@
+/* What every function of FMI asks before it does anything: may it be called now, with these references and addresses? */
+#ifndef BOREPROP_CALLS_H
+#define BOREPROP_CALLS_H
+
+#include "instance.h"
+
+/* The instance; NULL, and a line in the log, if the function may not be called in its present phase. */
+static Component *called(fmi2Component instance, const char *function, int phases) {
+    Component *c = instance;
+    char why[LINE];
+    if (!c || (int)c->phase & phases) return c;
+    explain(why, "%s: must be called in another phase, got %s", function,
+            c->phase == INSTANTIATED     ? "instantiated"
+            : c->phase == INITIALIZATION ? "initialization"
+            : c->phase == STEPPING       ? "stepping"
+                                         : "terminated");
+    fail(c, fmi2Error, why);
+    return NULL;
+}
+
+/* Whether both addresses may be used for `count` values; a line in the log if one is NULL. */
+static int has(const Component *c, const char *function, size_t count, const void *first, const void *second) {
+    char why[LINE];
+    if (!count || (first && second)) return 1;
+    explain(why, "%s: must be given addresses to read from and write to, got NULL", function);
+    fail(c, fmi2Error, why);
+    return 0;
+}
+
+/* Whether the value reference is that of a variable of this kind; a line in the log if not. */
+static int is_of_kind(const Component *c, fmi2ValueReference reference, Kind kind) {
+    char why[LINE];
+    if (reference >= VARIABLES)
+        explain(why, "value reference: must be 0 to %d, got %lu", VARIABLES - 1, (unsigned long)reference);
+    else if (VARIABLE[reference].kind != kind)
+        explain(
+            why, "%s: must be used as %s, got '%s'", VARIABLE[reference].name, KIND[VARIABLE[reference].kind],
+            KIND[kind]
+        );
+    else return 1;
+    fail(c, fmi2Error, why);
+    return 0;
+}
+
+/* Whether a variable of this kind has a value now: outputs are computed if need be. */
+static int has_value(Component *c, fmi2ValueReference reference, Kind kind) {
+    return is_of_kind(c, reference, kind) && (VARIABLE[reference].role != OUTPUT || refreshed(c));
+}
+
+/* Whether a variable may be set to another value now; a line in the log if not. `got` is that value as text. */
+static int settable(const Component *c, fmi2ValueReference reference, const char *got) {
+    char why[LINE];
+    const Variable *variable = &VARIABLE[reference];
+    if (variable->role == OUTPUT) explain(why, "%s: must not be set, it is an output, got %s", variable->name, got);
+    else if (variable->role == PARAMETER && c->phase == STEPPING)
+        explain(why, "%s: must not change after initialization, got %s", variable->name, got);
+    else return 1;
+    fail(c, fmi2Error, why);
+    return 0;
+}
+
+#endif

@@ -1,0 +1,65 @@
+"""What an FMU holds whichever flavour it is: its description, its case, its icon and its documentation."""
+
+from collections.abc import Sequence
+from importlib.resources import files
+
+from boreprop.case.case import Case
+from boreprop.case.file import dump_case
+from boreprop.case.parameters import parameters
+from boreprop.core.quantities import INPUTS, PARAMETERS
+
+from ..packed_case import CASE_FILE
+from .description import model_description
+from .documentation import documentation
+
+IDENTIFIER = "Borehole"
+CAPABILITIES = {
+    "needsExecutionTool": False,
+    "canHandleVariableCommunicationStepSize": True,
+    "canBeInstantiatedOnlyOncePerProcess": False,
+    "canNotUseMemoryManagementFunctions": True,
+    "canGetAndSetFMUstate": True,
+    "canSerializeFMUstate": True,
+}
+STEP_SIZE = 0.1  # s, so 0.1 m at the start value of the rate of penetration
+
+
+def describe(
+    case: Case, guid: str, *, interpolates: bool = False, source_files: Sequence[str] = ()
+) -> dict[str, bytes]:
+    """The description for hosts, and the case file for `read_packed_case`.
+
+    Parameters
+    ----------
+    case
+        What the FMU starts from.
+    guid
+        The FMU's identity.
+    interpolates
+        Whether it takes derivatives of inputs.
+    source_files
+        What is to be compiled of the folder sources/.
+    """
+    description = model_description(
+        IDENTIFIER,
+        guid,
+        len(case.bha.stabilizer_positions),
+        start_values(case),
+        stop_time=case.length,
+        step_size=STEP_SIZE,
+        capabilities={**CAPABILITIES, "canInterpolateInputs": interpolates},
+        source_files=source_files,
+    )
+    return {"modelDescription.xml": description, CASE_FILE: dump_case(case).encode()}
+
+
+def pack_manual(case: Case, runtime: str) -> dict[str, bytes]:
+    """What people see: the icon (made by docs/make_icon.py) and the documentation."""
+    icon = files("boreprop_fmu.pack").joinpath("icon.png").read_bytes()
+    return {"model.png": icon, "documentation/index.html": documentation(case, runtime)}
+
+
+def start_values(case: Case) -> dict[str, float | str]:
+    """Start value of every input and parameter, by scalar name."""
+    own = {q.name: q.start for q in INPUTS + PARAMETERS if q.start is not None}
+    return {**own, **parameters(case)}

@@ -1,0 +1,95 @@
+"""Packs the model as Python code on pythonfmu's runtime, for hosts that have a Python.
+
+The files are gathered here and not by pythonfmu's own builder, which imports the slave into the building process and
+makes a different file every time. From pythonfmu come the binaries and the base class of the slave.
+"""
+
+import json
+from dataclasses import asdict
+from importlib.resources import files
+from pathlib import Path
+
+from boreprop.case.case import Case
+
+from .archive import digest, identify
+from .contents import IDENTIFIER, describe, pack_manual, start_values
+
+RUNTIME_MODULES = ("default_experiment", "enums", "fmi2slave", "logmsg", "variables", "_version")
+SCRIPT = '''"""What pythonfmu starts. It compiles this for every instance, and wants a class with methods of its own."""
+
+from {package}.slave import Borehole as Slave
+
+
+class Borehole(Slave):
+    def __init__(self, **kwargs):
+        super().__init__(**kwargs)
+
+    def do_step(self, current_time, step_size):
+        return super().do_step(current_time, step_size)
+'''
+
+
+def pack_python(case: Case) -> dict[str, bytes]:
+    """Gather the files of the FMU on pythonfmu's runtime: path in the FMU → content."""
+    code = pack_code()
+
+    def numbers(guid: str) -> dict[str, bytes]:
+        n = len(case.bha.stabilizer_positions)
+        packed = {"guid": guid, "stabilizers": n, "start": start_values(case), "survey": asdict(case.survey)}
+        return {**describe(case, guid), "resources/fmu.json": json.dumps(packed, indent=1).encode()}
+
+    guid = identify({**code, **numbers(guid="")})
+    return {**numbers(guid), **code, **pack_runtime(), **pack_manual(case, "python")}
+
+
+def pack_code() -> dict[str, bytes]:
+    """The core with the slave in one package, and the script that starts it.
+
+    An embedded interpreter knows a module by its name alone, so both carry a hash of their content in theirs: several
+    FMUs in one process each run their own code.
+    """
+    moved = {
+        "from boreprop.core.": "from .",
+        "from boreprop_fmu.python.": "from .",
+        "from pythonfmu.": f"from {base_class()[0]}.",
+    }
+    core = read_modules("boreprop.core")
+    for name, content in read_modules("boreprop_fmu.python").items():
+        if name != "__init__.py":
+            text = content.decode()
+            for before, after in moved.items():
+                text = text.replace(before, after)
+            core[name] = text.encode()
+    package = f"boreprop_core_{digest(core)[:16]}"
+    script = SCRIPT.format(package=package).encode()
+    module = f"boreprop_slave_{digest({package: script})[:16]}"
+    return {
+        "resources/slavemodule.txt": module.encode(),
+        f"resources/{module}.py": script,
+        **{f"resources/{package}/{name}": content for name, content in core.items()},
+    }
+
+
+def pack_runtime() -> dict[str, bytes]:
+    """pythonfmu: the binaries under the FMU's name, and the base class of the slave."""
+    package, modules = base_class()
+    archive = {f"resources/{package}/{name}": content for name, content in modules.items()}
+    for platform in files("pythonfmu").joinpath("resources/binaries").iterdir():
+        for binary in platform.iterdir():
+            archive[f"binaries/{platform.name}/{IDENTIFIER}{Path(binary.name).suffix}"] = binary.read_bytes()
+    return archive
+
+
+def base_class() -> tuple[str, dict[str, bytes]]:
+    """Name and modules of a package with pythonfmu's base class. The name is free, and carries a hash like the others.
+
+    Without pythonfmu's `__init__`, which would load its builder whenever an FMU starts.
+    """
+    modules = read_modules("pythonfmu")
+    needed = {"__init__.py": b"", **{f"{name}.py": modules[f"{name}.py"] for name in RUNTIME_MODULES}}
+    return f"boreprop_slave_base_{digest(needed)[:16]}", needed
+
+
+def read_modules(package: str) -> dict[str, bytes]:
+    """Sources of the modules of `package`, by file name."""
+    return {path.name: path.read_bytes() for path in files(package).iterdir() if path.name.endswith(".py")}

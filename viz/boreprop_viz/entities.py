@@ -1,0 +1,180 @@
+"""What is logged of each row of a run: one ``log_…`` function per thing shown, each for a stretch of rows.
+
+Views are in metres with y down the screen. In the bit frame the hole runs up the screen, the high side is to the right,
+and the lateral axis is multiplied by the factor that the view's name gives.
+"""
+
+import numpy as np
+import rerun as rr
+
+from boreprop.analysis.axis import AXIS_REACH, axis_ripple
+from boreprop.core.quantities import BY_NAME
+from boreprop.units import UNITS
+
+from .scene import AHEAD, HolePath, Shapes, bit_positions
+from .source import Stretch
+from .style import LANES, PLOTS
+from .track import Track, points, send, send_arrows, send_curve, send_strips
+
+RIPPLE = "plots/ripple/ripple"
+BIT_LENGTH = 0.04  # of the drawn bit, over the length of the BHA
+
+# The vertical section
+
+
+def log_existing_hole(track: Track, hole: HolePath, start: float) -> None:
+    """The surveyed hole, behind where drilling starts; a BHA long at least."""
+    bha = track.case.bha.stabilizer_positions[-1]
+    surveyed = track.case.survey.measured_depth[-1] - track.case.survey.measured_depth[0]
+    behind = hole.since(start - max(1.15 * bha, surveyed))
+    there = behind.position[behind.length <= start]
+    track.rec.log(
+        track.entity("vertical_section/existing_hole"), rr.LineStrips2D.from_fields(strips=[there]), static=True
+    )
+
+
+def log_drilled_hole(track: Track, stretch: Stretch, drilled: float) -> None:
+    """Each row's own piece of the hole, from where it is drawn on: the view shows the pieces up to its cursor."""
+    hole = stretch.hole.since(drilled)
+    new = (hole.length > drilled) & (hole.length <= stretch.rows["drilled_length"][-1])
+    ends = np.flatnonzero(new)
+    segments = np.stack((hole.position[ends - 1], hole.position[ends]), axis=1)
+    send_strips(track, "vertical_section/drilled_hole", hole.length[ends], segments[:, None])
+
+
+def log_bha_in_section(track: Track, shapes: Shapes) -> None:
+    """The BHA and the bit at true scale."""
+    length = shapes.rows["drilled_length"]
+    send_strips(track, "vertical_section/bha", length, shapes.bha_in_section[:, None])
+    send(track, "vertical_section/bit", length, rr.Points2D.columns(positions=bit_positions(shapes.rows)))
+
+
+# The bit frame
+
+
+def log_walls(track: Track, shapes: Shapes) -> None:
+    """The low and the high side of the hole."""
+    strips = points(track.scales.lateral * shapes.walls, -shapes.frame.s_hole)
+    send_strips(track, "bit_frame/walls", shapes.rows["drilled_length"], strips)
+
+
+def log_bha(track: Track, shapes: Shapes) -> None:
+    """The axis of the BHA, as the model says it bends."""
+    strips = points(track.scales.lateral * shapes.bha_axis, -shapes.frame.s)[:, None]
+    send_strips(track, "bit_frame/bha", shapes.rows["drilled_length"], strips)
+
+
+def log_bit(track: Track, shapes: Shapes) -> None:
+    """The bit: as wide as the hole at s = 0, and tapering ahead along its own axis."""
+    ahead = BIT_LENGTH * shapes.frame.stabilizer[-1]
+    across = shapes.frame.radius * np.array([-1.0, 1.0, 0.5, -0.5, -1.0])
+    along = ahead * np.array([0.0, 0.0, 1.0, 1.0, 0.0])
+    strips = points(track.scales.lateral * (across + shapes.bit_turn[:, None] * along), along)[:, None]
+    send_strips(track, "bit_frame/bit", shapes.rows["drilled_length"], strips)
+
+
+def log_tilt(track: Track, shapes: Shapes) -> None:
+    """The axis of the bit against the direction of the hole, and how far apart the tilt limit lets them be."""
+    length, reach = shapes.rows["drilled_length"], AHEAD * float(shapes.frame.stabilizer[-1])
+    limit = track.case.bit.tilt_limit
+    directions = {
+        "limits": shapes.hole_turn[:, None] + np.array([-limit, limit]),
+        "hole_axis": shapes.hole_turn[:, None],
+        "bit_axis": shapes.bit_turn[:, None],
+    }
+    ahead = np.array([0.0, reach])
+    for thing, angles in directions.items():
+        strips = points(track.scales.lateral * angles[..., None] * ahead, ahead)
+        send_strips(track, f"bit_frame/tilt/{thing}", length, strips)
+    tilts = [f"ψ {UNITS['rad'].number(tilt, '+.2f')}{UNITS['rad'].shown}" for tilt in shapes.rows["bit_tilt"]]
+    places = points(track.scales.lateral * shapes.bit_turn * reach, (1.1 - 0.2 * track.place) * reach)
+    labels = rr.Points2D.columns(positions=places, labels=tilts)
+    send(track, "bit_frame/tilt/label", length, labels)
+
+
+def log_stabilizers(track: Track, shapes: Shapes) -> None:
+    """The blades, from one side of the BHA to the other; the last stabilizer fills the hole."""
+    strips = points(track.scales.lateral * shapes.blades, -shapes.frame.stabilizer[:, None])
+    send_strips(track, "bit_frame/stabilizers", shapes.rows["drilled_length"], strips)
+
+
+def log_contacts(track: Track, shapes: Shapes) -> None:
+    """Where the wall bears a stabilizer, and its force on it: nothing where there is none."""
+    length, force = shapes.rows["drilled_length"], shapes.rows.stack("stabilizer_force")
+    for i, lateral in enumerate(shapes.contact_points.T):
+        place = points(track.scales.lateral * lateral, -shapes.frame.stabilizer[i])
+        there = np.isfinite(lateral)
+        dots = rr.Points2D.columns(positions=place[there]).partition(there)
+        send(track, f"bit_frame/contact_point/{i + 1}", length, dots)
+        send_arrows(track, f"bit_frame/contact_force/{i + 1}", length, place, force[:, i])
+
+
+def log_forces(track: Track, shapes: Shapes) -> None:
+    """The force of the steering pads on the BHA, and the side force on the bit."""
+    frame, rows = shapes.frame, shapes.rows
+    ahead = (track.place + 1.5) * BIT_LENGTH * frame.stabilizer[-1]  # where its arrow and the bit can be told apart
+    at = {"rss_force": (frame.at_rss, frame.rss), "bit_lateral_force": (0, -ahead)}
+    for force, (place, s) in at.items():
+        if force in rows.columns:
+            tip = points(track.scales.lateral * shapes.bha_axis[:, place], -s)
+            send_arrows(track, f"bit_frame/{force}", rows["drilled_length"], tip, rows[force])
+
+
+# The plots
+
+
+def curve(plot: str, scalar: str) -> str:
+    """Where a scalar is in a plot: stabilizer_force[1] is plots/stabilizer_force/stabilizer_force_1."""
+    return f"plots/{plot}/{scalar.replace('[', '_').rstrip(']')}"
+
+
+def log_plots(track: Track, shapes: Shapes) -> None:
+    """The curves of all plots that there is something for."""
+    rows = shapes.rows
+    for name, plot in PLOTS.items():
+        for scalar in plot.names(rows.n):
+            if scalar in rows.columns:
+                send_curve(track, curve(name, scalar), rows["drilled_length"], plot.unit.factor * rows[scalar])
+
+
+def log_tilt_limits(track: Track, shapes: Shapes) -> None:
+    """±ψ*, from the first row to the last."""
+    ends, limit = shapes.rows["drilled_length"][[0, -1]], UNITS["rad"].factor * track.case.bit.tilt_limit
+    for side, sign in (("lower", -1.0), ("upper", 1.0)):
+        send_curve(track, f"plots/bit_tilt/{side}_limit", ends, np.full(2, sign * limit))
+
+
+def log_ripple(track: Track, stretch: Stretch, rippled: float) -> float:
+    """The ripple of the drilled hole, mm, from `rippled`, m, to where its trend can be told; returns where that is."""
+    width = track.scales.trend
+    hole = stretch.hole.since(max(rippled, 0.0) - (AXIS_REACH + 1.0) * width)
+    length, ripple = axis_ripple(hole.length, hole.position, width)
+    new = (length > rippled) & (length >= 0.0)
+    send_curve(track, RIPPLE, length[new], 1000 * ripple[new])
+    return float(length[-1]) if len(length) else rippled
+
+
+# The modes
+
+
+def lanes(variable: str, n: int) -> list[str]:
+    """Where the lanes of a variable of few values are: stabilizer_contact[1] is modes/stabilizer_1."""
+    if variable == "bit_tilt_saturation":
+        return ["modes/tilt"]
+    return [f"modes/stabilizer_{i}" for i, _ in enumerate(BY_NAME[variable].names(n), 1)]
+
+
+def log_modes(track: Track, stretch: Stretch, shown: dict[str, float]) -> dict[str, float]:
+    """Which stabilizer touches which wall, and whether the tilt is at its limit, where that changes.
+
+    `shown` is what each lane shows last before these rows; what it shows last after them is returned.
+    """
+    rows, last = stretch.rows, {}
+    for variable, states in LANES.items():
+        for lane, scalar in zip(lanes(variable, rows.n), BY_NAME[variable].names(rows.n), strict=True):
+            values = rows[scalar]
+            changed = np.flatnonzero(np.diff(values, prepend=shown.get(lane, np.nan)) != 0.0)
+            words = [states[int(value)][0] for value in values[changed]]
+            send(track, lane, rows["drilled_length"][changed], rr.StateChange.columns(state=words))
+            last[lane] = values[-1]
+    return last

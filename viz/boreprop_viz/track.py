@@ -1,0 +1,110 @@
+"""The way of a run into a recording: its place and colour among others, its timeline, and how things are sent.
+
+The timeline is the drilled length in whole millimetres.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import rerun as rr
+
+from boreprop.case.case import Case
+from boreprop.units import UNITS
+
+from .scales import Scales
+from .scene import Array
+from .source import Source
+from .style import BY_RUN, Colour, shade
+
+TIMELINE = "drilled_length_mm"
+
+
+@dataclass(frozen=True)
+class Track:
+    """Where in a recording a run goes, and how it looks there.
+
+    Parameters
+    ----------
+    rec
+        The recording.
+    scales
+        Those of all its runs.
+    case
+        What is drilled.
+    name, colour, place
+        Of the run beside others: what it is called, its own colour, and its number. Left out for one that is alone.
+    """
+
+    rec: rr.RecordingStream
+    scales: Scales
+    case: Case
+    name: str = ""
+    colour: Colour | None = None
+    place: int = 0
+
+    def entity(self, thing: str) -> str:
+        """The entity of a thing, named by its view and what it is; where there are others, the run's name is in it."""
+        if not self.name:
+            return thing
+        view, _, name = thing.rpartition("/")
+        return f"{view}/{rr.escape_entity_path_part('_'.join(self.name.split()))}/{name}"
+
+    @property
+    def lanes(self) -> int:
+        """How many lanes its modes take."""
+        return len(self.case.bha.stabilizer_positions)
+
+    def label(self, text: str) -> str:
+        """`text`, with the run's name where there are others."""
+        return f"{self.name}: {text}" if self.name else text
+
+    def shades(self, colours: tuple[Colour, ...]) -> tuple[Colour, ...]:
+        """`colours` for one run, shades of its own colour for one of several."""
+        if self.colour is None:
+            return colours
+        return tuple(shade(self.colour, i / (len(colours) + 1)) for i in range(len(colours)))
+
+
+def make_tracks(rec: rr.RecordingStream, scales: Scales, sources: Sequence[Source]) -> list[Track]:
+    """A track for each run."""
+    if len(sources) == 1:
+        return [Track(rec, scales, sources[0].case)]
+    return [
+        Track(rec, scales, source.case, source.name, BY_RUN[place % len(BY_RUN)], place)
+        for place, source in enumerate(sources)
+    ]
+
+
+def send(track: Track, thing: str, length: Array, columns: rr.ComponentColumnList) -> None:
+    """Components of a thing at drilled lengths; nothing where there are none, as viewers fail on that."""
+    if len(length):
+        time = rr.TimeColumn(TIMELINE, sequence=np.rint(1000 * length).astype(np.int64))
+        track.rec.send_columns(track.entity(thing), [time], columns)
+
+
+def points(x: Array | float, y: Array | float) -> Array:
+    """Points (x, y), shape (..., 2), from coordinates that broadcast."""
+    return np.stack(np.broadcast_arrays(x, y), axis=-1)
+
+
+def send_strips(track: Track, thing: str, length: Array, strips: Array) -> None:
+    """Line strips (rows, strips a row, points, 2)."""
+    rows, per_row = strips.shape[:2]
+    columns = rr.LineStrips2D.columns(strips=strips.reshape(-1, *strips.shape[2:]).astype(np.float32))
+    send(track, thing, length, columns.partition([per_row] * rows))
+
+
+def send_arrows(track: Track, thing: str, length: Array, tip: Array, force: Array) -> None:
+    """A lateral force (rows,), N, as an arrow that ends at `tip` (rows, 2), with its size; none where it is zero."""
+    there = force != 0.0
+    vectors = points(force[there] / track.scales.newtons_per_metre, 0.0)
+    unit = UNITS["N"]
+    labels = [f"{round(unit.factor * newtons, 2):.3g} {unit.shown}" for newtons in np.abs(force[there])]
+    columns = rr.Arrows2D.columns(vectors=vectors, origins=tip[there] - vectors, labels=labels)
+    send(track, thing, length, columns.partition(there))
+
+
+def send_curve(track: Track, thing: str, length: Array, values: Array) -> None:
+    """A curve of a plot, in the plot's unit."""
+    send(track, thing, length, rr.Scalars.columns(scalars=values))
