@@ -15,7 +15,7 @@ from uuid import UUID, uuid5
 
 from boreprop.case.case import Case
 from boreprop.case.file import dump_case
-from boreprop.core.propagation import RELATIVE_TOLERANCE
+from boreprop.core.options import RELATIVE_TOLERANCE
 from boreprop.core.quantities import BY_NAME
 from boreprop.errors import InputError
 from boreprop.replacing import replacing

@@ -9,9 +9,9 @@ import numpy as np
 
 from ..arrays import Floats
 from ..core.checks import check_number
-from ..core.drilling import check_inputs, check_tolerance
+from ..core.drilling import check_inputs
 from ..core.errors import ParameterError
-from ..core.propagation import RELATIVE_TOLERANCE
+from ..core.options import RELATIVE_TOLERANCE, check_tolerance
 from ..core.quantities import OUTPUTS, scalar_names
 from ..core.survey import Survey
 from ..core.system import MAX_STABILIZERS, BitRock, BottomHoleAssembly
