@@ -39,7 +39,7 @@ def at_the_bit(model: Integrator) -> dict[str, float]:
     """What a reference trajectory has columns for, where the bit is."""
     theta, Y = model.state()
     loads = model.loads()
-    mode = model.modes[model.settled(loads).contact]
+    mode = model.settled(loads)
     F_0 = mode.F_0(loads)
     psi = bit_tilt(F_0, model.eta_pi, model.scaled.psi_star)
     forces = {f"F_{i}": row(loads) for i, row in enumerate(mode.F, 1)}

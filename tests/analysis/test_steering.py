@@ -243,7 +243,10 @@ def test_no_other_mode_has_a_response(steady: Steady, F: float) -> None:
     holding = [
         line
         for line in candidates
-        if all(b.side(line.loads(F), 1e-12) == 0 for b in line.regime.bounds(steady.modes, steady.eta_pi))
+        if all(
+            bound.lower - 1e-12 <= bound.scale * bound.row(line.loads(F)) <= bound.upper + 1e-12
+            for bound in line.regime.bounds(steady.modes, steady.eta_pi)
+        )
     ]
     assert holding
     for line in holding:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from boreprop.analysis.complementarity import lcp, residual
 from boreprop.core.beam import Beam
-from boreprop.core.modes import Loads, Modes, bit_tilt
+from boreprop.core.modes import Loads, Modes, Regime, bit_tilt
 from boreprop.core.system import Scaled
 from lemke import lemke
 from systems import loads, scaled_systems
@@ -54,6 +54,23 @@ def test_fast_path_solves_the_lcp_by_its_definition(system: System) -> None:
     F_hat = 2 * (eta_pi * psi - F_0)  # (12)
     z = [max(f, 0.0) for f in F] + [max(-f, 0.0) for f in F] + [max(F_hat, 0.0), max(-F_hat, 0.0)]
     assert residual(M, q, z) <= 1e-10
+
+
+@settings(max_examples=200, deadline=None)
+@given(systems(), st.sampled_from([-1, 0, 1]))
+def test_the_regime_has_the_walls_and_the_saturation_of_the_lcp(system: System, side: int) -> None:
+    """From any regime to start from; (12): the tilt is at its limit where F̂ is not zero."""
+    scaled, at, eta_pi, guess = system
+    modes, m = Modes(scaled), len(scaled.y_star)
+    start = Regime(modes.touching(tuple(guess)), side)
+    regime = start.settle(lambda regime: (regime.bounds(modes, eta_pi), at))
+    z = lemke(*lcp(modes.beam, scaled.y_star, scaled.psi_star, eta_pi, at))
+    expected = [z[i] - z[m + i] for i in range(m)] + [z[2 * m + 1] - z[2 * m]]
+    for value, got, clearance in zip(
+        expected, (*regime.contact, regime.saturation), (*scaled.y_star, 1.0), strict=True
+    ):
+        if clearance and abs(value) > 1e-9:
+            assert got == np.sign(value)
 
 
 NO_CLEARANCE = Scaled((1.0, 2.0, 2.5, 2.875, 3.1875, 4.6875), (0.0,) * 5, 0.0, 0.0078125, 0.125, 0.03125)

@@ -5,7 +5,7 @@ from typing import Any
 from .checks import check_number
 from .errors import CannotContinue, ParameterError
 from .integrator import Integrator
-from .modes import Modes, bit_tilt, wall
+from .modes import Modes, bit_tilt, saturation, wall
 from .options import Options, Statistics
 from .survey import Survey
 from .system import BitRock, BottomHoleAssembly, eta_pi, scale
@@ -117,8 +117,7 @@ class Drilling:
         scaled = p.scaled
         theta, _ = p.state()
         loads = p.loads()
-        regime = p.settled(loads)
-        mode = p.modes[regime.contact]
+        mode = p.settled(loads)
         F, delta, F_0 = [row(loads) for row in mode.F], [row(loads) for row in mode.delta], mode.F_0(loads)
         psi = bit_tilt(F_0, p.eta_pi, scaled.psi_star)
         Theta = theta - psi
@@ -137,7 +136,7 @@ class Drilling:
         values |= {f"stabilizer_force[{i}]": f * F_star for i, f in enumerate(F, 1)}
         values |= {f"stabilizer_contact[{i}]": wall(f) for i, f in enumerate(F, 1)}
         return values | {
-            "bit_tilt_saturation": regime.saturation,
+            "bit_tilt_saturation": saturation(F_0, p.eta_pi, scaled.psi_star),
             "bit_lateral_force": F_0 * F_star,
             "bit_moment": -mode.M(loads) * F_star * l1,
             "borehole_curvature": (Theta - p.earlier_inclination(p.xi - 1.0)) / l1,

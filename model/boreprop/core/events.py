@@ -10,10 +10,10 @@ from .law import Bound, Law
 from .modes import ROUNDING, side_beyond
 from .step import Step, Trial
 
-NEAR = 0.3  # how far beyond its values at the points of a step a value may lie between them, over their range: for a
-# polynomial of the step's degree it is less
-CLOSE = 1e-12  # ℓ₁: an event is located when the places on both sides of it are this close
-MOST_TRIES = 60  # to locate one; four to eight are usual
+NEAR = 0.3  # how far beyond its values at the points of a step a value may lie between them, over their range, so that
+# a bound farther away is not searched for: a parabola lies beyond them by an eighth at most
+CLOSE = 1e-12  # ℓ₁: an event is located when the places on both sides of it are this close, or the value is rounding
+MOST_TRIES = 60  # to locate one: plain bisection would need 40
 
 
 class Event(NamedTuple):

@@ -18,20 +18,22 @@ from .events import Event, first_event
 from .hole import Drilled, Hole
 from .kinks import MERGE, SMOOTHEST_KINK, Kinks
 from .law import Law, Laws
-from .modes import ROUNDING, Loads, Modes, Regime, bit_tilt
+from .modes import ROUNDING, Loads, Mode, Modes, Regime, bit_tilt, saturation
 from .options import Options, Statistics
 from .step import Step, Trial, try_step
 from .survey import Survey
 
 LOOK_BACK = 1.0  # ℓ₁: how far behind the bit Θ may be asked for, as the curvature over the last ℓ₁ does
-SAFETY = 0.85  # of the step that the error estimate asks for, so that the next one is seldom rejected
-LARGEST_GROWTH = 8.0  # of a step over the last: one estimate of order 6 is not trusted over more
+SAFETY = 0.85  # of the step that the error estimate asks for, so that few of the next ones are rejected
+LARGEST_GROWTH = 8.0  # of a step over the last, as in RADAU5 (Hairer & Wanner, IV.8): an estimate reaches no farther
 SMALLEST_GROWTH = 0.1  # the same downwards
-SMALLEST_ERROR = 1e-12  # an estimate below says no more than that the step may grow
-STRETCH = 1.3  # how much longer than planned a step may be if it then ends on the next kink: within what SAFETY leaves
+SMALLEST_ERROR = 1e-12  # keeps the growth finite, far above its limit
+STRETCH = 1.3  # how much longer than planned a step may be if it then ends on the next kink: one long step that may be
+# rejected is tried before two short ones
 LARGEST_INCLINATION = 2 * pi  # beyond a full turn nothing is drilled
-CLOSER = 8.0  # how much shorter a step is tried where each regime meets a bound before its first point,
-MOST_SLACK = 1e-6  # while a value may lie so much farther beyond its bound at the points, at last by this
+CLOSER = 8.0  # how much shorter a step is tried where each regime meets a bound before its first point (2 to 64 serve
+# as well), while a value may lie so much farther beyond its bound at the points,
+MOST_SLACK = 1e-6  # at last by this: what needs more is no touch that rounding hides
 ORIGIN_LIMIT = 8.0  # |Y| beyond which the origin of Y is moved to the bit: what is lost by rounding stays below 1e-15
 
 
@@ -100,7 +102,7 @@ class Integrator:
         self.regime = modes.free()
         self.path = (0.0, 0.0)  # ∫ sin Θ dξ, ∫ cos Θ dξ up to the start of the present step
         self.origin = 0.0  # of Y
-        self.statistics = Statistics()
+        self._accepted = self._rejected = self._events = 0
         self.kinks = Kinks(self.scaled.s)
         for kink, jump in self.hole.kinks:
             self.kinks.add_images(kink, 2, jump)
@@ -186,8 +188,7 @@ class Integrator:
         return self._inclination(theta, self._loads(xi, theta, hole.Y(xi), drilled.F_rss), drilled.eta_pi)
 
     def _inclination(self, theta: float, loads: Loads, eta_pi: float) -> float:
-        mode = self.modes.settle(loads, self.regime.contact)
-        return theta - bit_tilt(mode.F_0(loads), eta_pi, self.scaled.psi_star)
+        return theta - bit_tilt(self.settled(loads).F_0(loads), eta_pi, self.scaled.psi_star)
 
     def loads(self) -> Loads:
         """What bends the beam where the bit is."""
@@ -198,10 +199,14 @@ class Integrator:
         e = [Y - Y_i - s_i * theta for Y_i, s_i in zip(delayed, self.scaled.s)]
         return Loads(e, F_rss, sin(Y - delayed[0]))
 
-    def settled(self, loads: Loads) -> Regime:
-        """The regime that holds under `loads` and the present ηΠ."""
-        start = Regime(self.modes.touching(self.regime.contact), 0)
-        return start.settle(lambda regime: (regime.bounds(self.modes, self.eta_pi), loads))
+    def settled(self, loads: Loads) -> Mode:
+        """The mode whose contacts hold under `loads`."""
+        return self.modes.settle(loads, self.regime.contact)
+
+    @property
+    def statistics(self) -> Statistics:
+        """What the integrator has done since the start of the run."""
+        return Statistics(self._accepted, self._rejected, self._events)
 
     def position(self) -> tuple[float, float]:
         """Position of the bit in the vertical plane, sideways and down, from the start of the run."""
@@ -228,14 +233,15 @@ class Integrator:
     def restore(self, state: dict[str, Any]) -> None:
         """Go back to a state from `save`, also after a journey through JSON."""
         self.xi, self.origin = state["xi"], state["origin"]
-        contact, saturation = state["regime"]
-        self.regime, self.path = Regime(tuple(contact), saturation), (state["path"][0], state["path"][1])
-        self.statistics = Statistics(*state["statistics"])
+        self.path = (state["path"][0], state["path"][1])
+        self._accepted, self._rejected, self._events = state["statistics"]
         self.kinks.restore(state["kinks"])
         xi, h, theta, Y, *rest = state["step"]
         self.present = Step(xi, h, tuple(theta), tuple(Y), *rest)
         self.hole.restore(state["hole"])
         self._take_over(state["F_rss"], state["eta_pi"])
+        contact, side = state["regime"]
+        self._enter(Regime(tuple(contact), side))
 
     # stepping
 
@@ -247,15 +253,16 @@ class Integrator:
         """Find the regime under new inputs and mark the jump of the inclination, which was Θ, that they make."""
         self._take_over(self.F_rss, self.eta_pi)
         loads = self.loads()
-        self.regime = self.settled(loads)
-        F_0 = self.modes[self.regime.contact].F_0(loads)
-        jump = abs(self.present.theta[0] - bit_tilt(F_0, self.eta_pi, self.scaled.psi_star) - Theta)
+        mode, psi_star = self.settled(loads), self.scaled.psi_star
+        F_0 = mode.F_0(loads)
+        jump = abs(self.present.theta[0] - bit_tilt(F_0, self.eta_pi, psi_star) - Theta)
         if not (isfinite(jump) and isfinite(F_0)):
             raise self._failure("not finite", self.xi)
+        self._enter(Regime(mode.contact, saturation(F_0, self.eta_pi, psi_star)))
         self.kinks.add_images(self.xi, 1, jump)
 
-    def _law(self) -> Law:
-        return self._laws[self.regime]
+    def _enter(self, regime: Regime) -> None:
+        self.regime, self._law = regime, self._laws[regime]
 
     def _move_path(self, xi: float) -> None:
         x, z = self.present.displacement(xi)
@@ -272,8 +279,8 @@ class Integrator:
         self.hole.forget(last.end - LOOK_BACK - self.scaled.s[-1])
         kink = self.kinks.kink_here(last.end, self.options.shortest_step(last.end))
         if last.event is not None:
-            self.regime = self.regime.switch(last.event, last.side)
-            self.statistics = self.statistics._replace(events=self.statistics.events + 1)
+            self._enter(self.regime.switch(last.event, last.side))
+            self._events += 1
             kink = 2
         return theta, Y, kink
 
@@ -283,23 +290,24 @@ class Integrator:
         theta, Y, kink = self._leave(last)
         plan = self._plan(last, kink)
         trial, event = self._first_that_holds(plan, xi, theta, Y)
-        h, step = trial.step.h, trial.step
-        if event:
-            step = step._replace(end=event.xi, event=event.part, side=event.side)
-        grown = h * min(growth(trial.error), LARGEST_GROWTH)
-        self.present = step = step._replace(next_h=max(plan.resumed, grown) if h < plan.resumed else grown)
+        _, h, thetas, Ys, end, *_ = trial.step
+        next_h = h * min(growth(trial.error), LARGEST_GROWTH)
+        if h < plan.resumed:
+            next_h = max(next_h, plan.resumed)
+        end, part, side = event or (end, None, 0)
+        self.present = step = Step(xi, h, thetas, Ys, end, part, side, next_h)
         if not abs(step.state(step.end)[0]) <= LARGEST_INCLINATION:
             raise self._failure("turns over", step.end)
         self.hole.append(xi, h, step.Y, Drilled(step.theta, self.F_rss, self.eta_pi))
         if kink is not None:
             self.kinks.add_images(xi, kink, abs(step.derivative(kink, xi) - last.derivative(kink, xi)))
-        self.statistics = self.statistics._replace(accepted=self.statistics.accepted + 1)
+        self._accepted += 1
 
     def _plan(self, last: Step, kink: int | None) -> Plan:
         """What the last step leaves for the next; after a kink a step no longer than the layer in which θ settles."""
         plan = Plan(last.next_h, last.next_h)
         if (kink is not None and kink <= SMOOTHEST_KINK) or last.end == last.xi:
-            plan.h = min(plan.h, self.options.layers * self._law().relaxation)
+            plan.h = min(plan.h, self.options.layers * self._law.relaxation)
             if last.event is not None:
                 plan.resumed = plan.h
         return plan
@@ -315,7 +323,7 @@ class Integrator:
         """
         shortest = self.options.shortest_step(xi)
         while True:
-            law = self._law()
+            law = self._law
             h = self._length(law, plan, xi)
             if h < shortest:
                 raise self._failure("too short", xi)
@@ -324,13 +332,13 @@ class Integrator:
                 raise self._failure("not finite", xi)
             if trial.error > 1.0:
                 plan.shorten(h * max(growth(trial.error), SMALLEST_GROWTH))
-                self.statistics = self.statistics._replace(rejected=self.statistics.rejected + 1)
+                self._rejected += 1
                 continue
             event = first_event(law, self.hole, trial, plan.slack)
             if event is None or event.xi - xi >= shortest:
                 return trial, event
             if plan.switches < 2 * len(law.bounds):
-                self.regime = self.regime.switch(event.part, event.side)
+                self._enter(self.regime.switch(event.part, event.side))
                 plan.switches += 1
                 continue
             plan.look_closer(max(h / CLOSER, shortest))

@@ -6,7 +6,6 @@ with M and F_0 from the beam in the hole it drilled, e_i = Y(ξ) − Y(ξ−s_i)
 touch which wall, tilt saturated or not) only sin⟨Θ⟩_1 is not linear.
 """
 
-from math import cos, sin
 from typing import NamedTuple
 
 from .linear import dot, ratio, total
@@ -71,18 +70,15 @@ class Sine(NamedTuple):
     value: float
     slope: float
 
-    @classmethod
-    def about(cls, average: float) -> "Sine":
-        """The sine and its slope at `average`."""
-        return cls(average, sin(average), cos(average))
-
     def linear(self, averages: list[float]) -> list[float]:
         """Its linear part at values of ⟨Θ⟩_1."""
-        return [self.value + self.slope * (average - self.average) for average in averages]
+        at, value, slope = self
+        return [value + slope * (average - at) for average in averages]
 
     def largest_error(self, averages: list[float]) -> float:
         """A bound on the rest: |sin(a + d) − sin a − d cos a| <= d²/2."""
-        far = max(max(averages) - self.average, self.average - min(averages))
+        at = self.average
+        far = max(max(averages) - at, at - min(averages))
         return far * far / 2
 
 

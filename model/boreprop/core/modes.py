@@ -66,10 +66,6 @@ class Bound(NamedTuple):
     lower: float
     upper: float
 
-    def side(self, loads: Loads, slack: float) -> int:
-        """The side on which the loads are beyond it, as `side_beyond`."""
-        return side_beyond(self.scale * self.row(loads), self.lower, self.upper, slack)
-
 
 class Mode:
     """The beam with a known contact at each non-ideal stabilizer: 1 lower wall, −1 upper wall, 0 free.
@@ -121,6 +117,8 @@ class Modes:
 
     def touching(self, contact: Contact) -> Contact:
         """`contact`, with the stabilizers that have no clearance touching."""
+        if all(self.scaled.y_star):
+            return contact
         return tuple(c if y else 1 for c, y in zip(contact, self.scaled.y_star, strict=True))
 
     def free(self) -> "Regime":
@@ -169,10 +167,10 @@ class Regime(NamedTuple):
         regime, slack, pivots = self, ROUNDING, 0
         while True:
             bounds, loads = problem(regime)
-            for bound in bounds:
-                side = bound.side(loads, slack)
+            for part, row, scale, lower, upper in bounds:
+                side = side_beyond(scale * row(loads), lower, upper, slack)
                 if side:
-                    regime = regime.switch(bound.part, side)
+                    regime = regime.switch(part, side)
                     break
             else:
                 return regime
@@ -194,3 +192,8 @@ def wall(F: float) -> int:
 def bit_tilt(F_0: float, eta_pi: float, psi_star: float) -> float:
     """ψ = clip(F_0/(ηΠ), −ψ*, ψ*), eqs. (10) and (11)."""
     return min(max(F_0 / eta_pi, -psi_star), psi_star)
+
+
+def saturation(F_0: float, eta_pi: float, psi_star: float) -> int:
+    """1 where ψ is at its limit ψ*, −1 at −ψ*, 0 between, eq. (11)."""
+    return side_beyond(F_0 / eta_pi, -psi_star, psi_star)

@@ -76,7 +76,8 @@ def try_step(law: Law, hole: Hole, xi: float, h: float, theta: float, Y: float, 
     the right-hand side and the solve is repeated.
     """
     delayed = [hole.look_up(xi - s_i, h, radau.POINTS) for s_i in law.s]
-    sine = Sine.about(Y - delayed[0][0])
+    average = Y - delayed[0][0]
+    sine = Sine(average, sin(average), cos(average))
     J = law.jacobian(sine)
     frozen = sine.linear([Y - Y_1 for Y_1 in delayed[0]])
     allowed = REST * options.relative_tolerance * (abs(law.theta_rate.theta) + 1 / h)
