@@ -103,7 +103,7 @@ class Drilling:
         self.drilled_length = drilled_length
 
     def step(self) -> None:
-        """Drill on by one of the integrator's own steps, under the inputs as they are; errors as in `advance`."""
+        """Drill on to the end of the integrator's next step, under the inputs as they are; errors as in `advance`."""
         self.drilled_length = self.integrator.step().end * self._length
 
     @property

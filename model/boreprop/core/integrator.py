@@ -98,7 +98,6 @@ class Integrator:
         self.length_scale, self.options = length_scale, options
         self.hole = Hole(survey, length_scale, self.scaled.s[-1] + LOOK_BACK)
         self.xi = 0.0
-        self.F_rss, self.eta_pi = F_rss, eta_pi
         self.regime = modes.free()
         self.path = (0.0, 0.0)  # ∫ sin Θ dξ, ∫ cos Θ dξ up to the start of the present step
         self.origin = 0.0  # of Y
@@ -107,12 +106,15 @@ class Integrator:
         for kink, jump in self.hole.kinks:
             self.kinks.add_images(kink, 2, jump)
         self.present = Step.standstill(0.0, self.hole.final_inclination, 0.0)  # the step that the bit is in
-        self._restart(self.hole.final_inclination)
+        self._restart(F_rss, eta_pi, self.hole.final_inclination)
 
     # moving
 
     def drill(self, xi: float, F_rss: float, eta_pi: float) -> None:
-        """Drill on to `xi` under inputs that act from where the bit is; `CannotContinue` if that fails."""
+        """Drill on to `xi` under inputs that act from where the bit is.
+
+        Raises `CannotContinue` if that fails; then nothing has changed.
+        """
         changed = (F_rss, eta_pi) != (self.F_rss, self.eta_pi)
         if changed or xi > self.present.end:
             with self._all_or_nothing():
@@ -130,7 +132,7 @@ class Integrator:
         self.drill(self.xi, F_rss, eta_pi)
 
     def step(self) -> Step:
-        """Drill on by one of the integrator's own steps, which is returned, to its end, see `drill`."""
+        """Drill on to the end of the integrator's next step, and return that step; errors as in `drill`."""
         with self._all_or_nothing():
             self._take_step()
         self.xi = self.present.end
@@ -160,10 +162,9 @@ class Integrator:
 
     def _steer(self, F_rss: float, eta_pi: float) -> None:
         before = self.inclination()
-        self.F_rss, self.eta_pi = F_rss, eta_pi
         self._move_path(self.xi)
         self.present = Step.standstill(self.xi, *self.present.state(self.xi))
-        self._restart(before)
+        self._restart(F_rss, eta_pi, before)
 
     # looking
 
@@ -249,9 +250,9 @@ class Integrator:
         self.F_rss, self.eta_pi = F_rss, eta_pi
         self._laws = Laws(self.modes, F_rss, eta_pi)
 
-    def _restart(self, Theta: float) -> None:
+    def _restart(self, F_rss: float, eta_pi: float, Theta: float) -> None:
         """Find the regime under new inputs and mark the jump of the inclination, which was Θ, that they make."""
-        self._take_over(self.F_rss, self.eta_pi)
+        self._take_over(F_rss, eta_pi)
         loads = self.loads()
         mode, psi_star = self.settled(loads), self.scaled.psi_star
         F_0 = mode.F_0(loads)
