@@ -27,7 +27,7 @@ LOOK_BACK = 1.0  # ℓ₁: how far behind the bit Θ may be asked for, as the cu
 SAFETY = 0.85  # of the step that the error estimate asks for, so that few of the next ones are rejected
 LARGEST_GROWTH = 8.0  # of a step over the last, as in RADAU5 (Hairer & Wanner, IV.8): an estimate reaches no farther
 SMALLEST_GROWTH = 0.1  # the same downwards
-SMALLEST_ERROR = 1e-12  # keeps the growth finite, far above its limit
+LEAST_ERROR = 1e-12  # keeps the growth finite, far above its limit
 STRETCH = 1.3  # how much longer than planned a step may be if it then ends on the next kink: one long step that may be
 # rejected is tried before two short ones
 LARGEST_INCLINATION = 2 * pi  # beyond a full turn nothing is drilled
@@ -242,7 +242,7 @@ class Integrator:
         self.hole.restore(state["hole"])
         self._take_over(state["F_rss"], state["eta_pi"])
         contact, side = state["regime"]
-        self._enter(Regime(tuple(contact), side))
+        self._change_regime(Regime(tuple(contact), side))
 
     # stepping
 
@@ -259,10 +259,10 @@ class Integrator:
         jump = abs(self.present.theta[0] - bit_tilt(F_0, self.eta_pi, psi_star) - Theta)
         if not (isfinite(jump) and isfinite(F_0)):
             raise self._failure("not finite", self.xi)
-        self._enter(Regime(mode.contact, saturation(F_0, self.eta_pi, psi_star)))
+        self._change_regime(Regime(mode.contact, saturation(F_0, self.eta_pi, psi_star)))
         self.kinks.add_images(self.xi, 1, jump)
 
-    def _enter(self, regime: Regime) -> None:
+    def _change_regime(self, regime: Regime) -> None:
         self.regime, self._law = regime, self._laws[regime]
 
     def _move_path(self, xi: float) -> None:
@@ -280,17 +280,17 @@ class Integrator:
         self.hole.forget(last.end - LOOK_BACK - self.scaled.s[-1])
         kink = self.kinks.kink_here(last.end, self.options.shortest_step(last.end))
         if last.event is not None:
-            self._enter(self.regime.switch(last.event, last.side))
+            self._change_regime(self.regime.switch(last.event, last.side))
             self._events += 1
-            kink = 2
+            kink = 2  # over a bound Y' is continuous, Y'' is not
         return theta, Y, kink
 
     def _take_step(self) -> None:
         """Append one step at the end of the last one."""
         last, xi = self.present, self.present.end
         theta, Y, kink = self._leave(last)
-        plan = self._plan(last, kink)
-        trial, event = self._first_that_holds(plan, xi, theta, Y)
+        plan = self._first_plan(last, kink)
+        trial, event = self._find_step(plan, xi, theta, Y)
         _, h, thetas, Ys, end, *_ = trial.step
         next_h = h * min(growth(trial.error), LARGEST_GROWTH)
         if h < plan.resumed:
@@ -304,7 +304,7 @@ class Integrator:
             self.kinks.add_images(xi, kink, abs(step.derivative(kink, xi) - last.derivative(kink, xi)))
         self._accepted += 1
 
-    def _plan(self, last: Step, kink: int | None) -> Plan:
+    def _first_plan(self, last: Step, kink: int | None) -> Plan:
         """What the last step leaves for the next; after a kink a step no longer than the layer in which θ settles."""
         plan = Plan(last.next_h, last.next_h)
         if (kink is not None and kink <= SMOOTHEST_KINK) or last.end == last.xi:
@@ -313,7 +313,7 @@ class Integrator:
                 plan.resumed = plan.h
         return plan
 
-    def _first_that_holds(self, plan: Plan, xi: float, theta: float, Y: float) -> tuple[Trial, Event | None]:
+    def _find_step(self, plan: Plan, xi: float, theta: float, Y: float) -> tuple[Trial, Event | None]:
         """The first trial of a step whose error is tolerable and whose regime holds beyond its start; its first event.
 
         A bound that is met where the step starts switches the regime there. By the rates exactly one regime holds, but
@@ -325,7 +325,7 @@ class Integrator:
         shortest = self.options.shortest_step(xi)
         while True:
             law = self._law
-            h = self._length(law, plan, xi)
+            h = self._choose_length(law, plan, xi)
             if h < shortest:
                 raise self._failure("too short", xi)
             trial = try_step(law, self.hole, xi, h, theta, Y, self.options)
@@ -339,14 +339,14 @@ class Integrator:
             if event is None or event.xi - xi >= shortest:
                 return trial, event
             if plan.switches < 2 * len(law.bounds):
-                self._enter(self.regime.switch(event.part, event.side))
+                self._change_regime(self.regime.switch(event.part, event.side))
                 plan.switches += 1
                 continue
             plan.look_closer(max(h / CLOSER, shortest))
             if plan.slack >= MOST_SLACK:
                 raise self._failure("no mode", xi)
 
-    def _length(self, law: Law, plan: Plan, xi: float) -> float:
+    def _choose_length(self, law: Law, plan: Plan, xi: float) -> float:
         """Length of the next trial: as planned, but no kink lies within it, and none is left a short step ahead."""
         largest = self.options.largest_step
         h = min(plan.h, largest)
@@ -361,5 +361,5 @@ class Integrator:
 
 def growth(error: float) -> float:
     """How much longer than a trial with this error, over the tolerance, the next one may be."""
-    grown: float = max(error, SMALLEST_ERROR) ** (-1 / (radau.S + 1))
+    grown: float = max(error, LEAST_ERROR) ** (-1 / (radau.S + 1))
     return SAFETY * grown
