@@ -3,6 +3,7 @@
 from reprlib import Repr
 
 from .core.errors import BorepropError as BorepropError
+from .core.errors import CannotContinue as CannotContinue
 from .core.errors import ParameterError as ParameterError
 from .core.errors import TableError as TableError
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from boreprop.core.propagation import Propagation
 from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 
@@ -21,7 +22,6 @@ from boreprop.case.parameters import parameters
 from boreprop.core import propagation
 from boreprop.core.drilling import Drilling
 from boreprop.core.errors import ParameterError
-from boreprop.core.propagation import Propagation
 from boreprop.core.quantities import scalar_names
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly, Scaled

@@ -1,6 +1,7 @@
 """The commands `boreprop roots` and `boreprop stability`."""
 
 import json
+from dataclasses import replace
 from math import radians
 from pathlib import Path
 from typing import Annotated
@@ -10,7 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from ..analysis.stability.chart import stability_chart, usual_grid
-from ..analysis.stability.contacts import all_contacts, charted, contacts_met, held
+from ..analysis.stability.contacts import all_contacts, charted, contacts_met, steady_mode
 from ..analysis.stability.roots import Roots, critical_eta_pi, find_roots, parse_contact
 from ..case.case import Case
 from ..case.file import load_case
@@ -88,7 +89,7 @@ def _print_modes(case: Case, found: list[Roots], eta_pi: float, inclination: flo
     weight, forces = _weight(case, eta_pi), case.schedule.rss_force
     title = tables.modes_title(eta_pi, weight, inclination)
     table = Table(*tables.MODE_HEADINGS, title=title, caption=tables.NOT_MET)
-    here = held(case.bha, case.bit, weight, forces[0], inclination)
+    here = steady_mode(replace(case, active_weight_on_bit=weight), forces[0], inclination)
     met = contacts_met(case.bha, case.bit, inclination, forces)
     for roots in found:
         table.add_row(*tables.mode_line(roots, case.length_scale, here, met))
@@ -114,7 +115,7 @@ def stability(
     up = parse_range("--lambda2", lambda2) if lambda2 else None
     case = load_case(case_file)
     bha, bit, inclination, forces = case.bha, case.bit, case.survey.inclination[-1], case.schedule.rss_force
-    here, _ = held(bha, bit, case.active_weight_on_bit, forces[0], inclination)
+    here, _ = steady_mode(case, forces[0], inclination)
     contacts = charted(bha, bit, inclination, forces, here)
     limits = {contact: critical_eta_pi(bha, bit, contact=contact, inclination=inclination) for contact in contacts}
     largest = max(limit.eta_pi if limit else 0.0 for limit in limits.values())
