@@ -276,7 +276,7 @@ def test_numbers_that_are_no_state_are_refused_and_change_nothing(case: Case, da
     good = run.save()
     bad = good.copy()
     where = data.draw(st.integers(0, len(bad) - 1))
-    bad[where] = data.draw(st.sampled_from([np.nan, np.inf, -np.inf])) if where != 17 else -1.0
+    bad[where] = data.draw(st.sampled_from([np.nan, np.inf, -np.inf])) if where else -1.0
     for state in (bad, good[:-1], np.append(good, 0.0), good[:3], good[:0]):
         with pytest.raises(ParameterError, match=r"^state: must be one of this system, got "):
             run.restore(state)

@@ -25,7 +25,7 @@ class KernelError(RuntimeError):
 
 
 class System(ctypes.Structure):
-    """The parameters of the table of variables, as in assembly.h."""
+    """The parameters of the table of variables, as in system.h."""
 
     _fields_ = (
         ("n", ctypes.c_int),
