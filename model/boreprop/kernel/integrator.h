@@ -170,6 +170,13 @@ static inline void try_step(
     law_try(law, p->tolerance, x, trial);
 }
 
+/* Whether numbers have run away in a trial step. */
+static inline int is_finite(const Trial *trial) {
+    for (int c = 0; c < COMPONENTS; c++)
+        if (!isfinite(trial->step.x[c][S])) return 0;
+    return isfinite(trial->error);
+}
+
 /* How much longer than a step with this error the next one may be: the error of a step is of order S + 1. */
 static inline double growth(double error) { return SAFETY * pow(larger(error, LEAST_ERROR), -1.0 / (S + 1)); }
 
@@ -191,7 +198,7 @@ static inline Status find_step(
         if (plan->h < shortest)
             return failed_at_tolerance(p, "the steps of the integrator become too short", xi, "raise", why);
         try_step(p, law, xi, plan->h, x, trial);
-        if (!isfinite(trial->error) || !isfinite(step->x[COMPONENTS - 1][S])) return not_finite(p, xi, why);
+        if (!is_finite(trial)) return not_finite(p, xi, why);
         if (trial->error > 1.0) {
             plan->planned = plan->resumed = plan->h * larger(growth(trial->error), LEAST_GROWTH);
             plan->stretch = 1.0;

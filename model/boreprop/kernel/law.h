@@ -194,13 +194,28 @@ static inline void law_try(const Law *law, double tolerance, const double x[COMP
     trial->error = larger(THETA_WEIGHT * fabs(error_theta), fabs(error_Y)) / tolerance;
 }
 
+#define SMALL_TURN 0.05 /* rad: the series below are exact to the last digit up to here */
+
+/* Sine and cosine of an angle and a little more, `turn`, from those of the angle. */
+static inline void turn_by(double turn, double sine, double cosine, double *new_sine, double *new_cosine) {
+    double square = turn * turn;
+    double s = turn * (1 - square / 6 * (1 - square / 20 * (1 - square / 42)));
+    double c = 1 - square / 2 * (1 - square / 12 * (1 - square / 30));
+    *new_sine = sine * c + cosine * s, *new_cosine = cosine * c - sine * s;
+}
+
 /* ∫ sin Θ dξ and ∫ cos Θ dξ from the start of the step to `xi`, by Gauss's three points. */
 static inline void displacement(const Step *step, double xi, double *x, double *z) {
     double nodes[3] = {0.5 - sqrt(0.15), 0.5, 0.5 + sqrt(0.15)}, weights[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
-    double length = xi - step->xi, sideways = 0.0, down = 0.0;
+    double length = xi - step->xi, sideways = 0.0, down = 0.0, Theta[3];
+    for (int k = 0; k < 3; k++)
+        Theta[k] = polynomial_slope(step->x[LATERAL], nodes[k] * length / step->h) / step->h;
+    double sine = sin(Theta[1]), cosine = cos(Theta[1]);
     for (int k = 0; k < 3; k++) {
-        double Theta = polynomial_slope(step->x[LATERAL], nodes[k] * length / step->h) / step->h;
-        sideways += weights[k] * sin(Theta), down += weights[k] * cos(Theta);
+        double turn = Theta[k] - Theta[1], node_sine, node_cosine;
+        if (fabs(turn) <= SMALL_TURN) turn_by(turn, sine, cosine, &node_sine, &node_cosine);
+        else node_sine = sin(Theta[k]), node_cosine = cos(Theta[k]);
+        sideways += weights[k] * node_sine, down += weights[k] * node_cosine;
     }
     *x = sideways * length, *z = down * length;
 }

@@ -1,4 +1,4 @@
-/* The numbers of the Radau collocation in radau.h. Generated from core/radau.py by `python -m boreprop.kernel.generate`:
+/* The numbers of the Radau collocation in radau.h, generated from core/radau.py by python -m boreprop.kernel.generate:
    change them there. The tables lie column by column, so that a loop over points or parts is one over neighbours. */
 #ifndef BOREPROP_RADAU_TABLES_H
 #define BOREPROP_RADAU_TABLES_H
