@@ -59,10 +59,7 @@ def test_outputs_follow_at_once_the_inputs_that_the_table_names_and_no_others(
 ) -> None:
     straight = Survey((0.0,), (0.1,))
     inputs = {"rss_force": 1e3, "active_weight_on_bit": 1e5}  # the bit tilt is free, with the others at its limit
-    before, after = (
-        Drilling(case.bha, case.bit, straight, **inputs | other).outputs()
-        for other in (small, large)
-    )
+    before, after = (Drilling(case.bha, case.bit, straight, **inputs | other).outputs() for other in (small, large))
     changed = {scalar.partition("[")[0] for scalar, value in after.items() if value != before[scalar]}
     assert changed == {quantity.name for quantity in OUTPUTS if name in quantity.follows}
 

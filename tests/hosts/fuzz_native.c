@@ -185,7 +185,7 @@ static int is_too_far(const Component *c, double time, double size) {
     if (!c->run) return 0;
     double from = larger(c->from, c->run->drilling.drilled_length), rate = c->value[RATE_OF_PENETRATION];
     double to = larger(from, from + rate * (time + size - c->since)) / c->value[STABILIZER_POSITION];
-    return to - c->run->drilling.propagation.now.step.end > 4 * FARTHEST;
+    return to - c->run->drilling.integrator.now.step.end > 4 * FARTHEST;
 }
 
 static fmi2Status go(fmi2Component c, double size) {

@@ -3,9 +3,9 @@
 #define BOREPROP_INSTANCE_H
 
 #include "fmi2Functions.h"
-#include "growing.h"
-#include "state.h"
-#include "survey.h"
+#include "run.h"
+#include "serialized.h"
+#include "survey_file.h"
 
 typedef enum { INPUT, OUTPUT, PARAMETER } Role;
 typedef enum { REAL, INTEGER, BOOLEAN, STRING } Kind;
@@ -156,7 +156,7 @@ static int drill_on(Component *c, double to, const double end[INPUTS], char why[
     int stairs = to > from ? (int)ceil(MOST_STAIRS * (fabs(rise) / larger(weight, weight + rise))) : 1;
     int stair = 0, done = 1;
     Count size = drilling_state_size(drilling);
-    double *before = NULL, accepted = drilling->propagation.now.accepted;
+    double *before = NULL, accepted = drilling->integrator.now.accepted;
     if (!check_finite("rss_force_slope", slope, why)) return 0;
     if (stairs > 1) {
         before = malloc((size_t)size * sizeof *before);
@@ -168,7 +168,7 @@ static int drill_on(Component *c, double to, const double end[INPUTS], char why[
         Inputs inputs = {force + slope * (at - from), slope, weight + rise * (stair + 0.5) / stairs};
         double next = stair + 1 < stairs ? from + (to - from) * (stair + 1) / stairs : to;
         done = run_advance(c->run, next, inputs, why) == DONE;
-        if (done && drilling->propagation.now.accepted - accepted > (double)MOST_STEPS)
+        if (done && drilling->integrator.now.accepted - accepted > (double)MOST_STEPS)
             done = too_long(why) == DONE;
     }
     if (!done && before) drilling_return(drilling, before);

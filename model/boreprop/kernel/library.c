@@ -1,5 +1,5 @@
 /* The kernel as a shared library, for the binding in Python. */
-#include "growing.h"
+#include "run.h"
 
 #ifdef _WIN32
 #define EXPORT __declspec(dllexport)
@@ -54,7 +54,7 @@ EXPORT double boreprop_length(const Run *run) { return drilling_length(&run->dri
 /* The integrator's own present step: ξ, h, where it ends, the part whose bound it meets there (−1: none), on which
    side; and how many steps were accepted and rejected, and how many bounds met. */
 EXPORT void boreprop_step(const Run *run, double numbers[8]) {
-    const State *now = &run->drilling.propagation.now;
+    const State *now = &run->drilling.integrator.now;
     const Step *step = &now->step;
     double all[] = {step->xi,   step->h,       step->end,     step->event,
                     step->side, now->accepted, now->rejected, now->events};

@@ -1,11 +1,11 @@
 /* The serialized state of an instance: a line "FORMAT GUID SIZE CHECKSUM", then the body: doubles, each as eight bytes,
    least significant first, whatever the machine, and text at its end. */
-#ifndef BOREPROP_STATE_H
-#define BOREPROP_STATE_H
+#ifndef BOREPROP_SERIALIZED_H
+#define BOREPROP_SERIALIZED_H
 
 #include "text.h"
 
-#define STATE_FORMAT "boreprop-native-fmu-state-2"
+#define STATE_FORMAT "boreprop-native-fmu-state-3"
 enum { SEAL = sizeof STATE_FORMAT + 71 }; /* bytes of the line: all but the format are of fixed width */
 
 /* A body. */

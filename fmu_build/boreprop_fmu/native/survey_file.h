@@ -1,8 +1,8 @@
 /* Surveys from CSV files: columns measured_depth (m) and inclination_deg, by name; others are ignored. */
-#ifndef BOREPROP_SURVEY_H
-#define BOREPROP_SURVEY_H
+#ifndef BOREPROP_SURVEY_FILE_H
+#define BOREPROP_SURVEY_FILE_H
 
-#include "hole.h"
+#include "survey.h"
 #include "text.h"
 #include <errno.h>
 
