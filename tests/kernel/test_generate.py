@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from boreprop.case.case import Case
+from boreprop.case.parameters import parameters
 from boreprop.core.checks import check_number
 from boreprop.core.errors import ParameterError
 from boreprop.core.quantities import OUTPUTS, Quantity, scalar_names
@@ -49,15 +51,16 @@ def test_a_library_for_another_table_is_refused(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("kernel")
 @pytest.mark.parametrize("quantity", SYSTEM, ids=lambda quantity: quantity.name)
-def test_c_refuses_what_python_refuses_in_the_same_words(quantity: Quantity) -> None:
-    good = dict(zip(scalar_names(SYSTEM, 2), [3.0, 6.0, 1e-3, 0.5, 1e3, 7e6, 10.0, 1.0, 0.03, 1e-7], strict=True))
+def test_c_refuses_what_python_refuses_in_the_same_words(case: Case, quantity: Quantity) -> None:
+    given = parameters(case) | {"relative_tolerance": 1e-7}
     name = quantity.names(2)[-1]
     bounds = {"above": quantity.above, "at_least": quantity.at_least, "at_most": quantity.at_most}
     outside = [quantity.above, quantity.at_least - 1e-9, quantity.at_most + 1e-9]
     for value in (inf, *filter(isfinite, outside)):
         why = ctypes.create_string_buffer(binding.MESSAGE)
-        parameters, survey = np.array(list((good | {name: value}).values())), np.zeros(1)
-        assert not binding.library().boreprop_start(2, parameters, 1, survey, survey, binding.Inputs(0, 0, 1e3), why)
+        values = np.array([(given | {name: value})[scalar] for scalar in scalar_names(SYSTEM, 2)])
+        inputs = binding.Inputs(rss_force=0.0, active_weight_on_bit=1e3)
+        assert not binding.library().boreprop_start(2, values, 1, np.zeros(1), np.zeros(1), inputs, why)
         with pytest.raises(ParameterError) as refused:
             check_number(name, float(value), **bounds)
         assert why.value.decode() == str(refused.value)

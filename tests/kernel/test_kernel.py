@@ -21,13 +21,17 @@ from hypothesis import strategies as st
 
 from boreprop.case.case import Case, Schedule
 from boreprop.case.file import load_case
+from boreprop.case.paper import paper_case
+from boreprop.case.parameters import parameters
 from boreprop.core.drilling import Drilling
 from boreprop.core.errors import ParameterError
+from boreprop.core.quantities import scalar_names
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly, Scaled
 from boreprop.errors import Stopped
 from boreprop.kernel import binding
 from boreprop.kernel.binding import NativeDrilling
+from boreprop.kernel.generate import SYSTEM
 from boreprop.run.results import read_trajectory
 from boreprop.run.simulate import simulate
 from conftest import Command
@@ -235,10 +239,10 @@ def test_numbers_that_are_no_state_are_refused_and_change_nothing(case: Case, da
 
 @given(st.floats(max_value=-1e-300, allow_infinity=False))
 def test_a_number_in_a_message_reads_back_as_the_same(value: float) -> None:
-    parameters = np.array([1.0, 0.0, 0.0, value, 1.0, 1.0, 0.1, 1e-7])
-    survey = np.zeros(1)
+    given = parameters(paper_case()) | {"flexural_stiffness": value, "relative_tolerance": 1e-7}
+    values, survey = np.array([given[name] for name in scalar_names(SYSTEM, 2)]), np.zeros(1)
     why = ctypes.create_string_buffer(binding.MESSAGE)
-    assert not binding.library().boreprop_start(1, parameters, 1, survey, survey, binding.Inputs(0.0, 0.0, 1.0), why)
+    assert not binding.library().boreprop_start(2, values, 1, survey, survey, binding.Inputs(0.0, 0.0, 1.0), why)
     name, _, written = why.value.decode().rpartition(", got ")
     assert name == "flexural_stiffness: must be > 0"
     assert float(written) == value
