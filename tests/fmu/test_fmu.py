@@ -13,12 +13,11 @@ import numpy as np
 import pytest
 
 from boreprop.case.case import Case, Schedule
-from boreprop.core.quantities import BY_NAME, OUTPUTS, scalar_names
+from boreprop.core.quantities import OUTPUTS, quantity_of, scalar_names
 from boreprop.core.system import BottomHoleAssembly
 from boreprop.run.results import read_trajectory
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
-from boreprop_fmu.pack.description import DIRECT
 from conftest import Command, Pack
 from flavours import Flavour, both_flavours
 from places import HOSTS
@@ -105,8 +104,8 @@ def test_at_rate_zero_nothing_changes(fmu: Path) -> None:
 def test_outputs_follow_at_once_the_inputs_they_declare_and_no_others(fmu_3: Path) -> None:
     changed = host("respond", fmu_3)
     for output, name in product(scalar_names(OUTPUTS, 3), changed):
-        if BY_NAME[output.partition("[")[0]].kind == "Real":  # an Integer may or may not switch
-            assert (output in changed[name]) == (name in DIRECT.get(output.partition("[")[0], ())), (output, name)
+        if quantity_of(output).kind == "Real":  # an Integer may or may not switch
+            assert (output in changed[name]) == (name in quantity_of(output).follows), (output, name)
 
 
 @both_flavours
