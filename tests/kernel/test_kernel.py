@@ -25,7 +25,7 @@ from boreprop.case.paper import paper_case
 from boreprop.case.parameters import parameters
 from boreprop.core.drilling import Drilling
 from boreprop.core.errors import ParameterError
-from boreprop.core.quantities import scalar_names
+from boreprop.core.quantities import OUTPUTS, scalar_names
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly, Scaled
 from boreprop.errors import Stopped
@@ -248,13 +248,12 @@ def test_a_number_in_a_message_reads_back_as_the_same(value: float) -> None:
     assert float(written) == value
 
 
-@pytest.mark.parametrize(
-    ("forces", "rows", "shape"), [(1, [0, 1], (2, 16)), (2, [0, 2], (2, 16)), (2, [0], (2, 16)), (2, [0, 1], (2, 15))]
-)
-def test_arrays_that_do_not_fit_are_refused(case: Case, forces: int, rows: list[int], shape: tuple[int, int]) -> None:
+@pytest.mark.parametrize(("forces", "rows", "lacking"), [(1, [0, 1], 0), (2, [0, 2], 0), (2, [0], 0), (2, [0, 1], 1)])
+def test_arrays_that_do_not_fit_are_refused(case: Case, forces: int, rows: list[int], lacking: int) -> None:
+    columns = len(scalar_names(OUTPUTS, 2))
     run = NativeDrilling(case.bha, case.bit, case.survey, active_weight_on_bit=case.active_weight_on_bit)
-    with pytest.raises(ValueError, match=r"must (be 2, of a table of 2|have 16 columns), got "):
-        run.follow(np.array([1.0, 2.0]), np.zeros(forces), 5e4, rows, np.empty(shape))
+    with pytest.raises(ValueError, match=rf"must (be 2, of a table of 2|have {columns} columns), got "):
+        run.follow(np.array([1.0, 2.0]), np.zeros(forces), 5e4, rows, np.empty((2, columns - lacking)))
 
 
 # what happens where it is not

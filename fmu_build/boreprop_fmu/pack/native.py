@@ -68,7 +68,7 @@ def pack_sources() -> dict[str, bytes]:
 
 
 def case_header(case: Case, guid: str) -> bytes:
-    """The numbers, and the table of variables, as a C header."""
+    """The numbers, and the variables with their start values, as a C header."""
     start = start_values(case)
     n = len(case.bha.stabilizer_positions)
     scalars = [(name, variable) for variable in VARIABLES for name in variable.names(n)]

@@ -90,7 +90,7 @@ def positive(text: str) -> float:
 
 
 def tolerance(text: str) -> float:
-    """Parse an option that takes a relative_tolerance in the range of the table of variables."""
+    """Parse an option that takes a relative_tolerance in the range of the table of quantities."""
     allowed = BY_NAME["relative_tolerance"]
     value = positive(text)
     if not allowed.at_least <= value <= allowed.at_most:

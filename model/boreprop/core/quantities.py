@@ -149,6 +149,12 @@ def quantity_of(scalar_name: str) -> Quantity:
     return BY_NAME[scalar_name.partition("[")[0]]
 
 
+def columns_of(table: str) -> tuple[str, ...]:
+    """The columns of a table of the case file that may be a CSV file of its own, "hole" or "rss", as people name them."""
+    keys = (quantity.key.split(".") for quantity in QUANTITIES if quantity.key and quantity.field)
+    return tuple(key for place, key in keys if place == table)
+
+
 # A part of a drilling system is a dataclass, say `BottomHoleAssembly`, whose fields the table names.
 
 

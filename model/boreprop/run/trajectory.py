@@ -17,7 +17,7 @@ class Trajectory:
     Parameters
     ----------
     columns
-        Scalar name of the table of variables ("drilled_length", "stabilizer_force[1]", …) → values in SI units,
+        Scalar name of the table of quantities ("drilled_length", "stabilizer_force[1]", …) → values in SI units,
         shape (rows,).
     case
         The case that was run, if it is known.
