@@ -183,8 +183,10 @@ static int drill_on(Component *c, double to, const double end[INPUTS], char why[
         Inputs inputs = {force + slope * (at - from), slope, weight + rise * (stair + 0.5) / stairs};
         double next = stair + 1 < stairs ? from + (to - from) * (stair + 1) / stairs : to;
         done = run_advance(c->run, next, inputs, why) == DONE;
-        if (done && drilling->integrator.now.accepted - accepted > (double)MOST_STEPS)
-            done = too_long(why) == DONE;
+        if (done && drilling->integrator.now.accepted - accepted > (double)MOST_STEPS) {
+            too_long(why);
+            done = 0;
+        }
     }
     if (!done && before) drilling_return(drilling, before);
     free(before);

@@ -133,8 +133,8 @@ static inline void linear_frozen(
 }
 
 #define THETA_WEIGHT 0.1 /* of an error in θ, which is forgotten within εηΠ; Y carries it for the length of the BHA */
-#define REST 0.03     /* what may be left of sin⟨Θ⟩_1 beyond its linear part, in tolerances of θ: it adds no visible error */
-#define ITERATIONS 10 /* on that rest, a few more than it needs: each gains two digits or more */
+#define REST 0.03        /* what may be left of sin⟨Θ⟩_1 beyond its linear part, in tolerances of θ: a small part of one */
+#define ITERATIONS 10    /* on that rest, more than are ever needed: each gains two digits or more */
 
 /* sin⟨Θ⟩_1 linearized about a value near the start of a step, ⟨Θ⟩_1 = Y(ξ) − Y(ξ−1). */
 typedef struct {
