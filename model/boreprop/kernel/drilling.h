@@ -100,7 +100,8 @@ static inline int drilling_outputs(Drilling *d, double out[MOST_OUTPUTS]) {
     Integrator *p = &d->integrator;
     const State *now = &p->now;
     int n = p->scaled.n;
-    double earlier = earlier_inclination(p, now->xi - 1.0), l1 = length_scale(&d->system), F_star = force_scale(&d->system), psi_star = p->scaled.psi_star;
+    double l1 = length_scale(&d->system), F_star = force_scale(&d->system), psi_star = p->scaled.psi_star;
+    double earlier = earlier_inclination(p, now->xi - 1.0);
     double state[COMPONENTS], x, z, *next = out;
     step_state(&now->step, now->xi, state);
     double theta = state[ANGLE];

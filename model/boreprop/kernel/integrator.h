@@ -177,7 +177,7 @@ static inline int is_finite(const Trial *trial) {
     return isfinite(trial->error);
 }
 
-/* How much longer than a step with this error the next one may be: the error of a step is of order S + 1. */
+/* How much longer than a step with this error the next one may be: the error grows as h^(S+1). */
 static inline double growth(double error) { return SAFETY * pow(larger(error, LEAST_ERROR), -1.0 / (S + 1)); }
 
 /* Find the step from the state `x` at `xi` on; `why` says what failed and what helps.
