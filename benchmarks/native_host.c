@@ -14,7 +14,7 @@
 
 #include "fmi2Functions.h"
 
-#define STEP 3.66e-3 /* s, at 1 m/s a thousandth of ℓ₁ */
+#define STEP 3.66e-3   /* s, at 1 m/s a thousandth of ℓ₁ */
 #define FORCE_STEP 1e3 /* N, from one step to the next where the force changes */
 
 enum { REPETITIONS = 7, STARTS = 200, STEPS = 100000 };

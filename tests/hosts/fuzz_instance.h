@@ -49,8 +49,10 @@ static size_t below(size_t count) { return (size_t)(draw() % count); }
 static double between(double low, double high) { return low + (high - low) * (double)(draw() >> 11) * 0x1p-53; }
 
 static double any_number(double usual) {
-    static const double odd[] = {0.0, 1.0, 1e-12, 1e-6, 1e6, 1e12, 1e300, 1.7976931348623157e308,
-                                 2.2250738585072014e-308, 5e-324, (double)NAN, (double)INFINITY};
+    static const double odd[] = {
+        0.0,    1.0,         1e-12,           1e-6, 1e6, 1e12, 1e300, 1.7976931348623157e308, 2.2250738585072014e-308,
+        5e-324, (double)NAN, (double)INFINITY
+    };
     uint64_t bits = draw();
     double value;
     switch (below(8)) {
@@ -67,8 +69,10 @@ static double good_number(double usual) { return usual * between(0.7, 1.4); }
 
 /* What is asked of an instance */
 
-static void listen(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status, fmi2String category,
-                   fmi2String message, ...) {
+static void listen(
+    fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status, fmi2String category, fmi2String message,
+    ...
+) {
     char line[2 * LINE];
     va_list arguments;
     va_start(arguments, message);

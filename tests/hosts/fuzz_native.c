@@ -214,16 +214,24 @@ static void instantiate_wrongly(void) {
             must(!fmi2Instantiate("one", fmi2ModelExchange, GUID, NULL, &callbacks, 0, logging), "no model exchange");
             break;
         default:
-            must(!fmi2Instantiate(below(2) ? NULL : "%s", fmi2CoSimulation, guids[below(4)], NULL,
-                                  below(2) ? &silent : &callbacks, 0, logging), "a wrong guid");
+            must(
+                !fmi2Instantiate(
+                    below(2) ? NULL : "%s", fmi2CoSimulation, guids[below(4)], NULL, below(2) ? &silent : &callbacks, 0,
+                    logging
+                ),
+                "a wrong guid"
+            );
     }
 }
 
 static void name_survey(fmi2Component c) {
-    static const char *const pieces[] = {"measured_depth", "inclination_deg", "other", ",", ",", "\n", "\r\n", "\"", " ",
-                                         "1", "2.5", "-3e2", "1e400", "nan", "1000", "90", "\xEF\xBB\xBF", "\xFF", "é"};
-    static const char *const headers[] = {"measured_depth,inclination_deg\n0,1\n",
-                                          "\"inclination_deg\",measured_depth\r\n2,5\r\n", ""};
+    static const char *const pieces[] = {
+        "measured_depth", "inclination_deg", "other", ",",    ",",  "\n",           "\r\n", "\"", " ", "1", "2.5",
+        "-3e2",           "1e400",           "nan",   "1000", "90", "\xEF\xBB\xBF", "\xFF", "é"
+    };
+    static const char *const headers[] = {
+        "measured_depth,inclination_deg\n0,1\n", "\"inclination_deg\",measured_depth\r\n2,5\r\n", ""
+    };
     unsigned reference = SURVEY_FILE;
     const char *path = below(8) ? survey_path : below(2) ? "nowhere/%s.csv" : "no\nwhere.csv";
     FILE *file = fopen(survey_path, "wb");

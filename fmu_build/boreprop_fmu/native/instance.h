@@ -233,8 +233,8 @@ static fmi2Status save(Component *c, Saved *saved) {
     size_t text = strlen(c->survey_file), size = ((size_t)count + FIXED + VARIABLES) * 8 + text;
     unsigned char *bytes = malloc(size), *to = bytes;
     double *numbers = malloc((size_t)(count + 1) * sizeof *numbers);
-    double fixed[FIXED] = {c->phase, c->time, c->since, c->from, c->rate, c->settled, c->derivative[0],
-                           c->derivative[1], c->derivative[2], (double)text};
+    double fixed[FIXED] = {c->phase,   c->time,          c->since,         c->from,          c->rate,
+                           c->settled, c->derivative[0], c->derivative[1], c->derivative[2], (double)text};
     if (bytes && numbers) {
         for (int i = 0; i < FIXED; i++) to = put_double(to, fixed[i]);
         for (int i = 0; i < VARIABLES; i++) to = put_double(to, VARIABLE[i].role == OUTPUT ? 0.0 : c->value[i]);

@@ -116,12 +116,16 @@ static long read_rows(
                 if (count == position[i]) text[i] = field;
             count++;
         } while (end == ',');
-        if (count != width)
-            return explain(why, "%s:%ld: must have %d values like the header, got %d", path, line, width, count) - 1;
-        for (int i = 0; i < COLUMNS; i++)
-            if (!parse_number(text[i], &columns[i][rows]) || !isfinite(columns[i][rows]))
-                return explain(why, "%s:%ld: %s: must be a finite number, got %s", path, line, COLUMN[i],
-                               quoted(text[i], shown)) - 1;
+        if (count != width) {
+            explain(why, "%s:%ld: must have %d values like the header, got %d", path, line, width, count);
+            return -1;
+        }
+        for (int i = 0; i < COLUMNS; i++) {
+            if (parse_number(text[i], &columns[i][rows]) && isfinite(columns[i][rows])) continue;
+            quoted(text[i], shown);
+            explain(why, "%s:%ld: %s: must be a finite number, got %s", path, line, COLUMN[i], shown);
+            return -1;
+        }
         for (int i = 0; i < COLUMNS; i++) columns[i][rows] *= UNIT[i];
         rows++;
     }
@@ -147,7 +151,10 @@ static double *read_survey(const char *path, Survey *survey, char why[LINE]) {
     }
     if (rows >= 0) {
         survey->count = rows, survey->measured_depth = columns[0], survey->inclination = columns[1];
-        if (!check_survey(survey, fault)) rows = explain(why, "%s: %s", path, fault) - 1;
+        if (!check_survey(survey, fault)) {
+            explain(why, "%s: %s", path, fault);
+            rows = -1;
+        }
     }
     free(text);
     if (rows >= 0) return numbers;

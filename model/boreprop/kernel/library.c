@@ -37,8 +37,7 @@ double boreprop_length(const Run *run) { return drilling_length(&run->drilling);
 void boreprop_step(const Run *run, double numbers[8]) {
     const State *now = &run->drilling.integrator.now;
     const Step *step = &now->step;
-    double all[] = {step->xi,   step->h,       step->end,     step->event,
-                    step->side, now->accepted, now->rejected, now->events};
+    double all[] = {step->xi, step->h, step->end, step->event, step->side, now->accepted, now->rejected, now->events};
     memcpy(numbers, all, sizeof all);
 }
 

@@ -53,8 +53,7 @@ static inline Complex solved(Complex factor, Complex a, Complex x, double b, Com
 
    `f_theta` and `f_Y` are the right-hand sides at the points with (θ, Y) held at the start of the step. */
 static inline void collocate(
-    double h, Jacobian J, const double f_theta[POINTS], const double f_Y[POINTS], double theta[S],
-    double Y[S]
+    double h, Jacobian J, const double f_theta[POINTS], const double f_Y[POINTS], double theta[S], double Y[S]
 ) {
     double h11 = h * J.theta_theta, h12 = h * J.theta_Y, h21 = h * J.Y_theta, h22 = h * J.Y_Y;
     double f[S], g[S];

@@ -105,7 +105,8 @@ static inline void drilling_save(const Drilling *d, double *state) {
     Tape tape = {state, NULL, 0, 1};
     pass_snapshot(&tape, d->system.n, &snapshot);
     for (Count k = now->hole.first; k < now->hole.end; k++) pass_piece(&tape, piece(&now->hole, k));
-    for (Count k = first_kink(&now->kinks, d->system.n); k < now->kinks.end; k++) pass_kink(&tape, kink(&now->kinks, k));
+    for (Count k = first_kink(&now->kinks, d->system.n); k < now->kinks.end; k++)
+        pass_kink(&tape, kink(&now->kinks, k));
 }
 
 /* Whether the numbers other than pieces and kinks agree with each other. */
