@@ -31,6 +31,7 @@ from boreprop.core.system import BitRock, BottomHoleAssembly, Scaled
 from boreprop.errors import Stopped
 from boreprop.kernel import binding
 from boreprop.kernel.binding import NativeDrilling
+from boreprop.kernel.compiler import library_path
 from boreprop.kernel.generate import SYSTEM
 from boreprop.run.results import read_trajectory
 from boreprop.run.simulate import simulate
@@ -296,8 +297,9 @@ def test_without_the_kernel_python_is_used_and_asking_for_it_says_what_helps(
 
 
 def test_a_kernel_older_than_its_sources_is_not_used(elsewhere: Elsewhere, paper_case: Path) -> None:
-    elsewhere.python("-m", "boreprop.kernel").check_returncode()
-    (elsewhere.model / "boreprop" / "kernel" / "beam.h").write_text("/* another version */")
+    folder = elsewhere.model / "boreprop" / "kernel"
+    shutil.copy(library_path(), folder)
+    (folder / "newer.h").write_text("/* which the library does not know */")
     assert elsewhere.python("-c", ENGINE).stdout == "python\n"
     said = elsewhere.python("-c", SIMULATE, paper_case).stderr
     assert "must be made from the sources beside it, got an older one" in said

@@ -27,12 +27,14 @@
 static Component *called(fmi2Component instance, const char *function, int phases) {
     Component *c = instance;
     char why[LINE];
-    if (!c || c->phase & phases) return c;
-    explain(why, "%s: must be called in another phase, got %s", function,
-            c->phase == INSTANTIATED     ? "instantiated"
-            : c->phase == INITIALIZATION ? "initialization"
-            : c->phase == STEPPING       ? "stepping"
-                                         : "terminated");
+    if (!c || (int)c->phase & phases) return c;
+    explain(
+        why, "%s: must be called in another phase, got %s", function,
+        c->phase == INSTANTIATED     ? "instantiated"
+        : c->phase == INITIALIZATION ? "initialization"
+        : c->phase == STEPPING       ? "stepping"
+                                     : "terminated"
+    );
     fail(c, fmi2Error, why);
     return NULL;
 }
@@ -444,8 +446,9 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component instance, const fmi2Byte bytes[
     *kept = NULL;
     if (!is_sealed((const unsigned char *)bytes, size, GUID, why)) return fail(c, fmi2Error, why);
     Saved *state = malloc(sizeof *state);
-    if (state && (state->bytes = malloc(size))) {
-        memcpy(state->bytes, bytes + SEAL, state->size = size - SEAL);
+    if (state) state->size = size - SEAL, state->bytes = malloc(size);
+    if (state && state->bytes) {
+        memcpy(state->bytes, bytes + SEAL, state->size);
         *kept = state;
         return fmi2OK;
     }

@@ -40,8 +40,10 @@ static uint64_t checksum(const unsigned char *bytes, size_t size) {
 static int seal(const char *guid, const unsigned char *body, size_t size, char line[SEAL + 1]) {
     uint64_t sum = checksum(body, size);
     char text[2 * SEAL];
-    int length = snprintf(text, sizeof text, "%s %36s %16lu %08lx%08lx\n", STATE_FORMAT, guid, (unsigned long)size,
-                          (unsigned long)(sum >> 32), (unsigned long)(sum & 0xFFFFFFFFu));
+    int length = snprintf(
+        text, sizeof text, "%s %36s %16lu %08lx%08lx\n", STATE_FORMAT, guid, (unsigned long)size,
+        (unsigned long)(sum >> 32), (unsigned long)(sum & 0xFFFFFFFFu)
+    );
     memcpy(line, text, SEAL + 1);
     return length;
 }

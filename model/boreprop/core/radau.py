@@ -1,7 +1,7 @@
 """One step of Radau IIA collocation for x' = J x + g(t), with a constant 2×2 matrix J and x = (θ, Y).
 
 The solution over the step is the polynomial of degree S that meets the equation at the S right Radau nodes. Within a
-mode of the drilling system the equation is linear, so one linear solve gives it, with no Newton iteration. The
+regime of the drilling system the equation is linear, so one linear solve gives it, with no Newton iteration. The
 eigenvalues of the collocation matrix split that solve into one 2×2 solve per eigenvalue (Hairer & Wanner, Solving
 Ordinary Differential Equations II, sections IV.5 and IV.8).
 
@@ -100,7 +100,7 @@ Jacobian = tuple[float, float, float, float]  # row by row
 def collocate(h: float, J: Jacobian, f_theta: list[float], f_Y: list[float]) -> tuple[Parts, Parts]:
     """One step of length `h` for θ and Y, for `values`, `coefficients` and `error`.
 
-    `f_theta` and `f_Y` are the right-hand sides at the points with (θ, Y) held at the start of the step.
+    `f_theta` and `f_Y` are the right-hand sides at the points with (θ, Y) frozen at the start of the step.
     """
     h11, h12, h21, h22 = h * J[0], h * J[1], h * J[2], h * J[3]
     f1, f2, f3, f4, f5 = _into_parts(f_theta)

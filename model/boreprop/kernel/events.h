@@ -101,9 +101,7 @@ static inline int meet(const Watch *watch, double slack, const double values[POI
 }
 
 /* End a trial step where it first meets a bound of its regime, if it lies beyond one by more than `slack` somewhere. */
-static inline void cut_at_event(
-    const Scaled *scaled, const Hole *hole, const Law *law, double slack, Trial *trial
-) {
+static inline void cut_at_event(const Scaled *scaled, const Hole *hole, const Law *law, double slack, Trial *trial) {
     Step *step = &trial->step;
     for (int b = 0; b < law->bound_count; b++) {
         Watch watch = {scaled, hole, law, step, &law->bounds[b]};

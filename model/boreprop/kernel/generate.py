@@ -87,12 +87,25 @@ typedef struct {{
 }} Complex;
 
 /* clang-format off */
+
+/* The right Radau nodes on [0, 1], and between two of them the check, where the equation need not be met. */
 static const double POINT[POINTS] = {POINT};
+
+/* The eigenvalues of the inverse of the collocation matrix, one of each conjugate pair. */
 static const Complex GAMMA[EIGENVALUES] = {GAMMA};
+
+/* Parts of W times VALUES[part][k]: the step's polynomial at point k, less its start. */
 static const double VALUES[S][POINTS] = {VALUES};
+
+/* Parts of W times COEFFICIENTS[part][m]: its coefficient of t^(m+1). */
 static const double COEFFICIENTS[S][S] = {COEFFICIENTS};
+
+/* Parts of W times SLOPE[part]: its derivative at the check. */
 static const double SLOPE[S] = {SLOPE};
+
+/* Values of f at the points times INTO_PARTS[point][part]: a part of f, in which the check has no share. */
 static const double INTO_PARTS[POINTS][S] = {INTO_PARTS};
+
 /* clang-format on */
 
 #endif

@@ -45,9 +45,7 @@ static inline double take_survey(Hole *hole, const Survey *survey, double length
 }
 
 /* The kinks at the stations that were taken: jumps of the curvature. */
-static inline void take_kinks(
-    const Hole *hole, Kinks *kinks, const Survey *survey, double length_scale, double reach
-) {
+static inline void take_kinks(const Hole *hole, Kinks *kinks, const Survey *survey, double length_scale, double reach) {
     Count count, first = first_station(survey, length_scale, reach, &count);
     double curvature = 0.0;
     kinks->end = 0;

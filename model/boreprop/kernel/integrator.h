@@ -16,9 +16,9 @@
 #define SAFETY 0.85        /* of the length at which the error would meet the tolerance: few steps are then rejected */
 #define LAYERS 16.0        /* first step after a kink, in relaxation lengths of θ: the layer has died out by its end */
 #define STRETCH 1.3        /* how much longer than planned a step may be if it then ends on the next kink */
-#define CLOSER 8.0         /* how much shorter a step is tried where each regime meets a bound before its first point, */
-#define MOST_SLACK 1e-6    /* while a value may lie so much farther beyond its bound at the points, at last by this */
-#define ORIGIN_LIMIT 8.0   /* |Y| beyond which the origin of Y is moved to the bit, to keep the digits of differences */
+#define CLOSER 8.0       /* how much shorter a step is tried where each regime meets a bound before its first point, */
+#define MOST_SLACK 1e-6  /* while a value may lie so much farther beyond its bound at the points, at last by this */
+#define ORIGIN_LIMIT 8.0 /* |Y| beyond which the origin of Y is moved to the bit, to keep the digits of differences */
 #define LARGEST_INCLINATION 6.283185307179586
 #define TURNS_OVER                                                                                                     \
     "its inclination grows beyond a full turn; use a smaller or shorter rss_force, a larger active_weight_on_bit, "    \
@@ -30,8 +30,8 @@ typedef struct {
     ScaledInputs inputs;
     double inputs_xi; /* where they were taken over */
     Regime regime;
-    double path[2];             /* ∫ sin Θ dξ, ∫ cos Θ dξ up to the start of the present step */
-    double origin[DIRECTIONS];  /* of the lateral coordinates */
+    double path[2];            /* ∫ sin Θ dξ, ∫ cos Θ dξ up to the start of the present step */
+    double origin[DIRECTIONS]; /* of the lateral coordinates */
     Step step;
     Hole hole;
     Kinks kinks;
@@ -177,7 +177,7 @@ static inline int is_finite(const Trial *trial) {
     return isfinite(trial->error);
 }
 
-/* How much longer than a step with this error the next one may be: the error of a step is of order S + 1. */
+/* How much longer than a step with this error the next one may be: the error grows as h^(S+1). */
 static inline double growth(double error) { return SAFETY * pow(larger(error, LEAST_ERROR), -1.0 / (S + 1)); }
 
 /* Find the step from the state `x` at `xi` on; `why` says what failed and what helps.
@@ -231,9 +231,8 @@ static inline Status take_step(Integrator *p, char why[MESSAGE]) {
     if (status != DONE) return status;
     Step *step = &now->step;
     *step = trial.step;
-    step->next_h = larger(
-        plan.h < plan.resumed ? plan.resumed : 0.0, plan.h * smaller(growth(trial.error), LARGEST_GROWTH)
-    );
+    step->next_h =
+        larger(plan.h < plan.resumed ? plan.resumed : 0.0, plan.h * smaller(growth(trial.error), LARGEST_GROWTH));
     step_state(step, step->end, end);
     for (int c = ANGLE; c < LATERAL; c++)
         if (!(fabs(end[c]) <= LARGEST_INCLINATION)) return failed(p, "the bit turns over", step->end, TURNS_OVER, why);

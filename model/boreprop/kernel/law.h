@@ -61,9 +61,7 @@ static inline Linear less_tilt(Linear psi, int n) {
     return Theta;
 }
 
-static inline Law make_law(
-    const Scaled *scaled, Modes *modes, Regime regime, ScaledInputs inputs, double inputs_xi
-) {
+static inline Law make_law(const Scaled *scaled, Modes *modes, Regime regime, ScaledInputs inputs, double inputs_xi) {
     const Mode *mode = mode_of(modes, regime.contact);
     int n = scaled->n;
     Law law = {0};
@@ -117,8 +115,7 @@ static inline void law_along(const Law *law, const Bound *bound, const Trial *tr
     const Linear *f = &bound->value;
     const double *theta = trial->x[ANGLE], *Y = trial->x[LATERAL], *Y_1 = trial->delayed[0][0];
     for (int k = 0; k < POINTS; k++)
-        values[k] =
-            f->constant + f->theta * theta[k] + f->Y * Y[k] + f->delayed[0] * Y_1[k] + f->g * trial->sines[k];
+        values[k] = f->constant + f->theta * theta[k] + f->Y * Y[k] + f->delayed[0] * Y_1[k] + f->g * trial->sines[k];
     add_others(f, law->n, trial, values);
 }
 
@@ -133,8 +130,8 @@ static inline void linear_frozen(
 }
 
 #define THETA_WEIGHT 0.1 /* of an error in θ, which is forgotten within εηΠ; Y carries it for the length of the BHA */
-#define REST 0.03     /* what may be left of sin⟨Θ⟩_1 beyond its linear part, in tolerances of θ: it adds no visible error */
-#define ITERATIONS 10 /* on that rest, a few more than it needs: each gains two digits or more */
+#define REST 0.03     /* what may be left of sin⟨Θ⟩_1 beyond its linear part, in tolerances of θ: a small part of one */
+#define ITERATIONS 10 /* on that rest, more than are ever needed: each gains two digits or more */
 
 /* sin⟨Θ⟩_1 linearized about a value near the start of a step, ⟨Θ⟩_1 = Y(ξ) − Y(ξ−1). */
 typedef struct {
@@ -208,8 +205,7 @@ static inline void turn_by(double turn, double sine, double cosine, double *new_
 static inline void displacement(const Step *step, double xi, double *x, double *z) {
     double nodes[3] = {0.5 - sqrt(0.15), 0.5, 0.5 + sqrt(0.15)}, weights[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
     double length = xi - step->xi, sideways = 0.0, down = 0.0, Theta[3];
-    for (int k = 0; k < 3; k++)
-        Theta[k] = polynomial_slope(step->x[LATERAL], nodes[k] * length / step->h) / step->h;
+    for (int k = 0; k < 3; k++) Theta[k] = polynomial_slope(step->x[LATERAL], nodes[k] * length / step->h) / step->h;
     double sine = sin(Theta[1]), cosine = cos(Theta[1]);
     for (int k = 0; k < 3; k++) {
         double turn = Theta[k] - Theta[1], node_sine, node_cosine;

@@ -71,7 +71,7 @@ static inline Mode make_mode(const Beam *beam, const double *y_star, Contact con
         to_wall[k] = q[C[k]];
         to_wall[k].constant = contact.of[C[k]] * y_star[C[k]];
     }
-    inverse(touching, (const double(*)[SIZE])K_inv_CC, K_C);
+    inverse(touching, (const double (*)[SIZE])K_inv_CC, K_C);
     for (int k = 0; k < touching; k++) {
         for (int l = 0; l < touching; l++) K_C[k][l] = -K_C[k][l];
         mode.F[C[k]] = row_plus(zero, touching, K_C[k], to_wall);

@@ -1,7 +1,7 @@
 /* One step of Radau IIA collocation for x' = J x + g(t), with a constant 2×2 matrix J and x = (θ, Y).
 
    The solution over the step is the polynomial of degree S that meets the equation at the S right Radau nodes. Within a
-   mode of the drilling system the equation is linear, so one linear solve gives it, with no Newton iteration. The
+   regime of the drilling system the equation is linear, so one linear solve gives it, with no Newton iteration. The
    eigenvalues of the collocation matrix split that solve into one 2×2 solve per eigenvalue (Hairer & Wanner, Solving
    Ordinary Differential Equations II, sections IV.5 and IV.8). */
 #ifndef BOREPROP_RADAU_H
@@ -11,8 +11,8 @@
 #include "radau_tables.h"
 
 /* W holds one complex number for each eigenvalue, W_k = (γ_k − hJ)⁻¹ h f_k, where f_k is the share of the right-hand
-   side in eigenvector k. A step of one component is the five parts of its W (real; real, imaginary; real, imaginary).
-   Times columns of the tables they give the step's polynomial. */
+   side in eigenvector k. A step of one component is the five parts of its W (real; real, imaginary; real, imaginary);
+   the tables make its polynomial of them, and the parts of f of its values. */
 
 typedef struct {
     double theta_theta, theta_Y, Y_theta, Y_Y;
@@ -51,10 +51,9 @@ static inline Complex solved(Complex factor, Complex a, Complex x, double b, Com
 
 /* One step of length `h` for θ and Y: the parts of their W.
 
-   `f_theta` and `f_Y` are the right-hand sides at the points with (θ, Y) held at the start of the step. */
+   `f_theta` and `f_Y` are the right-hand sides at the points with (θ, Y) frozen at the start of the step. */
 static inline void collocate(
-    double h, Jacobian J, const double f_theta[POINTS], const double f_Y[POINTS], double theta[S],
-    double Y[S]
+    double h, Jacobian J, const double f_theta[POINTS], const double f_Y[POINTS], double theta[S], double Y[S]
 ) {
     double h11 = h * J.theta_theta, h12 = h * J.theta_Y, h21 = h * J.Y_theta, h22 = h * J.Y_Y;
     double f[S], g[S];

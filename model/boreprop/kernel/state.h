@@ -105,7 +105,8 @@ static inline void drilling_save(const Drilling *d, double *state) {
     Tape tape = {state, NULL, 0, 1};
     pass_snapshot(&tape, d->system.n, &snapshot);
     for (Count k = now->hole.first; k < now->hole.end; k++) pass_piece(&tape, piece(&now->hole, k));
-    for (Count k = first_kink(&now->kinks, d->system.n); k < now->kinks.end; k++) pass_kink(&tape, kink(&now->kinks, k));
+    for (Count k = first_kink(&now->kinks, d->system.n); k < now->kinks.end; k++)
+        pass_kink(&tape, kink(&now->kinks, k));
 }
 
 /* Whether the numbers other than pieces and kinks agree with each other. */
@@ -113,10 +114,10 @@ static inline int is_consistent(const Drilling *d, const Snapshot *snapshot) {
     const State *now = &snapshot->now;
     const Step *step = &now->step;
     double xi = now->xi, eta_pi = now->inputs.eta_pi;
-    return snapshot->drilled_length >= 0 && snapshot->drilled_length / length_scale(&d->system) == xi &&
-           eta_pi > 0 && isfinite(1 / eta_pi) && now->inputs_xi <= xi && /* and the bit is in the present step */
-           step->xi <= xi && xi <= step->end && step->h > 0 && step->next_h > 0 &&
-           snapshot->passed[d->system.n - 1] == 0; /* the last stabilizer is the last to pass a kink */
+    if (snapshot->drilled_length < 0 || snapshot->drilled_length / length_scale(&d->system) != xi) return 0;
+    if (!(eta_pi > 0) || !isfinite(1 / eta_pi) || now->inputs_xi > xi) return 0;
+    if (step->xi > xi || xi > step->end || !(step->h > 0) || !(step->next_h > 0)) return 0;
+    return snapshot->passed[d->system.n - 1] == 0; /* the last stabilizer is the last to pass a kink */
 }
 
 /* Whether the state at the end of a piece, at `end`, is where the next piece begins with `x`. */
@@ -131,8 +132,8 @@ static inline int is_joined(const Piece *piece, double end, double x[COMPONENTS]
    and the kinks are of some order. */
 static inline int is_hole(Snapshot *snapshot, Tape tape) {
     Step *step = &snapshot->now.step;
-    Piece own, next;
-    Kink kink;
+    Piece own = {0}, next = {0};
+    Kink kink = {0};
     pass_piece(&tape, &own);
     for (Count left = snapshot->pieces - 1; left > 0; left--, own = next) {
         pass_piece(&tape, &next);
@@ -161,8 +162,8 @@ static inline int read_state(const Drilling *d, Count count, Tape *tape, Snapsho
 
 /* Capacity that a state needs. */
 static inline Count snapshot_capacity(const Snapshot *snapshot) {
-    Count capacity = LEAST_CAPACITY, wanted = 2 * (snapshot->pieces > snapshot->kinks ? snapshot->pieces : snapshot->kinks);
-    while (capacity < wanted + 2) capacity *= 2;
+    Count most = snapshot->pieces > snapshot->kinks ? snapshot->pieces : snapshot->kinks, capacity = LEAST_CAPACITY;
+    while (capacity < 2 * most + 2) capacity *= 2;
     return capacity;
 }
 
