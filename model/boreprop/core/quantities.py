@@ -129,7 +129,8 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("measured_depth", "case", "m", "", "", "stations along the existing hole, the last one is the bit", size="column", key="hole.measured_depth", field="survey.measured_depth"),
     Quantity("inclination", "case", "rad", "Θ", "", "inclination of the existing hole at each station", size="column", key="hole.inclination_deg", field="survey.inclination"),
     Quantity("schedule_file", "case", "", "", "", "steering force over the drilled length (CSV)", kind="String", key="rss.schedule"),
-    Quantity("stopped", "case", "", "", "", "why the run of the case ended before its length, in the case file beside it", kind="String", key="run.stopped"),
+    Quantity("engine", "case", "", "", "", "which engine drilled the case, in the case file beside the run", kind="String", key="run.engine"),
+    Quantity("stopped", "case", "", "", "", "why the run of the case ended before its length, in the same place", kind="String", key="run.stopped"),
 )  # fmt: skip
 
 BY_NAME = {quantity.name: quantity for quantity in QUANTITIES}
