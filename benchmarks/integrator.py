@@ -17,10 +17,10 @@ from rich.console import Console
 from rich.table import Table
 from rk4_two_stabilizers import rk4
 
-from boreprop.core.propagation import RELATIVE_TOLERANCE
+from boreprop.core.options import RELATIVE_TOLERANCE
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
-from reference_cases import CASES, look, reference, start
+from reference_cases import CASES, at_the_bit, reference, start
 
 PAIRS = 5
 WANTED_ERROR = 1e-6
@@ -31,17 +31,16 @@ GRIDS = {"fig7_psi_2deg": (2000, 16000), "fig8_clearance_2e-3": (2000, 1000)}
 
 def ours(name: str) -> None:
     """Drill a reference case to its end."""
-    propagation = start(name, TOLERANCE)
-    assert propagation.advance(CASES[name]["length"]) is None
+    start(name, TOLERANCE).advance(CASES[name]["length"])
 
 
 def ours_error(name: str) -> float:
     """Largest error in Y over the rows of the reference."""
-    propagation, rows = start(name, TOLERANCE), reference(name)
+    model, rows = start(name, TOLERANCE), reference(name)
     errors: list[float] = []
     for row in rows:
-        propagation.advance(float(row["xi"]))
-        errors.append(abs(look(propagation)["Y"] - row["Y"]))
+        model.advance(float(row["xi"]))
+        errors.append(abs(at_the_bit(model)["Y"] - row["Y"]))
     return max(errors)
 
 

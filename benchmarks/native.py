@@ -25,7 +25,7 @@ from boreprop.analysis.study.run import grid, key_figures, run
 from boreprop.case.case import Case
 from boreprop.case.paper import LENGTH_SCALE, paper_case
 from boreprop.core.drilling import Drilling
-from boreprop.core.propagation import RELATIVE_TOLERANCE
+from boreprop.core.options import RELATIVE_TOLERANCE
 from boreprop.kernel.binding import NativeDrilling
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))

@@ -28,9 +28,7 @@ def main() -> None:
 
     def drill(force: float, length: float) -> float:
         """Drill on to `length` and return how far the hole is above the plan there, rad."""
-        failure = drilling.advance(length, force, weight)
-        if failure:
-            raise RuntimeError(failure)
+        drilling.advance(length, force, weight)
         planned = np.interp(plan.measured_depth[0] + length, plan.measured_depth, plan.inclination)
         return float(drilling.outputs()["borehole_inclination"] - planned)
 

@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 
 from boreprop.case.case import Case, Schedule
 from boreprop.case.file import dump_case
-from boreprop.core.propagation import RELATIVE_TOLERANCE
+from boreprop.core.options import RELATIVE_TOLERANCE
 from boreprop.core.survey import Survey
 from boreprop.core.system import LEAST_SPAN, BitRock, BottomHoleAssembly
 from boreprop.errors import Stopped

@@ -11,10 +11,12 @@ from typing import Any
 
 import numpy as np
 
+from boreprop.core.integrator import Integrator
 from boreprop.core.modes import bit_tilt
-from boreprop.core.propagation import RELATIVE_TOLERANCE, Propagation
+from boreprop.core.options import RELATIVE_TOLERANCE
 from boreprop.core.survey import Survey
 from boreprop.core.system import Scaled
+from systems import begin
 
 FOLDER = Path(__file__).parent / "reference"
 CASES: dict[str, dict[str, Any]] = json.loads((FOLDER / "cases.json").read_text(encoding="utf-8"))
@@ -25,37 +27,36 @@ def reference(name: str) -> np.ndarray:
     return np.genfromtxt(FOLDER / f"{name}.csv", delimiter=",", names=True)
 
 
-def start(name: str, relative_tolerance: float = RELATIVE_TOLERANCE) -> Propagation:
+def start(name: str, relative_tolerance: float = RELATIVE_TOLERANCE, **options: Any) -> Integrator:
     """The model at the start of a reference case."""
     p = CASES[name]
     scaled = Scaled(tuple(accumulate(p["lambda"])), tuple(p["y_star"]), p["delta"], p["w"], p["epsilon"], p["psi_star"])
     survey = Survey(tuple(xi - p["survey_xi"][0] for xi in p["survey_xi"]), tuple(p["survey_inc"]))
-    return Propagation(scaled, survey, 1.0, p["force_values"][0], p["eta_pi"], relative_tolerance)
+    return begin(scaled, survey, p["force_values"][0], p["eta_pi"], relative_tolerance, **options)
 
 
-def look(propagation: Propagation) -> dict[str, float]:
+def at_the_bit(model: Integrator) -> dict[str, float]:
     """What a reference trajectory has columns for, where the bit is."""
-    p = propagation
-    theta, Y = p.state()
-    loads = p.loads()
-    mode = p.settled(loads)
+    theta, Y = model.state()
+    loads = model.loads()
+    mode = model.settled(loads)
     F_0 = mode.F_0(loads)
-    psi = bit_tilt(F_0, p.eta_pi, p.scaled.psi_star)
+    psi = bit_tilt(F_0, model.eta_pi, model.scaled.psi_star)
     forces = {f"F_{i}": row(loads) for i, row in enumerate(mode.F, 1)}
     return {"theta": theta, "Theta": theta - psi, "psi": psi, "Y": Y, "F_0": F_0, **forces}
 
 
-def run(name: str, relative_tolerance: float = RELATIVE_TOLERANCE) -> dict[str, np.ndarray]:
-    """The model's run of a reference case, at the rows of the reference."""
+def drilled_rows(name: str, relative_tolerance: float = RELATIVE_TOLERANCE) -> dict[str, np.ndarray]:
+    """What the model drills of a reference case, at the rows of the reference."""
     p = CASES[name]
     changes = list(zip(p["force_breaks"], p["force_values"], strict=True))[1:]
-    propagation = start(name, relative_tolerance)
+    model = start(name, relative_tolerance)
     rows = []
     for xi in reference(name)["xi"]:
         while changes and changes[0][0] <= xi:
             at, force = changes.pop(0)
-            assert propagation.advance(at) is None
-            propagation.steer(force, p["eta_pi"])
-        assert propagation.advance(float(xi)) is None
-        rows.append(look(propagation))
+            model.advance(at)
+            model.steer(force, p["eta_pi"])
+        model.advance(float(xi))
+        rows.append(at_the_bit(model))
     return {column: np.array([row[column] for row in rows]) for column in rows[0]}

@@ -1,11 +1,28 @@
-"""Random drilling systems for property tests."""
+"""Random drilling systems for property tests, and what drills them."""
 
 from itertools import accumulate
+from typing import Any
 
 from hypothesis import strategies as st
 
-from boreprop.core.modes import Loads
+from boreprop.core.integrator import Integrator
+from boreprop.core.modes import Loads, Modes
+from boreprop.core.options import RELATIVE_TOLERANCE, Options
+from boreprop.core.survey import Survey
 from boreprop.core.system import Scaled
+
+
+def begin(
+    scaled: Scaled,
+    survey: Survey,
+    F_rss: float,
+    eta_pi: float,
+    relative_tolerance: float = RELATIVE_TOLERANCE,
+    **options: Any,
+) -> Integrator:
+    """The model at the end of a survey in units of ℓ₁."""
+    return Integrator(Modes(scaled), survey, 1.0, F_rss, eta_pi, Options(relative_tolerance, **options))
+
 
 spans = st.floats(0.3, 1.5)
 

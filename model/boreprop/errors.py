@@ -4,6 +4,7 @@ from reprlib import Repr
 from typing import TYPE_CHECKING
 
 from .core.errors import BorepropError as BorepropError
+from .core.errors import CannotContinue as CannotContinue
 from .core.errors import ParameterError as ParameterError
 from .core.errors import TableError as TableError
 

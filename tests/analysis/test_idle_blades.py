@@ -99,7 +99,7 @@ def test_it_changes_no_verdict_and_no_build_rate(pair: tuple[Case, Case]) -> Non
 
 @given(pairs(length=1.0), st.floats(-5e3, 5e3), st.floats(-3.0, 3.0))
 def test_it_changes_no_steering_response(pair: tuple[Case, Case], force: float, inclination: float) -> None:
-    bare, bladed = (steady_response(case.bha, case.bit, case.active_weight_on_bit, force, inclination) for case in pair)
+    bare, bladed = (steady_response(case, force, inclination) for case in pair)
     assert bladed.build_rate == pytest.approx(bare.build_rate, rel=1e-6, abs=1e-9)
 
 

@@ -28,20 +28,20 @@ from boreprop.analysis.stability.chart import (
     unstable_roots,
     usual_grid,
 )
-from boreprop.analysis.stability.contacts import all_contacts, can_touch, charted, contacts_met, held
+from boreprop.analysis.stability.contacts import all_contacts, can_touch, charted, contacts_met, steady_mode
 from boreprop.analysis.stability.roots import NEUTRAL, Verdict, critical_eta_pi, find_roots, rightmost_roots, verdict
 from boreprop.analysis.stability.zeros import Strip, find_zeros
 from boreprop.arrays import Complexes
 from boreprop.case.case import Case
 from boreprop.case.paper import paper_case
 from boreprop.core.errors import ParameterError
-from boreprop.core.propagation import Propagation
+from boreprop.core.modes import Regime
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly, Scaled, eta_pi, scale
 from boreprop.report.figures.stability import SHADES, boundaries, draw
 from conftest import Command, assert_refused
 from pseudospectral import LinearMode
-from systems import scaled_systems
+from systems import begin, scaled_systems
 
 PAPER = paper_case()
 
@@ -197,14 +197,14 @@ def test_verdicts(roots: tuple[complex, ...], meaning: str) -> None:
 
 def simulated(
     scaled: Scaled, eta_pi: float, bend: float, F_rss: float, xi: np.ndarray
-) -> tuple[np.ndarray, set[tuple[tuple[int, ...], int]]]:
-    """Θ at each ξ in a vertical hole that bends by `bend` at its end, and the modes (contact, tilt) on the way."""
-    propagation = Propagation(scaled, Survey((-1.0, 0.0), (0.0, bend)), 1.0, F_rss, eta_pi, 1e-10)
+) -> tuple[np.ndarray, set[Regime]]:
+    """Θ at each ξ in a vertical hole that bends by `bend` at its end, and the regimes on the way."""
+    model = begin(scaled, Survey((-1.0, 0.0), (0.0, bend)), F_rss, eta_pi, 1e-10)
     inclinations, modes = [], set()
     for at in xi:
-        assert propagation.advance(float(at)) is None
-        inclinations.append(propagation.inclination())
-        modes.add((propagation.contact, propagation.tilt))
+        model.advance(float(at))
+        inclinations.append(model.inclination())
+        modes.add(model.regime)
     return np.array(inclinations), modes
 
 
@@ -466,7 +466,7 @@ def test_the_chart_of_three_stabilizers_has_all_their_modes() -> None:
 
 def test_with_many_stabilizers_a_chart_has_four_contacts_and_the_one_that_holds_the_case() -> None:
     six = BottomHoleAssembly(tuple(np.arange(1.0, 7.0) * 5.0), (2e-3,) * 5, 0.7, 1500.0, 1e7)
-    here, _ = held(six, BIT, 5e4, 0.0, 0.5)
+    here, _ = steady_mode(drilled_by(six, BIT, 5e4), 0.0, 0.5)
     shown = charted(six, BIT, 0.5, first=here)
     assert len(shown) == 4
     assert shown[0] == (1, 2, 3, 4, 5)
@@ -499,9 +499,14 @@ def test_stabilizers_without_clearance_are_in_every_contact() -> None:
     assert all_contacts(replace(THREE, stabilizer_clearances=(0.0, 1e-3))) == ((1, 2), (1,))
 
 
-def test_a_case_is_held_in_the_mode_of_its_steady_response() -> None:
-    assert held(THREE, BIT, 6e4, 0.0, 0.0) == ((), False)  # hangs straight
-    contact, saturated = held(THREE, replace(BIT, tilt_limit=1e-6), 6e4, 2e4, radians(26.37))
+def drilled_by(bha: BottomHoleAssembly, bit: BitRock, active_weight_on_bit: float) -> Case:
+    return replace(PAPER, bha=bha, bit=bit, active_weight_on_bit=active_weight_on_bit)
+
+
+def test_the_steady_mode_is_that_of_the_steady_response() -> None:
+    assert steady_mode(drilled_by(THREE, BIT, 6e4), 0.0, 0.0) == ((), False)  # hangs straight
+    easily_tilted = replace(BIT, tilt_limit=1e-6)
+    contact, saturated = steady_mode(drilled_by(THREE, easily_tilted, 6e4), 2e4, radians(26.37))
     assert saturated
     assert contact in all_contacts(THREE)
 

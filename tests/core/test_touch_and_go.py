@@ -8,7 +8,6 @@ import pytest
 from boreprop.case.case import Case
 from boreprop.case.file import load_case
 from boreprop.core.errors import ParameterError
-from boreprop.core.propagation import Propagation
 from boreprop.core.system import BottomHoleAssembly
 from boreprop.errors import Stopped
 from boreprop.run.simulate import simulate
@@ -64,15 +63,13 @@ def test_a_kink_nearer_than_the_shortest_step_far_down_the_hole_is_passed() -> N
     assert len(simulate(near_bit_case(FAR_DOWN, 1400.0), sample_interval=14.0, engine="native")) == 101
 
 
-def test_python_passes_a_kink_nearer_than_the_shortest_step(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_python_passes_a_kink_nearer_than_the_shortest_step() -> None:
     """As far down the hole, with shorter steps forbidden instead."""
-    monkeypatch.setattr("boreprop.core.propagation.SMALLEST_STEP", 1e-6)
-    propagation: Propagation = start("steering_two_stabilizers")
-    assert propagation.advance(5.0) is None
-    propagation.steer(propagation.F_rss + 1e-3, propagation.eta_pi)
-    assert propagation.advance(5.0 + 4e-6) is None
-    propagation.steer(propagation.F_rss - 3e-3, propagation.eta_pi)
-    assert propagation.advance(9.0) is None
+    model = start("steering_two_stabilizers", smallest_step=1e-6)
+    model.advance(5.0)
+    model.drill(5.0 + 4e-6, model.F_rss + 1e-3, model.eta_pi)
+    model.drill(9.0, model.F_rss - 3e-3, model.eta_pi)
+    assert model.xi == 9.0
 
 
 def test_rows_far_apart_take_no_more_memory_than_there_is() -> None:

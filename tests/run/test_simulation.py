@@ -15,7 +15,6 @@ from boreprop.core.errors import ParameterError
 from boreprop.core.quantities import INPUTS, OUTPUTS, scalar_names
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
-from boreprop.errors import Stopped
 from boreprop.report.tables.summary import rows, verdict
 from boreprop.run.simulate import simulate
 from boreprop_viz.card import in_words
@@ -152,15 +151,6 @@ def test_one_stabilizer_drills_without_contact_columns() -> None:
 def test_arguments_out_of_range_are_refused(arguments: dict[str, float], message: str) -> None:
     with pytest.raises(ParameterError, match=message):
         simulate(paper_case(), **arguments)  # type: ignore[arg-type]
-
-
-def test_a_failure_of_the_integrator_says_where_and_what_helps(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("boreprop.core.propagation.SMALLEST_STEP", 0.5)
-    with pytest.raises(
-        Stopped,
-        match=r"after 0 m of 5 m: the steps of the integrator become too short at 0 m: raise relative_tolerance",
-    ):
-        simulate(paper_case(), length=5.0)
 
 
 def test_summary_of_a_rippling_run() -> None:

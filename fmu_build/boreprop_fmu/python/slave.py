@@ -21,7 +21,8 @@ from pythonfmu.fmi2slave import Fmi2Slave
 from boreprop.core.checks import check_number, check_quantity
 from boreprop.core.columns import read_columns
 from boreprop.core.drilling import Drilling
-from boreprop.core.errors import ParameterError, TableError
+from boreprop.core.errors import CannotContinue, ParameterError, TableError
+from boreprop.core.options import Options
 from boreprop.core.quantities import VARIABLES, Quantity, columns_of, fields_of
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
@@ -136,7 +137,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
             survey,
             active_weight_on_bit=given["active_weight_on_bit"],
             rss_force=given["rss_force"],
-            relative_tolerance=given["relative_tolerance"],
+            options=Options(given["relative_tolerance"]),
         )
 
     def _read_survey(self) -> Survey:
@@ -160,9 +161,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         return self._drilling
 
     def _advance(self, drilling: Drilling, drilled_length: float) -> None:
-        fault = drilling.advance(drilled_length, self._given["rss_force"], self._given["active_weight_on_bit"])
-        if fault:
-            raise SlaveError(fault)
+        drilling.advance(drilled_length, self._given["rss_force"], self._given["active_weight_on_bit"])
 
     def _step(self, current_time: float, step_size: float) -> None:
         check_number("current_time", current_time)
@@ -255,7 +254,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         """Do it; log why not."""
         try:
             action(*arguments)
-        except (ParameterError, SlaveError) as error:
+        except (ParameterError, CannotContinue, SlaveError) as error:
             self._log_error(str(error))
             return False
         except Exception as error:  # nobody foresaw it, so nobody knows what has moved

@@ -7,13 +7,29 @@ from ..core.modes import Loads
 Matrix = list[list[float]]
 
 
-# The linear complementarity problem (15): w = M z + q, 0 ≤ w ⊥ z ≥ 0, z = (F_ℓ, F_u, F̂_ℓ, F̂_u)
-
-
 def lcp(
     beam: Beam, y_star: tuple[float, ...], psi_star: float, eta_pi: float, loads: Loads
 ) -> tuple[Matrix, list[float]]:
-    """M (2n × 2n) and q (2n) of the paper's LCP (15) for n stabilizers."""
+    """The paper's LCP (15) for n stabilizers, dimensionless.
+
+    Parameters
+    ----------
+    beam
+        The BHA.
+    y_star
+        Clearances of the non-ideal stabilizers over ℓ₁, (n − 1,).
+    psi_star
+        ψ*, rad.
+    eta_pi
+        ηΠ.
+    loads
+        What bends the beam besides the contacts.
+
+    Returns
+    -------
+    M, q
+        (2n, 2n) and (2n,), in the order of z = (F_ℓ, F_u, F̂_ℓ, F̂_u): two blocks of n − 1, then two numbers.
+    """
     m = len(y_star)
     M = [[0.0] * (2 * m + 2) for _ in range(2 * m + 2)]
     for i in range(m):

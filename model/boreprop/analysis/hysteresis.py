@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..case.case import Case
-from ..core.propagation import RELATIVE_TOLERANCE
+from ..core.options import RELATIVE_TOLERANCE
 from ..core.survey import Survey
 from ..errors import Stopped
 from ..run.trajectory import Trajectory

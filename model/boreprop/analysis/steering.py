@@ -1,17 +1,17 @@
 """Steering: how fast a steady force of the pads turns the hole, at which bit tilt, with which stabilizers touching.
 
 In a hole of constant curvature, Θ(ξ−s) = Θ − κ s, the offsets of the beam are e_i = −s_i ψ − s_i² κ/2, and θ' = κ.
-In a mode of contact and tilt (14) and (17) are then two linear equations for κ and ψ,
+In a regime of contact and saturation (14) and (17) are then two linear equations for κ and ψ,
 
-    (εηΠ + M₂) κ +      M₁ ψ = M_rss F_RSS + M_g sin⟨Θ⟩_1 + M_one ,         M₁ = Σ M_i s_i ,  M₂ = Σ M_i s_i²/2
-            F₂ κ + (ηΠ + F₁) ψ = F0_rss F_RSS + F0_g sin⟨Θ⟩_1 + F0_one ,    F₁ = Σ F0_i s_i , F₂ = Σ F0_i s_i²/2
+    (εηΠ + M₂) κ +      M₁ ψ = M_rss F_RSS + M_g sin⟨Θ⟩_1 + M_const ,       M₁ = Σ M_i s_i ,  M₂ = Σ M_i s_i²/2
+            F₂ κ + (ηΠ + F₁) ψ = F0_rss F_RSS + F0_g sin⟨Θ⟩_1 + F0_const ,  F₁ = Σ F0_i s_i , F₂ = Σ F0_i s_i²/2
 
 with the second one replaced by ψ = ±ψ* where the tilt saturates.
 
-One response to each force. The determinant is positive in every mode at every ηΠ > 0. The beam is a cubic spline,
+One response to each force. The determinant is positive in every regime at every ηΠ > 0. The beam is a cubic spline,
 clamped at the bit and hinged at the last support, and its moments at the supports follow the spline's tridiagonal
 equations: so M₁, M₂ and F₁ are positive, and between the bit and the first support the moment of a tilt passes zero
-while that of a curvature does not, so M₂ F₁ − M₁ F₂ >= 0. Determinants of one sign in all modes make κ and ψ the
+while that of a curvature does not, so M₂ F₁ − M₁ F₂ >= 0. Determinants of one sign in all regimes make κ and ψ the
 solution of a linear complementarity problem with a P-matrix: it exists, it is unique, and least-index pivoting finds
 it. So the build rate is a continuous, piecewise linear function of the force. Whether a hole settles on its response is
 a matter of stability.
@@ -30,15 +30,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import cos, inf, sin
 
-from ..core.beam import Beam
+from ..case.case import Case
 from ..core.checks import check_number
-from ..core.drilling import check_inputs
 from ..core.errors import ParameterError
 from ..core.linear import dot
-from ..core.modes import ROUNDING, Loads, Mode, Modes, Row, change, left, wall
-from ..core.system import BitRock, BottomHoleAssembly, Scaled, eta_pi, scale
+from ..core.modes import ROUNDING, Loads, Mode, Modes, Regime, Row, wall
+from ..core.system import BottomHoleAssembly, Scaled, eta_pi, scale
 
-MOST_SWITCHES = 1000  # from mode to mode, of which there are at most 729
+MOST_PIECES = 1000  # of the curve: there are at most 729 regimes, and few of them are met twice
 
 
 @dataclass(frozen=True)
@@ -99,136 +98,115 @@ class Piece:
     reversal_weight: float
 
 
-def steady_response(
-    bha: BottomHoleAssembly,
-    bit: BitRock,
-    active_weight_on_bit: float,
-    rss_force: float,
-    inclination: float,
-    gravity: bool = True,
-) -> SteadyResponse:
+def steady_response(case: Case, rss_force: float, inclination: float, *, gravity: bool = True) -> SteadyResponse:
     """The hole that a constant force drills at a given inclination.
 
     Parameters
     ----------
-    bha, bit
-        The drilling system.
-    active_weight_on_bit, rss_force
-        N.
+    case
+        The drilling system and its active weight on bit; hole and force schedule make no difference.
+    rss_force
+        N, positive to the high side.
     inclination
         ⟨Θ⟩_1: of the hole, averaged over the ℓ₁ behind the bit, rad.
     gravity
         False: leave the weight of the BHA out.
 
+    Returns
+    -------
+    SteadyResponse
+        It exists for every force, and there is only one.
+
     Raises
     ------
     ParameterError
-        If a value is not finite or the weight on bit is not positive.
+        If a value is not finite.
     """
     check_number("rss_force", rss_force)
-    steady = _steady(bha, bit, active_weight_on_bit, inclination, gravity)
-    return _in_si(bha, steady.settle(rss_force / bha.force_scale), rss_force)
+    steady = _steady(case, inclination, gravity)
+    return _in_si(case.bha, steady.settle(rss_force / case.bha.force_scale), rss_force)
 
 
-def build_rate_curve(
-    bha: BottomHoleAssembly,
-    bit: BitRock,
-    active_weight_on_bit: float,
-    inclination: float,
-    force_limit: float,
-    gravity: bool = True,
-) -> tuple[Piece, ...]:
-    """The response to every force from −`force_limit` to `force_limit` (N): its straight pieces, by increasing force.
+def build_rate_curve(case: Case, inclination: float, force_limit: float, *, gravity: bool = True) -> tuple[Piece, ...]:
+    """The response to every force up to a limit to either side: its straight pieces.
 
-    The other parameters and errors are those of `steady_response`; the limit must be positive.
+    Parameters
+    ----------
+    case, inclination, gravity
+        As in `steady_response`.
+    force_limit
+        N, positive.
+
+    Returns
+    -------
+    tuple of Piece
+        By increasing force, from −`force_limit` to `force_limit`; each begins where the one before ends.
+
+    Raises
+    ------
+    ParameterError
+        If a value is not finite, or the limit is not positive.
     """
     check_number("force_limit", force_limit, above=0.0)
-    steady = _steady(bha, bit, active_weight_on_bit, inclination, gravity)
+    steady, bha = _steady(case, inclination, gravity), case.bha
     limit = force_limit / bha.force_scale
     pieces = []
     for line, start, end in steady.walk(-limit, limit):
-        zero = 0.0 if line.tilt else reversal(steady.scaled, line.mode)
+        zero = 0.0 if line.regime.saturation else reversal(steady.scaled, line.mode)
         pieces.append(
             Piece(
                 start=_in_si(bha, line, start * bha.force_scale),
                 end=_in_si(bha, line, end * bha.force_scale),
                 gain=line.rate[0] / (bha.length_scale * bha.force_scale),
                 reversal_eta_pi=zero,
-                reversal_weight=zero * active_weight_on_bit / steady.eta_pi,
+                reversal_weight=zero * case.active_weight_on_bit / steady.eta_pi,
             )
         )
     return tuple(pieces)
 
 
 def largest_build_rate(
-    bha: BottomHoleAssembly,
-    bit: BitRock,
-    active_weight_on_bit: float,
-    inclination: float,
-    force_limit: float,
-    gravity: bool = True,
+    case: Case, inclination: float, force_limit: float, *, gravity: bool = True
 ) -> tuple[SteadyResponse, SteadyResponse]:
     """The fastest build and the fastest drop under forces up to `force_limit` (N) to either side.
 
-    They need not be at the limit: where the tilt saturates, or above the ηΠ of `reversal_eta_pi`, a larger push builds
+    They need not be at the limit: where the tilt saturates, or above the ηΠ of the reversal, a larger push builds
     less. Parameters and errors are those of `build_rate_curve`.
     """
-    curve = build_rate_curve(bha, bit, active_weight_on_bit, inclination, force_limit, gravity)
+    curve = build_rate_curve(case, inclination, force_limit, gravity=gravity)
     kinks = [curve[0].start, *(piece.end for piece in curve)]
     return max(kinks, key=_build_rate), min(kinks, key=_build_rate)
 
 
 def holding_forces(
-    bha: BottomHoleAssembly,
-    bit: BitRock,
-    active_weight_on_bit: float,
-    inclination: float,
-    force_limit: float,
-    gravity: bool = True,
+    case: Case, inclination: float, force_limit: float, *, gravity: bool = True
 ) -> tuple[SteadyResponse, ...]:
     """The responses without curvature: the forces that hold an inclination, the smallest first.
 
     None if no force up to the limit does. Usually one; more where the build rate falls again with the force.
     Parameters and errors are those of `build_rate_curve`.
     """
-    curve = build_rate_curve(bha, bit, active_weight_on_bit, inclination, force_limit, gravity)
+    curve = build_rate_curve(case, inclination, force_limit, gravity=gravity)
     builds = [curve[0].start.build_rate > 0, *(piece.end.build_rate > 0 for piece in curve)]
     forces = [
         piece.end.rss_force - piece.end.build_rate / piece.gain
         for piece, before, after in zip(curve, builds, builds[1:], strict=False)
         if before != after
     ]
-    found = [steady_response(bha, bit, active_weight_on_bit, force, inclination, gravity) for force in forces]
+    found = [steady_response(case, force, inclination, gravity=gravity) for force in forces]
     return tuple(sorted(found, key=lambda response: abs(response.rss_force)))
-
-
-def reversal_eta_pi(bha: BottomHoleAssembly, bit: BitRock, contact: tuple[int, ...]) -> float:
-    """The ηΠ above which, the tilt not saturated, a push to the high side drops the hole; inf if there is none.
-
-    Parameters
-    ----------
-    bha, bit
-        The drilling system; the law of the bit makes no difference.
-    contact
-        For each non-ideal stabilizer, 0 if it is free. One without clearance always touches.
-    """
-    steady = Steady(scale(bha, bit), 1.0, 0.0)
-    return reversal(steady.scaled, steady.modes[steady.held(contact)])
 
 
 def _build_rate(response: SteadyResponse) -> float:
     return response.build_rate
 
 
-def _steady(
-    bha: BottomHoleAssembly, bit: BitRock, active_weight_on_bit: float, inclination: float, gravity: bool
-) -> "Steady":
-    check_inputs(0.0, active_weight_on_bit)
+def _steady(case: Case, inclination: float, gravity: bool) -> "Steady":
     check_number("inclination", inclination)
-    scaled = scale(bha, bit)
+    scaled = scale(case.bha, case.bit)
     if not gravity:
         scaled = replace(scaled, w=0.0)
-    return Steady(scaled, eta_pi(bha, bit, active_weight_on_bit), inclination)
+    return Steady(scaled, eta_pi(case.bha, case.bit, case.active_weight_on_bit), inclination)
 
 
 def _in_si(bha: BottomHoleAssembly, line: "Line", rss_force: float) -> SteadyResponse:
@@ -242,7 +220,7 @@ def _in_si(bha: BottomHoleAssembly, line: "Line", rss_force: float) -> SteadyRes
         build_rate=kappa / l1,
         build_rate_error=line.error_rate * kappa / l1,
         bit_tilt=psi,
-        bit_tilt_saturation=line.tilt,
+        bit_tilt_saturation=line.regime.saturation,
         stabilizer_contact=tuple(contact if clearance else wall(f) for contact, f, clearance in contacts),
         stabilizer_force=tuple(f * F_star for f in F),
         stabilizer_deflection=tuple(row(loads) * l1 for row in line.mode.delta),
@@ -258,7 +236,10 @@ def moment(row: Row, s: tuple[float, ...], power: int) -> float:
 
 
 def reversal(scaled: Scaled, mode: Mode) -> float:
-    """Zero of dκ/dF_RSS over ηΠ, the tilt not saturated."""
+    """The ηΠ above which, the tilt not saturated, a push to the high side drops the hole; inf if there is none.
+
+    The zero of dκ/dF_RSS over ηΠ. The law of the bit makes no difference to it.
+    """
     M, F_0 = mode.M, mode.F_0
     if M.rss > -ROUNDING:  # the pads at the bit, or at a stabilizer that does not move (nothing turns then)
         return inf
@@ -266,25 +247,28 @@ def reversal(scaled: Scaled, mode: Mode) -> float:
 
 
 class Line:
-    """κ and ψ as linear functions of F_RSS in one mode of contact and tilt (1, −1: saturated)."""
+    """κ and ψ as linear functions of F_RSS in one regime."""
 
-    def __init__(self, steady: "Steady", mode: Mode, tilt: int) -> None:
-        scaled, eta_pi, sine = steady.scaled, steady.eta_pi, steady.sine
-        s, M, F_0 = scaled.s, mode.M, mode.F_0
-        self.s, self.sine, self.mode, self.tilt = s, sine, mode, tilt
-        a, b = scaled.epsilon * eta_pi + moment(M, s, 2) / 2, moment(M, s, 1)
-        c, d = (0.0, 1.0) if tilt else (moment(F_0, s, 2) / 2, eta_pi + moment(F_0, s, 1))
+    def __init__(self, steady: "Steady", regime: Regime) -> None:
+        self.regime, self.mode, self.sine = regime, steady.modes[regime.contact], steady.sine
+        self.s = s = steady.scaled.s
+        M, F_0, saturation, epsilon_eta_pi = self.mode.M, self.mode.F_0, regime.saturation, steady.epsilon_eta_pi
+        a, b = epsilon_eta_pi + moment(M, s, 2) / 2, moment(M, s, 1)
+        c, d = (0.0, 1.0) if saturation else (moment(F_0, s, 2) / 2, steady.eta_pi + moment(F_0, s, 1))
 
         def solve(of_M: float, of_F_0: float, limit: float = 0.0) -> tuple[float, float]:
-            second = limit if tilt else of_F_0
+            """κ and ψ of the two equations with these right-hand sides; `limit` is that of the saturated tilt."""
+            second = limit if saturation else of_F_0
             return (d * of_M - b * second) / (a * d - b * c), (a * second - c * of_M) / (a * d - b * c)
 
-        self.rest = solve(M.g * sine + M.one, F_0.g * sine + F_0.one, tilt * scaled.psi_star)
+        self.rest = solve(
+            M.g * self.sine + M.constant, F_0.g * self.sine + F_0.constant, saturation * steady.scaled.psi_star
+        )
         self.rate = solve(M.rss, F_0.rss)
         # κ and ψ change along the arc at κ₁ and ψ₁, per κ, which adds κ₁ s_i³/6 to e_i and ψ₁ to θ'
         kappa_1, psi_1 = (steady.cosine * x for x in solve(M.g, F_0.g))
         self.error_rate, _ = solve(
-            moment(M, s, 3) / 6 * kappa_1 - scaled.epsilon * eta_pi * psi_1, moment(F_0, s, 3) / 6 * kappa_1
+            moment(M, s, 3) / 6 * kappa_1 - epsilon_eta_pi * psi_1, moment(F_0, s, 3) / 6 * kappa_1
         )
 
     def at(self, F_rss: float) -> tuple[float, float]:
@@ -309,45 +293,15 @@ class Steady:
     """The constant-curvature responses of a system at one ηΠ and inclination ⟨Θ⟩_1."""
 
     def __init__(self, scaled: Scaled, eta_pi: float, inclination: float) -> None:
-        self.scaled, self.eta_pi = scaled, eta_pi
+        self.scaled, self.eta_pi, self.epsilon_eta_pi = scaled, eta_pi, scaled.epsilon * eta_pi
         self.sine, self.cosine = sin(inclination), cos(inclination)
-        self.modes = Modes(Beam(scaled), scaled.y_star)
-
-    def held(self, contact: tuple[int, ...]) -> tuple[int, ...]:
-        """`contact`, with the stabilizers that have no clearance in contact."""
-        return tuple(c if y else 1 for c, y in zip(contact, self.scaled.y_star, strict=True))
-
-    def bounds(self, line: Line) -> list[tuple[Row, float, float]]:
-        """Rows that must lie between two bounds for each stabilizer, and at last for the tilt, to stay as they are."""
-        limit = self.eta_pi * self.scaled.psi_star
-        tilt_bounds = {0: (-limit, limit), 1: (limit, inf), -1: (-inf, -limit)}[line.tilt]
-        contacts = range(len(self.scaled.y_star))
-        return [*(self.modes.bounds(line.mode, i) for i in contacts), (line.mode.F_0, *tilt_bounds)]
-
-    def switch(self, line: Line, part: int, side: int) -> Line:
-        """The line in the mode on the other side of a bound."""
-        contact = line.mode.contact
-        if part == len(contact):
-            return Line(self, line.mode, 0 if line.tilt else side)
-        changed = (*contact[:part], change(contact[part], side), *contact[part + 1 :])
-        return Line(self, self.modes[changed], line.tilt)
+        self.modes = Modes(scaled)
 
     def settle(self, F_rss: float) -> Line:
-        """The line that holds under a force, by least-index pivoting from no contact and no saturation.
-
-        Raises `ParameterError` if no line is found that does.
-        """
-        line = Line(self, self.modes[self.held((0,) * len(self.scaled.y_star))], 0)
-        for _ in range(MOST_SWITCHES):
-            loads = line.loads(F_rss)
-            for part, (row, lower, upper) in enumerate(self.bounds(line)):
-                side = left(row(loads), lower, upper)
-                if side:
-                    line = self.switch(line, part, side)
-                    break
-            else:
-                return line
-        raise ParameterError("rss_force / F*", "must have a steady response", F_rss)
+        """The line that holds under a force, by pivoting from no contact and no saturation."""
+        free = self.modes.free()
+        regime = free.settle(lambda regime: (regime.bounds(self.modes, self.eta_pi), Line(self, regime).loads(F_rss)))
+        return Line(self, regime)
 
     def walk(self, start: float, stop: float) -> Iterator[tuple[Line, float, float]]:
         """The lines that hold from one force to a larger one, each with the forces between which it does.
@@ -355,23 +309,23 @@ class Steady:
         Raises `ParameterError` if the way there has no end.
         """
         line, at = self.settle(start), start
-        for _ in range(MOST_SWITCHES):
+        for _ in range(MOST_PIECES):
             if at >= stop:
                 return
             end, part, side = self._first_met(line, at)
             if min(end, stop) - at > ROUNDING:
                 yield line, at, min(end, stop)
-            line, at = self.switch(line, part, side), end
-        raise ParameterError("force_limit / F*", f"must be reached in {MOST_SWITCHES} pieces of the curve", stop)
+            line, at = Line(self, line.regime.switch(part, side)), end
+        raise ParameterError("force_limit / F*", f"must be reached in {MOST_PIECES} pieces of the curve", stop)
 
     def _first_met(self, line: Line, at: float) -> tuple[float, int, int]:
         """The force, from `at` on, at which a line first meets a bound, which part's, and on which side."""
         loads = line.loads(at)
         met = (inf, 0, 0)
-        for part, (row, lower, upper) in enumerate(self.bounds(line)):
-            slope, value = line.slope(row), row(loads)
+        for bound in line.regime.bounds(self.modes, self.eta_pi):
+            slope, value = bound.scale * line.slope(bound.row), bound.scale * bound.row(loads)
             side = 1 if slope > 0 else -1
-            bound = upper if slope > 0 else lower
-            if slope and abs(bound) < inf:
-                met = min(met, (at + max((bound - value) / slope, 0.0), part, side))
+            limit = bound.upper if slope > 0 else bound.lower
+            if slope and abs(limit) < inf:
+                met = min(met, (at + max((limit - value) / slope, 0.0), bound.part, side))
         return met

@@ -22,11 +22,11 @@ from numpy.typing import NDArray
 
 from ..case.case import Case
 from ..core.checks import check_number
-from ..core.propagation import RELATIVE_TOLERANCE
+from ..core.options import RELATIVE_TOLERANCE
 from ..core.quantities import OUTPUTS, scalar_names
 from ..core.survey import Survey
 from ..core.system import eta_pi
-from ..errors import Stopped
+from ..errors import CannotContinue, Stopped
 from ..run.engines import engine, follow, start
 from ..run.trajectory import Trajectory
 from ..run.workers import WorkerLost, work
@@ -83,9 +83,10 @@ def drill_until_settled(case: Case, *, relative_tolerance: float = RELATIVE_TOLE
         more = np.empty((int(target / interval) + 1 - len(rows), len(names)))
         lengths = interval * np.arange(len(rows), len(rows) + len(more), dtype=np.float64)
         force = np.full(len(more), case.schedule.rss_force[0])
-        failure = follow(drilling, lengths, force, case.active_weight_on_bit, np.arange(len(more), dtype=np.intc), more)
-        if failure:
-            raise Stopped(f"after {drilling.drilled_length:g} m: {failure}")
+        try:
+            follow(drilling, lengths, force, case.active_weight_on_bit, np.arange(len(more), dtype=np.intc), more)
+        except CannotContinue as error:
+            raise Stopped(f"after {drilling.drilled_length:g} m: {error}") from error
         rows = np.concatenate((rows, more))
         run = Trajectory(dict(zip(names, rows.T, strict=True)), case)
         length, inclination = run["drilled_length"], run["borehole_inclination"]

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated, NoReturn
 
 from ..case.case import SAMPLE_INTERVAL
-from ..core.propagation import RELATIVE_TOLERANCE
+from ..core.options import RELATIVE_TOLERANCE
 from . import console
 from .console import typer
 
@@ -362,7 +362,7 @@ def roots(
     from rich.console import Console
     from rich.table import Table
 
-    from ..analysis.stability.contacts import all_contacts, contacts_met, held
+    from ..analysis.stability.contacts import all_contacts, contacts_met, steady_mode
     from ..analysis.stability.roots import find_roots, parse_contact
     from ..case.file import load_case
     from ..core import system as assembly
@@ -400,7 +400,7 @@ def roots(
             print(json.dumps([as_plain(roots) for roots in found]))
             return
         table = Table(*MODE_HEADINGS, title=modes_title(at, weight_on_bit, inclination), caption=NOT_MET)
-        here = held(bha, bit, weight_on_bit, forces[0], inclination)
+        here = steady_mode(replace(case, active_weight_on_bit=weight_on_bit), forces[0], inclination)
         met = contacts_met(bha, bit, inclination, forces)
         for roots in found:
             table.add_row(*mode_row(roots, bha.length_scale, here, met))
@@ -431,7 +431,7 @@ def stability(
     the case is held in, each with the bit tilt saturated and not.
     """
     from ..analysis.stability.chart import stability_chart, usual_grid
-    from ..analysis.stability.contacts import charted, held
+    from ..analysis.stability.contacts import charted, steady_mode
     from ..analysis.stability.roots import critical_eta_pi
     from ..analysis.study.design import parse_range
     from ..case.file import load_case
@@ -443,7 +443,7 @@ def stability(
     case = load_case(case_file)
     bha, bit, inclination, forces = case.bha, case.bit, case.survey.inclination[-1], case.schedule.rss_force
     own = assembly.eta_pi(bha, bit, case.active_weight_on_bit)
-    here, _ = held(bha, bit, case.active_weight_on_bit, forces[0], inclination)
+    here, _ = steady_mode(case, forces[0], inclination)
     contacts = charted(bha, bit, inclination, forces, here)
     limits = {contact: critical_eta_pi(bha, bit, contact=contact, inclination=inclination) for contact in contacts}
     usual_across, usual_up = usual_grid(bha, own, max(limit.eta_pi if limit else 0.0 for limit in limits.values()))

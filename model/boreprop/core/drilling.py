@@ -1,11 +1,12 @@
-"""A drilling run in SI units: the shell around the propagation that `simulate` and the FMU share."""
+"""A drilling run in SI units: the shell around the integrator that `simulate` and the FMU share."""
 
 from typing import Any
 
 from .checks import check_number, check_quantity
-from .errors import ParameterError
-from .modes import bit_tilt, left, wall
-from .propagation import RELATIVE_TOLERANCE, Propagation
+from .errors import CannotContinue, ParameterError
+from .integrator import Integrator
+from .modes import Modes, bit_tilt, saturation, wall
+from .options import Options, Statistics
 from .survey import Survey
 from .system import BitRock, BottomHoleAssembly, eta_pi, scale
 
@@ -14,11 +15,6 @@ def check_inputs(rss_force: float, active_weight_on_bit: float) -> None:
     """Raise `ParameterError` unless the force is finite and the weight finite and positive."""
     check_quantity("rss_force", rss_force)
     check_quantity("active_weight_on_bit", active_weight_on_bit)
-
-
-def check_tolerance(relative_tolerance: float) -> None:
-    """Raise `ParameterError` unless the tolerance is in the range of the table of quantities."""
-    check_quantity("relative_tolerance", relative_tolerance)
 
 
 class Drilling:
@@ -32,13 +28,20 @@ class Drilling:
         N, positive.
     rss_force
         N, positive builds inclination.
-    relative_tolerance
-        Local error allowed in one step, relative to 1 rad and to ℓ₁.
+    options
+        How the integrator takes its steps.
+
+    Attributes
+    ----------
+    drilled_length
+        Where the bit is, m from the start of the run.
+    integrator
+        What drills, dimensionless.
 
     Raises
     ------
     ParameterError
-        If an input or the tolerance is out of range, or a dimensionless number made of them is not finite.
+        If an input is out of range, or a dimensionless number made of the parameters is not finite.
     """
 
     def __init__(
@@ -49,21 +52,20 @@ class Drilling:
         *,
         active_weight_on_bit: float,
         rss_force: float = 0.0,
-        relative_tolerance: float = RELATIVE_TOLERANCE,
+        options: Options = Options(),  # noqa: B008 - frozen
     ) -> None:
         check_inputs(rss_force, active_weight_on_bit)
-        check_tolerance(relative_tolerance)
         self._bha, self._bit = bha, bit
         self._length, self._force = bha.length_scale, bha.force_scale
         self.drilled_length = 0.0
-        scaled, inputs = scale(bha, bit), self._scaled_inputs(rss_force, active_weight_on_bit)
+        modes, inputs = Modes(scale(bha, bit)), self._scaled_inputs(rss_force, active_weight_on_bit)
         try:
-            self._propagation = Propagation(scaled, survey, self._length, *inputs, relative_tolerance)
+            self.integrator = Integrator(modes, survey, self._length, *inputs, options)
         except ParameterError:
             raise
-        except (ArithmeticError, ValueError) as error:  # what other languages call inf and nan
-            line = "the state is not finite at 0 m: check inputs and parameters"
-            raise ParameterError("parameters", "must give a finite state", line) from error
+        except (CannotContinue, ArithmeticError, ValueError) as error:  # as in `Integrator.drill`
+            why = CannotContinue.because("not finite", 0.0, options.relative_tolerance)
+            raise ParameterError("parameters", "must give a finite state", str(why)) from error
 
     def _scaled_inputs(self, rss_force: float, active_weight_on_bit: float) -> tuple[float, float]:
         """F_RSS and ηΠ; `ParameterError` if they are no numbers to go on with."""
@@ -73,8 +75,8 @@ class Drilling:
         check_number("1 / eta_pi", 1 / own_eta_pi)
         return F_rss, own_eta_pi
 
-    def advance(self, drilled_length: float, rss_force: float, active_weight_on_bit: float) -> str | None:
-        """Drill on under inputs held from here; None, or one line that says what failed and what helps.
+    def advance(self, drilled_length: float, rss_force: float, active_weight_on_bit: float) -> None:
+        """Drill on under inputs held from here.
 
         Parameters
         ----------
@@ -86,7 +88,9 @@ class Drilling:
         Raises
         ------
         ParameterError
-            If an input is out of range or the length lies behind the bit. Nothing has moved then, nor after a failure.
+            If an input is out of range or the length lies behind the bit.
+        CannotContinue
+            If the integrator cannot drill on. Nothing has changed then, nor after a `ParameterError`.
         """
         check_inputs(rss_force, active_weight_on_bit)
         check_number("drilled_length", drilled_length, at_least=self.drilled_length)
@@ -94,22 +98,28 @@ class Drilling:
         try:
             inputs = self._scaled_inputs(rss_force, active_weight_on_bit)
         except ParameterError as error:
-            return str(error)
-        failure = self._propagation.drill(drilled_length / self._length, *inputs)
-        if failure is None:
-            self.drilled_length = drilled_length
-        return failure
+            raise CannotContinue(str(error), "input", self.drilled_length) from error
+        self.integrator.drill(drilled_length / self._length, *inputs)
+        self.drilled_length = drilled_length
+
+    def step(self) -> None:
+        """Drill on to the end of the integrator's next step, under the inputs as they are; errors as in `advance`."""
+        self.drilled_length = self.integrator.step().end * self._length
+
+    @property
+    def statistics(self) -> Statistics:
+        """What the integrator has done since the start of the run."""
+        return self.integrator.statistics
 
     def outputs(self) -> dict[str, float | int]:
         """Every output of the table of quantities where the bit is, by scalar name, in the order of the table."""
-        p, l1, F_star = self._propagation, self._length, self._force
+        p, l1, F_star = self.integrator, self._length, self._force
         scaled = p.scaled
         theta, _ = p.state()
         loads = p.loads()
         mode = p.settled(loads)
         F, delta, F_0 = [row(loads) for row in mode.F], [row(loads) for row in mode.delta], mode.F_0(loads)
-        psi_star = scaled.psi_star
-        psi = bit_tilt(F_0, p.eta_pi, psi_star)
+        psi = bit_tilt(F_0, p.eta_pi, scaled.psi_star)
         Theta = theta - psi
         # λ_i (⟨Θ⟩_i − θ) = e_i − e_{i−1}
         offsets = [0.0, *loads.e]
@@ -126,7 +136,7 @@ class Drilling:
         values |= {f"stabilizer_force[{i}]": f * F_star for i, f in enumerate(F, 1)}
         values |= {f"stabilizer_contact[{i}]": wall(f) for i, f in enumerate(F, 1)}
         return values | {
-            "bit_tilt_saturation": left(F_0 / p.eta_pi, -psi_star, psi_star),
+            "bit_tilt_saturation": saturation(F_0, p.eta_pi, scaled.psi_star),
             "bit_lateral_force": F_0 * F_star,
             "bit_moment": -mode.M(loads) * F_star * l1,
             "borehole_curvature": (Theta - p.earlier_inclination(p.xi - 1.0)) / l1,
@@ -137,9 +147,9 @@ class Drilling:
 
     def save(self) -> dict[str, Any]:
         """The whole evolving state, of numbers, strings, lists and tuples; JSON keeps it exactly."""
-        return {"drilled_length": self.drilled_length, "propagation": self._propagation.save()}
+        return {"drilled_length": self.drilled_length, "integrator": self.integrator.save()}
 
     def restore(self, state: dict[str, Any]) -> None:
         """Go back to a state from `save` of a run with the same parameters."""
         self.drilled_length = state["drilled_length"]
-        self._propagation.restore(state["propagation"])
+        self.integrator.restore(state["integrator"])

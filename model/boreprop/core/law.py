@@ -1,27 +1,26 @@
-"""The right-hand side of the propagation, mode by mode, as a linear function of the state and the delayed hole.
+"""The planar law: the right-hand side of the propagation, regime by regime.
 
     εηΠ θ' = M ,   Y' = Θ = θ − ψ ,   ψ = clip(F_0/(ηΠ), −ψ*, ψ*)                                      (16), (17)
 
-with M and F_0 from the beam in the hole it drilled, e_i = Y(ξ) − Y(ξ−s_i) − s_i θ. Within a mode (which stabilizers
+with M and F_0 from the beam in the hole it drilled, e_i = Y(ξ) − Y(ξ−s_i) − s_i θ. Within a regime (which stabilizers
 touch which wall, tilt saturated or not) only sin⟨Θ⟩_1 is not linear.
 """
 
-from math import inf
 from typing import NamedTuple
 
 from .linear import dot, ratio, total
-from .modes import Mode, Modes, Row
-from .system import Scaled
+from .modes import Modes, Regime, Row
+from .radau import Jacobian
 
 
 class Linear(NamedTuple):
-    """A `Row` under given inputs, on the state: theta θ + Y Y + Σ_i delayed[i] Y(ξ−s_i) + g sin⟨Θ⟩_1 + one."""
+    """A `Row` under given inputs, on the state: theta θ + Y Y + Σ_i delayed[i] Y(ξ−s_i) + g sin⟨Θ⟩_1 + constant."""
 
     theta: float
     Y: float
     delayed: tuple[float, ...]
     g: float
-    one: float
+    constant: float
 
     @classmethod
     def of(cls, row: Row, s: tuple[float, ...], F_rss: float, scale: float) -> "Linear":
@@ -31,29 +30,29 @@ class Linear(NamedTuple):
             Y=scale * total(row.e),
             delayed=tuple(-scale * c for c in row.e),
             g=scale * row.g,
-            one=scale * (row.rss * F_rss + row.one),
+            constant=scale * (row.rss * F_rss + row.constant),
         )
 
     def at(self, theta: float, Y: float, delayed: list[float], sine: float) -> float:
         """Value at one point."""
-        value = self.theta * theta + self.Y * Y + self.g * sine + self.one
+        value = self.theta * theta + self.Y * Y + self.g * sine + self.constant
         for c, Y_i in zip(self.delayed, delayed):
             value += c * Y_i
         return value
 
-    def held(self, theta: float, Y: float, delayed: list[list[float]], sines: list[float]) -> list[float]:
-        """Values along a step with (θ, Y) held; `delayed` has one list for each stabilizer."""
-        state, g, c = self.theta * theta + self.Y * Y + self.one, self.g, self.delayed[0]
+    def frozen(self, theta: float, Y: float, delayed: list[list[float]], sines: list[float]) -> list[float]:
+        """Values along a step with (θ, Y) frozen; `delayed` has one list for each stabilizer."""
+        state, g, c = self.theta * theta + self.Y * Y + self.constant, self.g, self.delayed[0]
         return self._add_others([state + g * sine + c * Y_1 for sine, Y_1 in zip(sines, delayed[0])], delayed)
 
     def along(
         self, thetas: list[float], Ys: list[float], delayed: list[list[float]], sines: list[float]
     ) -> list[float]:
         """Values along a step; `delayed` has one list for each stabilizer."""
-        a, b, c, g, one = self.theta, self.Y, self.delayed[0], self.g, self.one
+        a, b, c, g, constant = self.theta, self.Y, self.delayed[0], self.g, self.constant
         points = zip(thetas, Ys, delayed[0], sines)
         return self._add_others(
-            [one + a * theta + b * Y + c * Y_1 + g * sine for theta, Y, Y_1, sine in points], delayed
+            [constant + a * theta + b * Y + c * Y_1 + g * sine for theta, Y, Y_1, sine in points], delayed
         )
 
     def _add_others(self, values: list[float], delayed: list[list[float]]) -> list[float]:
@@ -64,8 +63,27 @@ class Linear(NamedTuple):
         return values
 
 
+class Sine(NamedTuple):
+    """sin⟨Θ⟩_1 about its value at the start of a step, where ⟨Θ⟩_1 = Y(ξ) − Y(ξ−1) is `average`."""
+
+    average: float
+    value: float
+    slope: float
+
+    def linear(self, averages: list[float]) -> list[float]:
+        """Its linear part at values of ⟨Θ⟩_1."""
+        at, value, slope = self
+        return [value + slope * (average - at) for average in averages]
+
+    def largest_error(self, averages: list[float]) -> float:
+        """A bound on the rest: |sin(a + d) − sin a − d cos a| <= d²/2."""
+        at = self.average
+        far = max(max(averages) - at, at - min(averages))
+        return far * far / 2
+
+
 class Bound(NamedTuple):
-    """What stays between `lower` and `upper` while a mode holds: of stabilizer `part`, or of the tilt (part n−1)."""
+    """What stays between `lower` and `upper` while a regime holds, see `modes.Bound`, on the state."""
 
     part: int
     value: Linear
@@ -74,26 +92,49 @@ class Bound(NamedTuple):
 
 
 class Law:
-    """The right-hand side in one mode under given inputs, and the bounds within which it holds."""
+    """The right-hand side in one regime under given inputs, and the bounds within which it holds."""
 
-    def __init__(self, scaled: Scaled, modes: Modes, mode: Mode, tilt: int, F_rss: float, eta_pi: float) -> None:
-        s, psi_star, contacts = scaled.s, scaled.psi_star, len(mode.contact)
-        psi = Linear.of(mode.F_0, s, F_rss, 1 / eta_pi)
-        self.theta_rate = Linear.of(mode.M, s, F_rss, ratio(1, scaled.epsilon * eta_pi))
-        if tilt:
-            self.Theta = Linear(1.0, 0.0, (0.0,) * len(s), 0.0, -tilt * psi_star)
+    def __init__(self, modes: Modes, regime: Regime, F_rss: float, eta_pi: float) -> None:
+        scaled, mode = modes.scaled, modes[regime.contact]
+        self.s = scaled.s  # the delays
+        psi = Linear.of(mode.F_0, self.s, F_rss, 1 / eta_pi)
+        self.theta_rate = Linear.of(mode.M, self.s, F_rss, ratio(1, scaled.epsilon * eta_pi))
+        if regime.saturation:
+            self.Theta = Linear(1.0, 0.0, (0.0,) * len(self.s), 0.0, -regime.saturation * scaled.psi_star)
         else:
-            self.Theta = Linear(1.0 - psi.theta, -psi.Y, tuple(-c for c in psi.delayed), -psi.g, -psi.one)
-        self.relaxation = ratio(1, abs(self.theta_rate.theta + self.Theta.Y))
-        tilt_bounds = {0: (-psi_star, psi_star), 1: (psi_star, inf), -1: (-inf, -psi_star)}
-        self.bounds = [Bound(contacts, psi, *tilt_bounds[tilt])]
-        for i in range(contacts):
-            row, lower, upper = modes.bounds(mode, i)
-            if (lower, upper) != (-inf, inf):
-                self.bounds.append(Bound(i, Linear.of(row, s, F_rss, 1.0), lower, upper))
-        # change per change of Y(ξ−s_i): of Θ, θ having settled, or of what the bounds are on
+            self.Theta = Linear(1.0 - psi.theta, -psi.Y, tuple(-c for c in psi.delayed), -psi.g, -psi.constant)
+        self.relaxation = ratio(1, abs(self.theta_rate.theta + self.Theta.Y))  # length within which θ settles
+        self.bounds = [
+            Bound(bound.part, Linear.of(bound.row, self.s, F_rss, bound.scale), bound.lower, bound.upper)
+            for bound in regime.bounds(modes, eta_pi)
+        ]
+        # change per change of Y(ξ−s_i): of Θ, once θ has followed, or of what the bounds are on
         self.gains = [
             max(abs(ratio(a, self.theta_rate.theta)) + abs(b), *(abs(bound.value.delayed[i]) for bound in self.bounds))
             for i, (a, b) in enumerate(zip(self.theta_rate.delayed, self.Theta.delayed))
         ]
         self.gains[0] += abs(ratio(self.theta_rate.g, self.theta_rate.theta)) + abs(self.Theta.g)
+
+    def jacobian(self, sine: Sine) -> Jacobian:
+        """∂(θ', Y')/∂(θ, Y), row by row."""
+        rate, Theta = self.theta_rate, self.Theta
+        return (rate.theta, rate.Y + rate.g * sine.slope, Theta.theta, Theta.Y + Theta.g * sine.slope)
+
+    def frozen(
+        self, theta: float, Y: float, delayed: list[list[float]], sines: list[float]
+    ) -> tuple[list[float], list[float]]:
+        """θ' and Y' along a step with (θ, Y) frozen at its start."""
+        return self.theta_rate.frozen(theta, Y, delayed, sines), self.Theta.frozen(theta, Y, delayed, sines)
+
+
+class Laws:
+    """The laws of one drilling system under given inputs, made when first asked for."""
+
+    def __init__(self, modes: Modes, F_rss: float, eta_pi: float) -> None:
+        self._modes, self._F_rss, self._eta_pi = modes, F_rss, eta_pi
+        self._made: dict[Regime, Law] = {}
+
+    def __getitem__(self, regime: Regime) -> Law:
+        if regime not in self._made:
+            self._made[regime] = Law(self._modes, regime, self._F_rss, self._eta_pi)
+        return self._made[regime]

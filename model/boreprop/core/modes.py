@@ -1,19 +1,29 @@
 """The two nonlinearities: stabilizers that touch the wall or not, and a bit tilt that saturates.
 
-Two ways to the same answer. The paper's linear complementarity problem (15) as matrices, with a residual;
-and, for the integrator, modes: with the contacts known, F follows from q̃ by elimination, so M, F_0, δ and F are linear
-functions of the hole, the RSS force and the weight, and which contacts hold is found by pivoting from the last mode.
+With the contacts known (a mode), F follows from q̃ by elimination, so M, F_0, δ and F are linear functions of the hole,
+the RSS force and the weight. A regime is a mode and the saturation of the tilt: which one holds is found by pivoting
+from the last one. It solves the paper's linear complementarity problem (15), which `analysis.complementarity` states
+as matrices.
 """
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import inf
+from typing import NamedTuple
 
 from .beam import Beam
 from .linear import dot, inverse
+from .system import Scaled
+
+ROUNDING = 1e-13  # how far a force or deflection of order one may lie beyond its bound by rounding alone
+MOST_PIVOTS = 3**5  # contacts at five stabilizers: a search that takes more pivots goes in circles
+LOOSER = 8.0  # how much farther it may lie there in the next search: gains a digit, not more than is needed
+
+Contact = tuple[int, ...]
+"""For each non-ideal stabilizer 1 at the lower wall, −1 at the upper wall, 0 free."""
 
 
-@dataclass(frozen=True)
-class Loads:
+class Loads(NamedTuple):
     """What bends the beam besides the contacts: offsets e_1 … e_n, F_RSS and sin⟨Θ⟩_1."""
 
     e: list[float]
@@ -23,16 +33,16 @@ class Loads:
 
 @dataclass(frozen=True)
 class Row:
-    """A linear function of the loads: e · e_i + rss · F_RSS + g · sin⟨Θ⟩_1 + one."""
+    """A linear function of the loads: e · e_i + rss · F_RSS + g · sin⟨Θ⟩_1 + constant."""
 
     e: list[float]
     rss: float
     g: float
-    one: float = 0.0
+    constant: float = 0.0
 
     def __call__(self, loads: Loads) -> float:
         """Value under `loads`."""
-        return dot(self.e, loads.e) + self.rss * loads.F_rss + self.g * loads.sin_Theta_1 + self.one
+        return dot(self.e, loads.e) + self.rss * loads.F_rss + self.g * loads.sin_Theta_1 + self.constant
 
     def plus(self, factors: list[float], rows: "list[Row]") -> "Row":
         """Add a sum of factors times rows."""
@@ -40,8 +50,21 @@ class Row:
             [own + dot(factors, [row.e[i] for row in rows]) for i, own in enumerate(self.e)],
             self.rss + dot(factors, [row.rss for row in rows]),
             self.g + dot(factors, [row.g for row in rows]),
-            self.one + dot(factors, [row.one for row in rows]),
+            self.constant + dot(factors, [row.constant for row in rows]),
         )
+
+
+class Bound(NamedTuple):
+    """A part of a regime stays as it is while scale · row lies between `lower` and `upper`.
+
+    Stabilizer i is part i − 1, the tilt of the bit the last part, n − 1.
+    """
+
+    part: int
+    row: Row
+    scale: float
+    lower: float
+    upper: float
 
 
 class Mode:
@@ -50,7 +73,7 @@ class Mode:
     In contact δ_i = −contact_i y*_i, so F_C = −K_C (q̃_C + contact_C y*_C) with K_C = (K⁻¹_CC)⁻¹, and F = 0 elsewhere.
     """
 
-    def __init__(self, beam: Beam, y_star: tuple[float, ...], contact: tuple[int, ...]) -> None:
+    def __init__(self, beam: Beam, y_star: tuple[float, ...], contact: Contact) -> None:
         n = len(beam.s)
         self.contact = contact
         q = [
@@ -68,69 +91,97 @@ class Mode:
         self.delta = [q[i].plus(beam.K_inv[i], self.F) for i in range(n - 1)]
         self.M = Row([beam.M_e * c for c in e_n], beam.M_rss, beam.M_g).plus(beam.M_F, self.F)
         self.F_0 = Row([beam.F0_e * c for c in e_n], beam.F0_rss, beam.F0_g).plus(beam.F0_F, self.F)
+        self.bounds = [self._bound(i, y) for i, y in enumerate(y_star) if y]
+
+    def _bound(self, i: int, y_star: float) -> Bound:
+        """While it touches a wall, F_i keeps its sign; while it is free, δ_i stays within the clearance, (7).
+
+        A stabilizer without clearance is held on both sides and has no bound.
+        """
+        if self.contact[i]:
+            return Bound(i, self.F[i], 1.0, *((0.0, inf) if self.contact[i] > 0 else (-inf, 0.0)))
+        return Bound(i, self.delta[i], 1.0, -y_star, y_star)
 
 
 class Modes:
-    """The modes of one beam, made when first asked for."""
+    """The modes of one drilling system, made when first asked for."""
 
-    def __init__(self, beam: Beam, y_star: tuple[float, ...]) -> None:
-        self.beam, self.y_star = beam, y_star
-        self._made: dict[tuple[int, ...], Mode] = {}
+    def __init__(self, scaled: Scaled) -> None:
+        self.scaled, self.beam = scaled, Beam(scaled)
+        self._made: dict[Contact, Mode] = {}
 
-    def __getitem__(self, contact: tuple[int, ...]) -> Mode:
+    def __getitem__(self, contact: Contact) -> Mode:
         if contact not in self._made:
-            self._made[contact] = Mode(self.beam, self.y_star, contact)
+            self._made[contact] = Mode(self.beam, self.scaled.y_star, contact)
         return self._made[contact]
 
-    def bounds(self, mode: Mode, i: int) -> tuple[Row, float, float]:
-        """What must lie between two bounds for stabilizer `i` to stay as it is in `mode`: F_i in contact, else δ_i.
+    def touching(self, contact: Contact) -> Contact:
+        """`contact`, with the stabilizers that have no clearance touching."""
+        if all(self.scaled.y_star):
+            return contact
+        return tuple(c if y else 1 for c, y in zip(contact, self.scaled.y_star, strict=True))
 
-        Without clearance the stabilizer is held on both sides and nothing can change.
+    def free(self) -> "Regime":
+        """The regime in which no more stabilizers touch than must, and the tilt is not saturated."""
+        return Regime(self.touching((0,) * len(self.scaled.y_star)), 0)
+
+    def settle(self, loads: Loads, contact: Contact) -> Mode:
+        """The mode whose contacts satisfy (7) under `loads`, starting the search from `contact`.
+
+        The tilt has no part in that: the contacts do not see it.
         """
-        if self.y_star[i] == 0.0:
-            return mode.F[i], -inf, inf
-        if mode.contact[i]:
-            return mode.F[i], *((0.0, inf) if mode.contact[i] > 0 else (-inf, 0.0))
-        return mode.delta[i], -self.y_star[i], self.y_star[i]
+        start = Regime(self.touching(contact), 0)
+        return self[start.settle(lambda regime: (self[regime.contact].bounds, loads)).contact]
 
-    def settle(self, loads: Loads, contact: tuple[int, ...]) -> Mode:
-        """The mode that satisfies (7) under `loads`, starting the search from `contact`.
 
-        Least-index pivoting: change the first stabilizer whose condition fails, until none does. K is positive
-        definite, so no set of contacts comes back and the search ends (Murty 1974; Júdice & Pires 1992 for two walls).
-        Where one does come back, by rounding under huge loads or of stabilizers close together, conditions may fail by
-        more and more until a mode satisfies them: at last by any amount.
+class Regime(NamedTuple):
+    """The contacts, and the saturation of the bit tilt: 1 at ψ*, −1 at −ψ*, 0 between."""
+
+    contact: Contact
+    saturation: int
+
+    def bounds(self, modes: Modes, eta_pi: float) -> list[Bound]:
+        """The bounds within which this regime holds: of ψ = F_0/(ηΠ), (11), then of the stabilizers, (7)."""
+        mode, psi_star = modes[self.contact], modes.scaled.psi_star
+        lower, upper = {0: (-psi_star, psi_star), 1: (psi_star, inf), -1: (-inf, -psi_star)}[self.saturation]
+        return [Bound(len(self.contact), mode.F_0, 1 / eta_pi, lower, upper), *mode.bounds]
+
+    def switch(self, part: int, side: int) -> "Regime":
+        """The regime beyond the bound of `part` on `side`.
+
+        A touching stabilizer comes free, a free one touches at δ = ±y*; the tilt comes to its limit, or leaves it.
         """
-        contact = tuple(c if y else 1 for c, y in zip(contact, self.y_star, strict=True))
-        slack, pivots = ROUNDING, 0
+        if part == len(self.contact):
+            return Regime(self.contact, 0 if self.saturation else side)
+        contact = 0 if self.contact[part] else -side
+        return Regime((*self.contact[:part], contact, *self.contact[part + 1 :]), self.saturation)
+
+    def settle(self, problem: "Callable[[Regime], tuple[Iterable[Bound], Loads]]") -> "Regime":
+        """The regime that is within its bounds under its loads, starting the search from this one.
+
+        `problem` gives both for any regime. Least-index pivoting: switch the first part that is beyond its bound, until
+        none is. K is positive definite, so no regime comes back and the search ends (Murty 1974; Júdice & Pires 1992
+        for two walls). Where one does come back, by rounding under huge loads or of stabilizers close together, parts
+        may lie beyond their bounds by more and more until a regime is within them: at last by any amount.
+        """
+        regime, slack, pivots = self, ROUNDING, 0
         while True:
-            mode = self[contact]
-            for i in range(len(contact)):
-                row, lower, upper = self.bounds(mode, i)
-                side = left(row(loads), lower, upper, slack)
+            bounds, loads = problem(regime)
+            for part, row, scale, lower, upper in bounds:
+                side = side_beyond(scale * row(loads), lower, upper, slack)
                 if side:
-                    contact = (*contact[:i], change(contact[i], side), *contact[i + 1 :])
+                    regime = regime.switch(part, side)
                     break
             else:
-                return mode
+                return regime
             pivots += 1
             if pivots % MOST_PIVOTS == 0:
                 slack *= LOOSER
 
 
-ROUNDING = 1e-13  # how far a force or deflection of order one may lie beyond its bound by rounding alone
-MOST_PIVOTS = 243  # there are no more modes: three contacts at each of five stabilizers
-LOOSER = 8.0  # how much farther it may lie there in the next search
-
-
-def left(value: float, lower: float, upper: float, slack: float = ROUNDING) -> int:
+def side_beyond(value: float, lower: float, upper: float, slack: float = ROUNDING) -> int:
     """1 if `value` is above its bounds by more than `slack`, −1 if below, else 0."""
     return 1 if value > upper + slack else -1 if value < lower - slack else 0
-
-
-def change(contact: int, side: int) -> int:
-    """The contact after leaving the bounds on `side`: a touching stabilizer comes free, a free one touches δ = ±y*."""
-    return 0 if contact else -side
 
 
 def wall(F: float) -> int:
@@ -141,3 +192,8 @@ def wall(F: float) -> int:
 def bit_tilt(F_0: float, eta_pi: float, psi_star: float) -> float:
     """ψ = clip(F_0/(ηΠ), −ψ*, ψ*), eqs. (10) and (11)."""
     return min(max(F_0 / eta_pi, -psi_star), psi_star)
+
+
+def saturation(F_0: float, eta_pi: float, psi_star: float) -> int:
+    """1 where ψ is at its limit ψ*, −1 at −ψ*, 0 between, eq. (11)."""
+    return side_beyond(F_0 / eta_pi, -psi_star, psi_star)

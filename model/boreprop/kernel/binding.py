@@ -10,9 +10,9 @@ import numpy as np
 
 from ..arrays import Floats
 from ..core.checks import check_number
-from ..core.drilling import check_inputs, check_tolerance
+from ..core.drilling import check_inputs
 from ..core.errors import ParameterError
-from ..core.propagation import RELATIVE_TOLERANCE
+from ..core.options import RELATIVE_TOLERANCE, check_tolerance
 from ..core.quantities import OUTPUTS, scalar_names, values_of
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly

@@ -144,11 +144,19 @@ def bit_tilt_saturation(known: Known) -> Array:
     return np.where(np.abs(psi) >= (1 - AT_LIMIT) * known.scaled.psi_star, np.sign(psi), 0.0)
 
 
-def loads(known: Known, rss_force: Any) -> Loads:
-    """What bends the BHA besides the contacts, in columns: e_i = Σ_{k≤i} λ_k (⟨Θ⟩_k − θ), F_RSS and sin⟨Θ⟩_1."""
-    averages: Any = known["average_inclination"]
+class LoadColumns(NamedTuple):
+    """What bends the BHA besides the contacts, as `Loads`, but in columns."""
+
+    e: list[Any]
+    F_rss: Any
+    sin_Theta_1: Any
+
+
+def loads(known: Known, rss_force: Any) -> LoadColumns:
+    """e_i = Σ_{k≤i} λ_k (⟨Θ⟩_k − θ), F_RSS and sin⟨Θ⟩_1."""
+    averages = known["average_inclination"]
     turns = (averages - known["bit_inclination"][:, None]) * known.scaled.lambda_
-    return Loads(list(np.cumsum(turns, axis=1).T), rss_force / known.force, np.sin(averages[:, 0]))
+    return LoadColumns(list(np.cumsum(turns, axis=1).T), rss_force / known.force, np.sin(averages[:, 0]))
 
 
 def contacts(known: Known) -> Any:
@@ -190,7 +198,7 @@ def rounded_force(known: Known, rest: Array, per_force: float) -> Array | None:
 
 def stabilizer_force(known: Known) -> Array:
     """F_i from the contacts that satisfy (7) and (21)."""
-    modes, columns = Modes(known.beam, known.scaled.y_star), loads(known, known["rss_force"])
+    modes, columns = Modes(known.scaled), loads(known, known["rss_force"])
     contact = (0,) * len(known.scaled.y_star)
     values = np.empty((known.rows, len(contact)))
     for k, (*e, F_rss, sine) in enumerate(np.column_stack((*columns.e, columns.F_rss, columns.sin_Theta_1)).tolist()):

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from ..arrays import Floats
 from ..case.case import SAMPLE_INTERVAL, Case, Schedule
 from ..core.checks import check_number
-from ..core.propagation import RELATIVE_TOLERANCE
+from ..core.errors import CannotContinue
+from ..core.options import RELATIVE_TOLERANCE
 from ..core.quantities import OUTPUTS, scalar_names
 from ..errors import Stopped
 from .engines import follow, start
@@ -73,9 +74,10 @@ def simulate(
     stopped = None
     for first in range(0, len(lengths), batch):
         part = slice(first, first + batch)
-        failure = follow(drilling, lengths[part], forces[part], weight, rows[part], table)
-        if failure:
-            stopped = f"after {drilling.drilled_length:g} m of {length:g} m: {failure}"
+        try:
+            follow(drilling, lengths[part], forces[part], weight, rows[part], table)
+        except CannotContinue as error:
+            stopped = f"after {drilling.drilled_length:g} m of {length:g} m: {error}"
             break
         if progress:
             progress(drilling.drilled_length)

@@ -1,4 +1,4 @@
-"""The modes that a drilling system can be in: which stabilizers touch the wall together, and the one it is held in.
+"""The modes that a drilling system can be in: which stabilizers touch the wall together, and the one it drills in.
 
 Stability is a matter of one mode. A blade that no hole brings to the wall has no part in it.
 """
@@ -10,7 +10,6 @@ from math import radians, sin
 import numpy as np
 
 from ...case.case import Case
-from ...core.beam import Beam
 from ...core.modes import Loads, Modes
 from ...core.system import BitRock, BottomHoleAssembly, scale
 from ..steering import offsets, steady_response
@@ -40,10 +39,22 @@ def contacts_met(
 ) -> frozenset[Contact]:
     """The contacts that occur in a hole that is straight, or turns by 10° over 30 m to either side.
 
-    The bit tilts as far as its limit to both sides, with no steering force and with each of `rss_forces`, N.
+    Parameters
+    ----------
+    bha, bit
+        The drilling system. The bit tilts as far as its limit to both sides.
+    inclination
+        Of the hole, rad.
+    rss_forces
+        N; and without a force.
+
+    Returns
+    -------
+    frozenset of Contact
+        The contacts met in one of these holes at one of these tilts under one of these forces.
     """
     scaled = scale(bha, bit)
-    modes = Modes(Beam(scaled), scaled.y_star)
+    modes = Modes(scaled)
     turn = SHARPEST_TURN * bha.length_scale
     contact, met = (0,) * len(scaled.y_star), set()
     tilts = np.linspace(-bit.tilt_limit, bit.tilt_limit, TILTS).tolist()
@@ -65,13 +76,22 @@ def first_that_touches(case: Case) -> int:
     return touching[0] if touching else 1
 
 
-def held(
-    bha: BottomHoleAssembly, bit: BitRock, active_weight_on_bit: float, rss_force: float, inclination: float
-) -> tuple[Contact, bool]:
-    """The mode of the steady response to a force, N: the contact, and whether the bit tilt is saturated."""
-    response = steady_response(bha, bit, active_weight_on_bit, rss_force, inclination)
+def steady_mode(case: Case, rss_force: float, inclination: float) -> tuple[Contact, bool]:
+    """The mode of the steady response to a force, in which a case drills once transients have died out.
+
+    Parameters
+    ----------
+    case, rss_force, inclination
+        As in `steering.steady_response`, whose errors it raises.
+
+    Returns
+    -------
+    Contact, bool
+        The stabilizers that touch, and whether the bit tilt is saturated.
+    """
+    response = steady_response(case, rss_force, inclination)
     touching = {i for i, wall in enumerate(response.stabilizer_contact, 1) if wall}
-    return tuple(sorted(touching | set(always_touching(bha)))), bool(response.bit_tilt_saturation)
+    return tuple(sorted(touching | set(always_touching(case.bha)))), bool(response.bit_tilt_saturation)
 
 
 def charted(
@@ -80,7 +100,7 @@ def charted(
     """The contacts that a chart shows, at most four, most stabilizers first.
 
     All that the stabilizers that `can_touch` make if there are no more than four. Else all of them together, the
-    contact `first` (that the case is held in), and of `contacts_met` those that oscillate up to the largest ηΠ.
+    contact `first` (that of the steady mode), and of `contacts_met` those that oscillate up to the largest ηΠ.
     """
     met = contacts_met(bha, bit, inclination, rss_forces)
     touching = set(first).union(*met)
@@ -97,7 +117,7 @@ def charted(
 
 
 def numbers(bha: BottomHoleAssembly) -> range:
-    """Of the stabilizers that are not ideal."""
+    """The numbers of the stabilizers that are not ideal: 1 … n − 1."""
     return range(1, len(bha.stabilizer_positions))
 
 

@@ -36,7 +36,7 @@ from numpy.typing import NDArray
 
 from ...case.case import Case
 from ...case.file import dump_case
-from ...core.propagation import RELATIVE_TOLERANCE
+from ...core.options import RELATIVE_TOLERANCE
 from ...core.quantities import BY_NAME
 from ...errors import InputError, Stopped, shown
 from ...replacing import replacing

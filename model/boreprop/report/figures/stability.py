@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...analysis.stability.chart import DRIFT, OSCILLATORY, STABLE, Band, Chart, Integers, Panel, lambda_2
-from ...analysis.stability.contacts import held
+from ...analysis.stability.contacts import steady_mode
 from ...arrays import Floats
 from ...case.case import Case
 from ...core.system import eta_pi
@@ -49,7 +49,7 @@ def draw(chart: Chart, case: Case) -> Figure:
     point = eta_pi(bha, bit, weight), lambda_2(bha)
     kilonewtons = bha.force_scale / bit.lateral_steering_resistance / 1000  # for each ηΠ
     epsilon = bit.angular_steering_resistance / bit.lateral_steering_resistance
-    here = held(bha, bit, weight, case.schedule.rss_force[0], chart.inclination)
+    here = steady_mode(case, case.schedule.rss_force[0], chart.inclination)
     rows = len(chart.panels) // 2
     figure = Figure(figsize=(WIDTH, ROW * rows + MARGINS), layout="constrained")
     figure.suptitle(

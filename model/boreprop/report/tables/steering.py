@@ -81,18 +81,17 @@ def summarize(case: Case, inclination: float | None = None, force_limit: float |
         inclination = case.survey.inclination[-1]
     if force_limit is None:
         force_limit = max(map(abs, case.schedule.rss_force)) or USUAL_FORCE
-    system = case.bha, case.bit, case.active_weight_on_bit
-    highest, lowest = largest_build_rate(*system, inclination, force_limit)
+    highest, lowest = largest_build_rate(case, inclination, force_limit)
     return SteeringSummary(
         inclination=inclination,
         active_weight_on_bit=case.active_weight_on_bit,
-        eta_pi=eta_pi(*system),
-        curve=build_rate_curve(*system, inclination, force_limit),
-        without_gravity=build_rate_curve(*system, inclination, force_limit, gravity=False),
-        free=steady_response(*system, 0.0, inclination),
+        eta_pi=eta_pi(case.bha, case.bit, case.active_weight_on_bit),
+        curve=build_rate_curve(case, inclination, force_limit),
+        without_gravity=build_rate_curve(case, inclination, force_limit, gravity=False),
+        free=steady_response(case, 0.0, inclination),
         highest=highest,
         lowest=lowest,
-        holding=holding_forces(*system, inclination, force_limit),
+        holding=holding_forces(case, inclination, force_limit),
     )
 
 

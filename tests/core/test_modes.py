@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from boreprop.analysis.complementarity import lcp, residual
 from boreprop.core.beam import Beam
-from boreprop.core.modes import Loads, Modes, bit_tilt
+from boreprop.core.modes import Loads, Modes, Regime, bit_tilt
 from boreprop.core.system import Scaled
 from lemke import lemke
 from systems import loads, scaled_systems
@@ -27,7 +27,7 @@ def systems(draw: st.DrawFn) -> System:
 
 def fast_path(system: System) -> tuple[list[float], float]:
     scaled, at, eta_pi, guess = system
-    mode = Modes(Beam(scaled), scaled.y_star).settle(at, tuple(guess))
+    mode = Modes(scaled).settle(at, tuple(guess))
     return [row(at) for row in mode.F], bit_tilt(mode.F_0(at), eta_pi, scaled.psi_star)
 
 
@@ -54,6 +54,23 @@ def test_fast_path_solves_the_lcp_by_its_definition(system: System) -> None:
     F_hat = 2 * (eta_pi * psi - F_0)  # (12)
     z = [max(f, 0.0) for f in F] + [max(-f, 0.0) for f in F] + [max(F_hat, 0.0), max(-F_hat, 0.0)]
     assert residual(M, q, z) <= 1e-10
+
+
+@settings(max_examples=200, deadline=None)
+@given(systems(), st.sampled_from([-1, 0, 1]))
+def test_the_regime_has_the_walls_and_the_saturation_of_the_lcp(system: System, side: int) -> None:
+    """From any regime to start from; (12): the tilt is at its limit where F̂ is not zero."""
+    scaled, at, eta_pi, guess = system
+    modes, m = Modes(scaled), len(scaled.y_star)
+    start = Regime(modes.touching(tuple(guess)), side)
+    regime = start.settle(lambda regime: (regime.bounds(modes, eta_pi), at))
+    z = lemke(*lcp(modes.beam, scaled.y_star, scaled.psi_star, eta_pi, at))
+    expected = [z[i] - z[m + i] for i in range(m)] + [z[2 * m + 1] - z[2 * m]]
+    for value, got, clearance in zip(
+        expected, (*regime.contact, regime.saturation), (*scaled.y_star, 1.0), strict=True
+    ):
+        if clearance and abs(value) > 1e-9:
+            assert got == np.sign(value)
 
 
 NO_CLEARANCE = Scaled((1.0, 2.0, 2.5, 2.875, 3.1875, 4.6875), (0.0,) * 5, 0.0, 0.0078125, 0.125, 0.03125)
@@ -90,7 +107,7 @@ def test_forces_have_the_least_energy(system: System) -> None:
 def test_several_stabilizers_touch_different_walls_at_once() -> None:
     scaled = Scaled((1.0, 2.0, 3.0, 4.0), (1e-3, 1e-3, 1e-3), 0.16, 0.0, 0.1, 0.03)
     at = Loads([-0.02, 0.03, -0.02, 0.0], 0.0, 0.0)
-    mode = Modes(Beam(scaled), scaled.y_star).settle(at, (0, 0, 0))
+    mode = Modes(scaled).settle(at, (0, 0, 0))
     assert mode.contact == (1, -1, 1)
     assert [row(at) for row in mode.delta] == pytest.approx([-1e-3, 1e-3, -1e-3])
 
@@ -99,7 +116,7 @@ def test_without_clearance_a_stabilizer_is_held_on_both_sides() -> None:
     scaled = Scaled((1.0, 2.0), (0.0,), 0.16, 2e-3, 0.1, 0.03)
     for offset in (-1e-3, 0.0, 1e-3):
         at = Loads([offset, 0.0], 0.0, 0.0)
-        mode = Modes(Beam(scaled), scaled.y_star).settle(at, (0,))
+        mode = Modes(scaled).settle(at, (0,))
         assert mode.delta[0](at) == pytest.approx(0.0, abs=1e-15)
         assert mode.F[0](at) == pytest.approx(-offset * 32 / 7)
 
@@ -111,7 +128,7 @@ def test_where_rounding_brings_a_set_of_contacts_back_the_search_ends_with_what_
     at = Loads(
         [-0.0050000000000000044, -0.0050002732240438386, -0.005000546448087562, -0.015000000000000124], 0.0, 0.48
     )
-    mode = Modes(Beam(scaled), scaled.y_star).settle(at, (0, 0, 0))
+    mode = Modes(scaled).settle(at, (0, 0, 0))
     for i, contact in enumerate(mode.contact):
         delta, F = mode.delta[i](at), mode.F[i](at)
         assert abs(delta) <= scaled.y_star[i] + 1e-9
@@ -122,7 +139,7 @@ def test_where_rounding_brings_a_set_of_contacts_back_the_search_ends_with_what_
 def test_the_search_for_contacts_ends_under_any_loads(size: float) -> None:
     scaled = Scaled((1.0, 1.004, 1.008, 2.0), (1e-3, 1e-9, 2e-3), 0.16, 2e-3, 0.1, 0.03)
     at = Loads([size, -size / 3, size / 7, 0.0], size, 0.5)
-    assert len(Modes(Beam(scaled), scaled.y_star).settle(at, (0, 0, 0)).contact) == 3
+    assert len(Modes(scaled).settle(at, (0, 0, 0)).contact) == 3
 
 
 def test_residual_is_large_where_z_does_not_solve_the_lcp() -> None:

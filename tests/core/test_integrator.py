@@ -4,7 +4,8 @@ import gc
 import json
 import sys
 from dataclasses import replace
-from math import inf, pi, radians
+from math import pi, radians
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,23 +14,23 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 
 from boreprop.core.beam import Beam
-from boreprop.core.law import Law
-from boreprop.core.propagation import Propagation, Trial, crossing, extremes
+from boreprop.core.errors import CannotContinue
+from boreprop.core.integrator import Integrator
 from boreprop.core.survey import Survey
 from boreprop.core.system import Scaled
-from reference_cases import look, run, start
-from systems import scaled_systems
+from reference_cases import at_the_bit, drilled_rows, start
+from systems import begin, scaled_systems
 
 ONE = Scaled(s=(1.0,), y_star=(), Delta=0.16, w=0.0, epsilon=0.1, psi_star=1.0)
 VERTICAL = Survey((0.0,), (0.0,))
 
 
-def states(propagation: Propagation, xis: np.ndarray) -> np.ndarray:
+def states(model: Integrator, xis: np.ndarray) -> np.ndarray:
     """θ and Y at increasing positions."""
     rows = []
     for xi in xis:
-        assert propagation.advance(float(xi)) is None
-        rows.append(propagation.state())
+        model.advance(float(xi))
+        rows.append(model.state())
     return np.array(rows)
 
 
@@ -44,7 +45,7 @@ def test_one_stabilizer_in_a_straight_hole_is_a_matrix_exponential() -> None:
     rest = np.linalg.solve(J, -constant)
     xis = np.linspace(0.0, 1.0, 50)
     exact = np.array([rest - expm(xi * J) @ rest for xi in xis])
-    assert states(Propagation(ONE, VERTICAL, 1.0, F, eta_pi, 1e-10), xis) == pytest.approx(exact, abs=1e-9)
+    assert states(begin(ONE, VERTICAL, F, eta_pi, 1e-10), xis) == pytest.approx(exact, abs=1e-9)
 
 
 @pytest.mark.parametrize("s", [(1.0,), (1.0, 2.0), (1.0, 1.9, 3.2)])
@@ -60,20 +61,20 @@ def test_a_constant_force_without_gravity_and_contact_drills_an_arc(s: tuple[flo
         ]
     )
     kappa, psi = np.linalg.solve(left, np.array([beam.M_rss, beam.F0_rss]) * F)
-    propagation = Propagation(scaled, VERTICAL, 1.0, F, eta_pi, 1e-9)
-    propagation.advance(end)
-    before = look(propagation)
-    propagation.advance(end + 50.0)
-    after = look(propagation)
+    model = begin(scaled, VERTICAL, F, eta_pi, 1e-9)
+    model.advance(end)
+    before = at_the_bit(model)
+    model.advance(end + 50.0)
+    after = at_the_bit(model)
     assert after["psi"] == pytest.approx(psi, abs=1e-8)
     assert (after["Theta"] - before["Theta"]) / 50.0 == pytest.approx(kappa, rel=1e-5)
 
 
-def smooth_run(relative_tolerance: float, w: float = 2.4e-3) -> tuple[Propagation, np.ndarray]:
+def smooth_run(relative_tolerance: float, w: float = 2.4e-3, **options: Any) -> tuple[Integrator, np.ndarray]:
     """A force on a straight inclined hole, free and unsaturated: kinks at the start's images only."""
     scaled = Scaled((1.0, 2.0), (1.0,), 0.16, w, 0.1, 1.0)
-    propagation = Propagation(scaled, Survey((0.0,), (0.5,)), 1.0, 2e-3, 0.5, relative_tolerance)
-    return propagation, states(propagation, np.linspace(0.0, 20.0, 400))
+    model = begin(scaled, Survey((0.0,), (0.5,)), 2e-3, 0.5, relative_tolerance, **options)
+    return model, states(model, np.linspace(0.0, 20.0, 400))
 
 
 def test_error_falls_with_the_tolerance_at_the_order_of_the_method() -> None:
@@ -87,46 +88,43 @@ def test_error_falls_with_the_tolerance_at_the_order_of_the_method() -> None:
     assert 0.8 < slope < 1.2
 
 
-def test_error_falls_with_the_step_at_order_five_or_more(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_error_falls_with_the_step_at_order_five_or_more() -> None:
     """Steps of 1/m: the kinks at 1, 2, 3, … lie on the grid, and no layer step and no error estimate disturbs it.
 
     Without weight, as the iteration on sin⟨Θ⟩_1 stops at the tolerance, here none.
     """
     _, exact = smooth_run(1e-12, w=0.0)
-    monkeypatch.setattr("boreprop.core.propagation.LAYERS", inf)
-    monkeypatch.setattr("boreprop.core.propagation.THETA_WEIGHT", 0.0)
     steps, errors = 1 / np.array([4, 6, 8, 12]), []
-    for h in steps:
-        monkeypatch.setattr("boreprop.core.propagation.LARGEST_STEP", float(h))
-        propagation, got = smooth_run(1.0, w=0.0)
-        assert propagation.step.h == pytest.approx(h)
+    for h in steps.tolist():
+        model, got = smooth_run(1e-2, w=0.0, layers=1e9, theta_weight=0.0, largest_step=h)
+        assert model.present.h == pytest.approx(h)
+        assert model.statistics.rejected == 0
         errors.append(np.abs(got - exact).max())
     assert np.polyfit(np.log(steps), np.log(errors), 1)[0] > 4.5
 
 
 def test_the_error_of_a_rippling_run_falls_with_the_tolerance() -> None:
     """With 340 events on the way: contact and saturation cost no order."""
-    exact = run("fig7_psi_2deg", 1e-10)["Y"]
+    exact = drilled_rows("fig7_psi_2deg", 1e-10)["Y"]
     tolerances = 10.0 ** np.arange(-9, -5)
-    errors = [np.abs(run("fig7_psi_2deg", tolerance)["Y"] - exact).max() for tolerance in tolerances]
+    errors = [np.abs(drilled_rows("fig7_psi_2deg", tolerance)["Y"] - exact).max() for tolerance in tolerances]
     assert np.polyfit(np.log(tolerances), np.log(errors), 1)[0] > 0.8
 
 
-def step_ends(propagation: Propagation, to: float) -> list[float]:
+def step_ends(model: Integrator, to: float) -> list[float]:
     """Where the integrator's own steps end."""
     ends = []
-    while propagation.step.end < to:
-        assert propagation._take_step() is None
-        ends.append(propagation.step.end)
+    while model.xi < to:
+        ends.append(model.step().end)
     return ends
 
 
 def test_steps_end_on_the_images_of_a_force_jump() -> None:
     scaled = Scaled((1.0, 1.7, 2.9), (1e-3, 1e-3), 0.16, 2.4e-3, 0.1, 0.03)
-    propagation = Propagation(scaled, Survey((0.0,), (0.5,)), 1.0, 0.0, 0.1, 1e-7)
-    propagation.advance(5.0)
-    propagation.steer(2e-3, 0.1)
-    ends = step_ends(propagation, 9.0)
+    model = begin(scaled, Survey((0.0,), (0.5,)), 0.0, 0.1, 1e-7)
+    model.advance(5.0)
+    model.steer(2e-3, 0.1)
+    ends = step_ends(model, 9.0)
     first = [5.0 + s_i for s_i in scaled.s]
     second = [5.0 + a + b for a in scaled.s for b in scaled.s if a + b < 3.9]
     for xi in first + second:
@@ -135,10 +133,10 @@ def test_steps_end_on_the_images_of_a_force_jump() -> None:
 
 def test_a_small_step_of_force_does_not_cut_the_steps_of_its_images() -> None:
     """A controller changes the force often and little: steps may pass over kinks below the tolerance."""
-    propagation = start("steering_two_stabilizers", 1e-6)
-    propagation.advance(4.37)
-    propagation.steer(propagation.F_rss + 1e-12, propagation.eta_pi)
-    ends = step_ends(propagation, 7.0)
+    model = start("steering_two_stabilizers", 1e-6)
+    model.advance(4.37)
+    model.steer(model.F_rss + 1e-12, model.eta_pi)
+    ends = step_ends(model, 7.0)
     assert min(abs(end - image) for end in ends for image in (5.37, 6.37)) > 1e-8
 
 
@@ -149,9 +147,9 @@ def test_results_do_not_depend_on_where_the_bit_stops_on_the_way(stops: list[flo
     straight.advance(8.0)
     for xi in sorted(stops):
         stopping.advance(xi)
-        look(stopping)
+        at_the_bit(stopping)
     stopping.advance(8.0)
-    assert look(stopping) == look(straight)
+    assert at_the_bit(stopping) == at_the_bit(straight)
 
 
 def test_an_input_that_is_set_again_unchanged_restarts_nothing() -> None:
@@ -160,7 +158,7 @@ def test_an_input_that_is_set_again_unchanged_restarts_nothing() -> None:
     for xi in np.linspace(0.0, 3.0, 300):
         often.steer(often.F_rss, often.eta_pi)
         often.advance(float(xi))
-    assert look(often) == look(once)
+    assert at_the_bit(often) == at_the_bit(once)
 
 
 @pytest.mark.parametrize("where", [0.0, 0.0137, 4.4, 33.3])
@@ -172,65 +170,82 @@ def test_a_saved_state_runs_on_bit_by_bit_also_through_json(where: float) -> Non
     other = start("fig7_psi_2deg")
     other.restore(saved)
     other.advance(where + 6.0)
-    assert look(other) == look(original)
+    assert at_the_bit(other) == at_the_bit(original)
 
 
 def test_a_saved_state_does_not_change_while_the_run_goes_on() -> None:
-    propagation = start("fig7_psi_2deg")
-    propagation.advance(5.0)
-    saved = propagation.save()
+    model = start("fig7_psi_2deg")
+    model.advance(5.0)
+    saved = model.save()
     before = json.dumps(saved)
-    propagation.advance(15.0)
+    model.advance(15.0)
     assert json.dumps(saved) == before
 
 
-def test_a_failed_advance_moves_nothing_and_says_what_helps(monkeypatch: pytest.MonkeyPatch) -> None:
-    propagation = start("fig7_psi_2deg")
-    propagation.advance(2.0)
-    before = json.dumps(propagation.save())
-    with monkeypatch.context() as patch:
-        patch.setattr("boreprop.core.propagation.SMALLEST_STEP", 1e-2)
-        failure = propagation.advance(4.0)
-    assert failure is not None
-    assert "raise relative_tolerance" in failure
-    assert json.dumps(propagation.save()) == before
-    assert propagation.advance(4.0) is None
+def assert_failing_changes_nothing(model: Integrator, to: float, code: str, told: str) -> None:
+    before = json.dumps(model.save())
+    with pytest.raises(CannotContinue, match=told) as caught:
+        model.advance(to)
+    assert caught.value.code == code
+    assert json.dumps(model.save()) == before
 
 
-def test_a_way_of_too_many_steps_ends_and_moves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    propagation = start("fig7_psi_2deg")
-    propagation.advance(2.0)
-    before = json.dumps(propagation.save())
-    with monkeypatch.context() as patch:
-        patch.setattr("boreprop.core.propagation.MOST_PIECES", 400)
-        assert propagation.advance(50.0) == "step: must take at most 200 steps of the integrator, got more"
-    assert json.dumps(propagation.save()) == before
-    assert propagation.advance(50.0) is None
+def test_steps_that_become_too_short_change_nothing_and_say_what_helps() -> None:
+    model, other = start("fig7_psi_2deg", smallest_step=1e-2), start("fig7_psi_2deg")
+    other.advance(2.0)
+    model.restore(other.save())
+    told = "the steps of the integrator become too short at .* m: raise relative_tolerance .*, now 1e-07"
+    assert_failing_changes_nothing(model, 4.0, "too short", told)
+    other.restore(model.save())
+    other.advance(4.0)
+
+
+def test_a_way_of_too_many_steps_ends_and_changes_nothing() -> None:
+    model = start("fig7_psi_2deg", most_steps=200)
+    model.advance(2.0)
+    assert_failing_changes_nothing(model, 50.0, "too many", "step: must take at most 200 steps of the integrator, got")
+    model.advance(4.0)
+
+
+def test_a_failed_step_changes_nothing() -> None:
+    model = start("fig7_psi_2deg", smallest_step=0.5)
+    before = json.dumps(model.save())
+    with pytest.raises(CannotContinue, match="too short at 0 m"):
+        model.step()
+    assert json.dumps(model.save()) == before
+
+
+def test_statistics_count_the_steps_and_the_bounds_met() -> None:
+    model = start("fig7_psi_2deg", 1e-5)
+    steps = [model.step() for _ in range(300)]
+    assert model.statistics.accepted == 300
+    assert model.statistics.events == sum(step.event is not None for step in steps[:-1])
+    assert 0 < model.statistics.rejected < 300
 
 
 @pytest.mark.parametrize("F_rss", [1e2, 1e6, 1e12, 1e300])
 def test_a_force_beyond_all_sense_fails_at_once(F_rss: float) -> None:
-    propagation = start("fig7_psi_2deg")
-    propagation.steer(F_rss, 0.01)
-    assert propagation.advance(5.0) is not None
-    assert propagation.xi == 0.0
+    model = start("fig7_psi_2deg")
+    with pytest.raises(CannotContinue):
+        model.drill(5.0, F_rss, 0.01)
+    assert (model.xi, model.F_rss) == (0.0, 0.0)
 
 
 def test_a_straight_vertical_hole_stays_straight() -> None:
     """Rippling and straight drilling exist side by side: without a dogleg nothing starts."""
-    propagation = Propagation(start("fig7_psi_2deg").scaled, VERTICAL, 1.0, 0.0, 0.01, 1e-7)
-    propagation.advance(50.0)
-    assert look(propagation)["Theta"] == 0.0
+    model = begin(start("fig7_psi_2deg").scaled, VERTICAL, 0.0, 0.01, 1e-7)
+    model.advance(50.0)
+    assert at_the_bit(model)["Theta"] == 0.0
 
 
 def test_the_path_is_the_integral_of_the_drilled_inclination() -> None:
-    propagation = start("steering_two_stabilizers")
+    model = start("steering_two_stabilizers")
     xis = np.linspace(0.0, 4.9, 20001)
     Theta, positions = [], []
     for xi in xis:
-        propagation.advance(float(xi))
-        Theta.append(look(propagation)["Theta"])
-        positions.append(propagation.position())
+        model.advance(float(xi))
+        Theta.append(at_the_bit(model)["Theta"])
+        positions.append(model.position())
     x, z = np.trapezoid(np.sin(Theta), xis), np.trapezoid(np.cos(Theta), xis)
     assert positions[-1] == pytest.approx((x, z), abs=1e-6)
 
@@ -240,9 +255,9 @@ def test_the_path_is_the_integral_of_the_drilled_inclination() -> None:
 def test_any_system_drills(scaled: Scaled, eta_pi: float, F_rss: float, inclination: float) -> None:
     """One to six stabilizers, with and without clearance: every step is taken, no number is lost."""
     survey = Survey((0.0, 1.0), (inclination, inclination + radians(0.5)))
-    propagation = Propagation(scaled, survey, 1.0, F_rss, eta_pi, 1e-6)
-    assert propagation.advance(3.0) is None
-    assert all(np.isfinite(list(look(propagation).values())))
+    model = begin(scaled, survey, F_rss, eta_pi, 1e-6)
+    model.advance(3.0)
+    assert all(np.isfinite(list(at_the_bit(model).values())))
 
 
 @settings(max_examples=40, deadline=None)
@@ -254,13 +269,12 @@ def test_the_drilled_hole_has_everywhere_the_inclination_that_the_contact_proble
 
     Θ = θ − F_0/(ηΠ) multiplies what the step leaves of error in θ and Y by about 1/(ηΠ).
     """
-    propagation = Propagation(scaled, Survey((0.0, 1.0), (0.5, 0.5 + radians(0.5))), 1.0, F_rss, eta_pi, 1e-9)
-    while propagation.step.end < 3.0:
-        assert propagation._take_step() is None
-        step = propagation.step
-        for xi in np.linspace(step.xi, step.end, 12)[1:-1]:
-            propagation.xi = float(xi)
-            assert step.derivative(1, float(xi)) == pytest.approx(propagation.inclination(), abs=1e-6 + 1e-7 / eta_pi)
+    model = begin(scaled, Survey((0.0, 1.0), (0.5, 0.5 + radians(0.5))), F_rss, eta_pi, 1e-9)
+    while model.xi < 3.0:
+        step = model.step()
+        for xi in np.linspace(step.xi, step.end, 12)[1:-1].tolist():
+            model.advance(xi)  # back, within the step
+            assert step.derivative(1, xi) == pytest.approx(model.inclination(), abs=1e-6 + 1e-7 / eta_pi)
 
 
 def test_a_short_stay_beyond_a_bound_between_the_points_of_a_step_is_found() -> None:
@@ -269,9 +283,9 @@ def test_a_short_stay_beyond_a_bound_between_the_points_of_a_step_is_found() -> 
     ends = []
     for tolerance in (1e-5, 1e-8, 1e-11):
         survey = Survey((0.0, 0.5, 1.0), (1.26505, 1.26505, 1.25687))
-        propagation = Propagation(scaled, survey, 1.0, 3.4404e-3, 0.019786, tolerance)
-        propagation.advance(1.1)
-        ends.append(propagation.state()[1])
+        model = begin(scaled, survey, 3.4404e-3, 0.019786, tolerance)
+        model.advance(1.1)
+        ends.append(model.state()[1])
     assert ends == pytest.approx([ends[-1]] * 3, abs=2e-6)
 
 
@@ -282,48 +296,25 @@ def test_a_tighter_tolerance_gives_the_same_run(scaled: Scaled, eta_pi: float) -
     survey = Survey((0.0, 1.0), (0.5, 0.5 + radians(0.3)))
     results = []
     for tolerance in (1e-6, 1e-9):
-        propagation = Propagation(scaled, survey, 1.0, 1e-3, eta_pi, tolerance)
-        assert propagation.advance(3.0) is None
-        results.append(propagation.state())
+        model = begin(scaled, survey, 1e-3, eta_pi, tolerance)
+        model.advance(3.0)
+        results.append(model.state())
     assert results[0] == pytest.approx(results[1], abs=1e-4)
 
 
 @pytest.mark.slow
 def test_work_and_memory_per_length_do_not_grow_over_ten_kilometres() -> None:
     """The paper's rippling case, 10 km of it: 2732 times ℓ₁ = 3.66 m."""
-    propagation = start("fig7_psi_2deg", 1e-6)
-    tries = 0
-    try_step = propagation._try
-
-    def counted(law: Law, xi: float, h: float, theta: float, Y: float) -> Trial:
-        nonlocal tries
-        tries += 1
-        return try_step(law, xi, h, theta, Y)
-
-    propagation._try = counted  # type: ignore[method-assign]
+    model = start("fig7_psi_2deg", 1e-6)
     kilometre = 1000 / 3.66
     work, blocks, kept = [], [], []
     for k in range(1, 11):
-        assert propagation.advance(k * kilometre) is None
+        model.advance(k * kilometre)
         gc.collect()
-        work.append(tries)
+        work.append(sum(model.statistics[:2]))
         blocks.append(sys.getallocatedblocks())
-        kept.append(len(json.dumps(propagation.save())))
+        kept.append(len(json.dumps(model.save())))
     per_kilometre = np.diff(work)
     assert per_kilometre.max() <= 1.05 * per_kilometre.min()
     assert max(blocks[1:]) <= blocks[0] + 2000  # a history of 10 km would be 100 000 pieces
     assert max(kept) <= 1.3 * min(kept)
-
-
-@given(st.floats(-2.0, 2.0), st.floats(0.1, 2.0), st.floats(0.3, 0.6))
-def test_the_extreme_of_a_parabola_between_two_points_is_found(a: float, b: float, c: float) -> None:
-    found = extremes([(x, a + b * (x - c) ** 2) for x in (0.0, 0.3, 0.6, 1.0)])
-    assert found == pytest.approx([c] * len(found), abs=1e-9)
-    assert found
-
-
-def test_a_crossing_is_found_to_rounding() -> None:
-    assert crossing(lambda x: x**3 - 0.1, 0.0, 1.0, 0.9) == pytest.approx(0.1 ** (1 / 3), abs=1e-12)
-    assert crossing(lambda x: 1e-9 * (np.exp(20 * x) - 2.0), 0.0, 1.0, 1e-9 * (np.exp(20) - 2)) == pytest.approx(
-        np.log(2.0) / 20, abs=1e-5
-    )

@@ -1,0 +1,365 @@
+"""The integrator: it drills the hole of a law, step by step.
+
+Within a regime the right-hand side (`law`) is linear but for sin⟨Θ⟩_1, so one step is one linear solve of collocation
+(`step`, `radau`). A step ends where the solution is not smooth: on a change of input, on an event (`events`: contact
+or saturation comes or goes), and where a stabilizer passes the kink that either left in the hole (`kinks`). The steps
+are the integrator's own: the bit may stop anywhere.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from math import isfinite, pi, sin
+from typing import Any
+
+from . import radau
+from .errors import CannotContinue
+from .events import Event, first_event
+from .hole import Drilled, Hole
+from .kinks import MERGE, SMOOTHEST_KINK, Kinks
+from .law import Law, Laws
+from .modes import ROUNDING, Loads, Mode, Modes, Regime, bit_tilt, saturation
+from .options import Options, Statistics
+from .step import Step, Trial, try_step
+from .survey import Survey
+
+LOOK_BACK = 1.0  # ℓ₁: how far behind the bit Θ may be asked for, as the curvature over the last ℓ₁ does
+SAFETY = 0.85  # of the step that the error estimate asks for, so that few of the next ones are rejected
+LARGEST_GROWTH = 8.0  # of a step over the last, as in RADAU5 (Hairer & Wanner, IV.8): an estimate reaches no farther
+SMALLEST_GROWTH = 0.1  # the same downwards
+LEAST_ERROR = 1e-12  # keeps the growth finite, far above its limit
+STRETCH = 1.3  # how much longer than planned a step may be if it then ends on the next kink: one long step that may be
+# rejected is tried before two short ones
+LARGEST_INCLINATION = 2 * pi  # beyond a full turn nothing is drilled
+CLOSER = 8.0  # how much shorter a step is tried where each regime meets a bound before its first point (2 to 64 serve
+# as well), while a value may lie so much farther beyond its bound at the points,
+MOST_SLACK = 1e-6  # at last by this: what needs more is no touch that rounding hides
+ORIGIN_LIMIT = 8.0  # |Y| beyond which the origin of Y is moved to the bit: what is lost by rounding stays below 1e-15
+
+
+@dataclass
+class Plan:
+    """How a step is tried, and tried again."""
+
+    h: float  # its length
+    resumed: float  # the length that may follow if a kink cuts it short
+    stretch: float = STRETCH
+    switches: int = 0  # of the regime where it starts
+    slack: float = ROUNDING  # by which its points may lie beyond a bound
+
+    def shorten(self, h: float) -> None:
+        """Try again, the error having been too large."""
+        self.h = self.resumed = h
+        self.stretch = 1.0
+
+    def look_closer(self, h: float) -> None:
+        """Try again, each regime having met a bound before the first point."""
+        self.h, self.stretch, self.switches = h, 1.0, 0
+        self.slack *= CLOSER
+
+
+class Integrator:
+    """The bit at the front of its hole, dimensionless: `drill` and `step` move it, the rest looks.
+
+    A change of input restarts the integrator where the bit is, and nothing else does: results do not depend on where
+    the bit stops on the way.
+
+    Parameters
+    ----------
+    modes
+        Of the drilling system.
+    survey
+        The existing hole, SI units.
+    length_scale
+        ℓ₁, m.
+    F_rss, eta_pi
+        The inputs at the start.
+    options
+        How it takes its steps.
+
+    Raises
+    ------
+    ParameterError
+        If the stations of the survey are too close to each other.
+    CannotContinue
+        If there is no finite state to start from.
+    """
+
+    def __init__(
+        self,
+        modes: Modes,
+        survey: Survey,
+        length_scale: float,
+        F_rss: float,
+        eta_pi: float,
+        options: Options = Options(),  # noqa: B008 - frozen
+    ) -> None:
+        self.modes, self.scaled = modes, modes.scaled
+        self.length_scale, self.options = length_scale, options
+        self.hole = Hole(survey, length_scale, self.scaled.s[-1] + LOOK_BACK)
+        self.xi = 0.0
+        self.regime = modes.free()
+        self.path = (0.0, 0.0)  # ∫ sin Θ dξ, ∫ cos Θ dξ up to the start of the present step
+        self.origin = 0.0  # of Y
+        self._accepted = self._rejected = self._events = 0
+        self.kinks = Kinks(self.scaled.s)
+        for kink, jump in self.hole.kinks:
+            self.kinks.add_images(kink, 2, jump)
+        self.present = Step.standstill(0.0, self.hole.final_inclination, 0.0)  # the step that the bit is in
+        self._restart(F_rss, eta_pi, self.hole.final_inclination)
+
+    # moving
+
+    def drill(self, xi: float, F_rss: float, eta_pi: float) -> None:
+        """Drill on to `xi` under inputs that act from where the bit is.
+
+        Raises `CannotContinue` if that fails; then nothing has changed.
+        """
+        changed = (F_rss, eta_pi) != (self.F_rss, self.eta_pi)
+        if changed or xi > self.present.end:
+            with self._all_or_nothing():
+                if changed:
+                    self._steer(F_rss, eta_pi)
+                self._take_steps(xi)
+        self.xi = xi
+
+    def advance(self, xi: float) -> None:
+        """Drill on to `xi` under the inputs as they are, see `drill`."""
+        self.drill(xi, self.F_rss, self.eta_pi)
+
+    def steer(self, F_rss: float, eta_pi: float) -> None:
+        """Take over inputs where the bit is, see `drill`."""
+        self.drill(self.xi, F_rss, eta_pi)
+
+    def step(self) -> Step:
+        """Drill on to the end of the integrator's next step, and return that step; errors as in `drill`."""
+        with self._all_or_nothing():
+            self._take_step()
+        self.xi = self.present.end
+        return self.present
+
+    @contextmanager
+    def _all_or_nothing(self) -> Iterator[None]:
+        """What fails within changes nothing."""
+        before = self.save()
+        try:
+            yield
+        except CannotContinue:
+            self.restore(before)
+            raise
+        except (ArithmeticError, ValueError) as error:  # what other languages call inf and nan
+            failure = self._failure("not finite", self.present.end)
+            self.restore(before)
+            raise failure from error
+
+    def _take_steps(self, xi: float) -> None:
+        pieces = len(self.hole.starts)  # that there are, and that the kernel in C would keep for the way back
+        while xi > self.present.end:
+            pieces += 1
+            if pieces + len(self.hole.starts) > 2 * self.options.most_steps:
+                raise CannotContinue.because("too many", self.present.end * self.length_scale, self.options.most_steps)
+            self._take_step()
+
+    def _steer(self, F_rss: float, eta_pi: float) -> None:
+        before = self.inclination()
+        self._move_path(self.xi)
+        self.present = Step.standstill(self.xi, *self.present.state(self.xi))
+        self._restart(F_rss, eta_pi, before)
+
+    # looking
+
+    def state(self) -> tuple[float, float]:
+        """θ and Y (counted from the start of the run) at the bit."""
+        theta, Y = self.present.state(self.xi)
+        return theta, Y + self.origin
+
+    def inclination(self) -> float:
+        """Θ at the bit, eq. (16): algebraic, it jumps with the inputs."""
+        return self._inclination(self.present.state(self.xi)[0], self.loads(), self.eta_pi)
+
+    def earlier_inclination(self, xi: float) -> float:
+        """What Θ was when the bit was at `xi`, at most LOOK_BACK behind; where it jumped, after the jump."""
+        hole = self.hole
+        k = hole.find(xi + MERGE)
+        drilled = hole.drilled[k]
+        if drilled is None:
+            return hole.Theta(xi)
+        xi = max(xi, hole.starts[k])
+        theta = drilled.at((xi - hole.starts[k]) * hole.rates[k])
+        return self._inclination(theta, self._loads(xi, theta, hole.Y(xi), drilled.F_rss), drilled.eta_pi)
+
+    def _inclination(self, theta: float, loads: Loads, eta_pi: float) -> float:
+        return theta - bit_tilt(self.settled(loads).F_0(loads), eta_pi, self.scaled.psi_star)
+
+    def loads(self) -> Loads:
+        """What bends the beam where the bit is."""
+        return self._loads(self.xi, *self.present.state(self.xi), self.F_rss)
+
+    def _loads(self, xi: float, theta: float, Y: float, F_rss: float) -> Loads:
+        delayed = [self.hole.Y(xi - s_i) for s_i in self.scaled.s]
+        e = [Y - Y_i - s_i * theta for Y_i, s_i in zip(delayed, self.scaled.s)]
+        return Loads(e, F_rss, sin(Y - delayed[0]))
+
+    def settled(self, loads: Loads) -> Mode:
+        """The mode whose contacts hold under `loads`."""
+        return self.modes.settle(loads, self.regime.contact)
+
+    @property
+    def statistics(self) -> Statistics:
+        """What the integrator has done since the start of the run."""
+        return Statistics(self._accepted, self._rejected, self._events)
+
+    def position(self) -> tuple[float, float]:
+        """Position of the bit in the vertical plane, sideways and down, from the start of the run."""
+        x, z = self.present.displacement(self.xi)
+        return self.path[0] + x, self.path[1] + z
+
+    # keeping
+
+    def save(self) -> dict[str, Any]:
+        """The whole evolving state; what it holds is never changed afterwards."""
+        return {
+            "xi": self.xi,
+            "F_rss": self.F_rss,
+            "eta_pi": self.eta_pi,
+            "regime": self.regime,
+            "path": self.path,
+            "origin": self.origin,
+            "statistics": self.statistics,
+            "kinks": self.kinks.save(),
+            "step": self.present,
+            "hole": self.hole.save(),
+        }
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Go back to a state from `save`, also after a journey through JSON."""
+        self.xi, self.origin = state["xi"], state["origin"]
+        self.path = (state["path"][0], state["path"][1])
+        self._accepted, self._rejected, self._events = state["statistics"]
+        self.kinks.restore(state["kinks"])
+        xi, h, theta, Y, *rest = state["step"]
+        self.present = Step(xi, h, tuple(theta), tuple(Y), *rest)
+        self.hole.restore(state["hole"])
+        self._take_over(state["F_rss"], state["eta_pi"])
+        contact, side = state["regime"]
+        self._change_regime(Regime(tuple(contact), side))
+
+    # stepping
+
+    def _take_over(self, F_rss: float, eta_pi: float) -> None:
+        self.F_rss, self.eta_pi = F_rss, eta_pi
+        self._laws = Laws(self.modes, F_rss, eta_pi)
+
+    def _restart(self, F_rss: float, eta_pi: float, Theta: float) -> None:
+        """Find the regime under new inputs and mark the jump of the inclination, which was Θ, that they make."""
+        self._take_over(F_rss, eta_pi)
+        loads = self.loads()
+        mode, psi_star = self.settled(loads), self.scaled.psi_star
+        F_0 = mode.F_0(loads)
+        jump = abs(self.present.theta[0] - bit_tilt(F_0, self.eta_pi, psi_star) - Theta)
+        if not (isfinite(jump) and isfinite(F_0)):
+            raise self._failure("not finite", self.xi)
+        self._change_regime(Regime(mode.contact, saturation(F_0, self.eta_pi, psi_star)))
+        self.kinks.add_images(self.xi, 1, jump)
+
+    def _change_regime(self, regime: Regime) -> None:
+        self.regime, self._law = regime, self._laws[regime]
+
+    def _move_path(self, xi: float) -> None:
+        x, z = self.present.displacement(xi)
+        self.path = (self.path[0] + x, self.path[1] + z)
+
+    def _leave(self, last: Step) -> tuple[float, float, int | None]:
+        """Draw the consequences of how the last step ended: θ and Y there, and the order of a kink of Y, if any."""
+        self._move_path(last.end)
+        theta, Y = last.state(last.end)
+        if abs(Y) > ORIGIN_LIMIT:
+            self.hole.shift(Y)
+            self.origin += Y
+            Y = 0.0
+        self.hole.forget(last.end - LOOK_BACK - self.scaled.s[-1])
+        kink = self.kinks.kink_here(last.end, self.options.shortest_step(last.end))
+        if last.event is not None:
+            self._change_regime(self.regime.switch(last.event, last.side))
+            self._events += 1
+            kink = 2  # over a bound Y' is continuous, Y'' is not
+        return theta, Y, kink
+
+    def _take_step(self) -> None:
+        """Append one step at the end of the last one."""
+        last, xi = self.present, self.present.end
+        theta, Y, kink = self._leave(last)
+        plan = self._first_plan(last, kink)
+        trial, event = self._find_step(plan, xi, theta, Y)
+        _, h, thetas, Ys, end, *_ = trial.step
+        next_h = h * min(growth(trial.error), LARGEST_GROWTH)
+        if h < plan.resumed:
+            next_h = max(next_h, plan.resumed)
+        end, part, side = event or (end, None, 0)
+        self.present = step = Step(xi, h, thetas, Ys, end, part, side, next_h)
+        if not abs(step.state(step.end)[0]) <= LARGEST_INCLINATION:
+            raise self._failure("turns over", step.end)
+        self.hole.append(xi, h, step.Y, Drilled(step.theta, self.F_rss, self.eta_pi))
+        if kink is not None:
+            self.kinks.add_images(xi, kink, abs(step.derivative(kink, xi) - last.derivative(kink, xi)))
+        self._accepted += 1
+
+    def _first_plan(self, last: Step, kink: int | None) -> Plan:
+        """What the last step leaves for the next; after a kink a step no longer than the layer in which θ settles."""
+        plan = Plan(last.next_h, last.next_h)
+        if (kink is not None and kink <= SMOOTHEST_KINK) or last.end == last.xi:
+            plan.h = min(plan.h, self.options.layers * self._law.relaxation)
+            if last.event is not None:
+                plan.resumed = plan.h
+        return plan
+
+    def _find_step(self, plan: Plan, xi: float, theta: float, Y: float) -> tuple[Trial, Event | None]:
+        """The first trial of a step whose error is tolerable and whose regime holds beyond its start; its first event.
+
+        A bound that is met where the step starts switches the regime there. By the rates exactly one regime holds, but
+        perhaps for a touch that is over before the first point of the step: then each regime finds itself beyond a
+        bound there, and the step is tried shorter. At h → 0 the regime that holds shows. Where rounding hides it, a
+        value may lie beyond its bound by a slack that grows as h falls; their product, what a wrong regime adds to the
+        state, is the same each time.
+        """
+        shortest = self.options.shortest_step(xi)
+        while True:
+            law = self._law
+            h = self._choose_length(law, plan, xi)
+            if h < shortest:
+                raise self._failure("too short", xi)
+            trial = try_step(law, self.hole, xi, h, theta, Y, self.options)
+            if not isfinite(trial.error):
+                raise self._failure("not finite", xi)
+            if trial.error > 1.0:
+                plan.shorten(h * max(growth(trial.error), SMALLEST_GROWTH))
+                self._rejected += 1
+                continue
+            event = first_event(law, self.hole, trial, plan.slack)
+            if event is None or event.xi - xi >= shortest:
+                return trial, event
+            if plan.switches < 2 * len(law.bounds):
+                self._change_regime(self.regime.switch(event.part, event.side))
+                plan.switches += 1
+                continue
+            plan.look_closer(max(h / CLOSER, shortest))
+            if plan.slack >= MOST_SLACK:
+                raise self._failure("no mode", xi)
+
+    def _choose_length(self, law: Law, plan: Plan, xi: float) -> float:
+        """Length of the next trial: as planned, but no kink lies within it, and none is left a short step ahead."""
+        largest = self.options.largest_step
+        h = min(plan.h, largest)
+        to_kink = self.kinks.next_kink(xi, 2 * h, law.gains, self.options.relative_tolerance) - xi
+        if to_kink >= 2 * h:
+            return h
+        return to_kink if to_kink <= min(plan.stretch * h, largest) else to_kink / 2
+
+    def _failure(self, code: str, xi: float) -> CannotContinue:
+        return CannotContinue.because(code, xi * self.length_scale, self.options.relative_tolerance)
+
+
+def growth(error: float) -> float:
+    """How much longer than a trial with this error, over the tolerance, the next one may be."""
+    grown: float = max(error, LEAST_ERROR) ** (-1 / (radau.S + 1))
+    return SAFETY * grown

@@ -1,0 +1,77 @@
+"""The kinks ahead: where a stabilizer will pass a jump in a derivative of the hole's Y, and with it the solution."""
+
+from bisect import insort
+from collections.abc import Iterable
+from itertools import takewhile
+from math import factorial, inf
+from typing import Any, NamedTuple
+
+SMOOTHEST_KINK = 3  # of the derivatives of Y: what a jump in a higher one does is small, and the error estimate sees it
+MERGE = 1e-9  # ℓ₁: kinks closer than this are one. Far above the rounding of a place, far below any step worth taking
+
+
+class Kink(NamedTuple):
+    """At `xi` stabilizer `i` passes a jump of size `jump` in derivative `order` of the hole's Y."""
+
+    xi: float
+    order: int
+    jump: float
+    i: int
+
+
+class Kinks:
+    """The kinks ahead of the bit, in order: each jump in the hole comes back at ξ + s_i, once for every stabilizer."""
+
+    def __init__(self, s: tuple[float, ...]) -> None:
+        self.s = s
+        self.ahead: list[Kink] = []
+        self._last: tuple[float, int, float] = (-inf, 0, 0.0)  # jump added: where, in which derivative, its size
+
+    def add_images(self, xi: float, order: int, jump: float) -> None:
+        """Mark where the stabilizers will pass a jump at `xi` in a derivative of Y; jumps at one place add up."""
+        if order > SMOOTHEST_KINK:
+            return
+        if (xi, order) == self._last[:2]:  # the inputs change once more where the bit is
+            earlier = self._last[2]
+            for i, s_i in enumerate(self.s):
+                self.ahead.remove(Kink(xi + s_i, order, earlier, i))
+            jump += earlier
+        for i, s_i in enumerate(self.s):
+            insort(self.ahead, Kink(xi + s_i, order, jump, i))
+        self._last = xi, order, jump
+
+    def kink_here(self, xi: float, shortest: float) -> int | None:
+        """Take the kinks up to `xi` off the list; the lowest derivative of Y that those at `xi` make jump, if any.
+
+        Derivative k of Y at a stabilizer acts on derivative k + 1 at the bit. Half the way to a kink must be no shorter
+        than a step may be, `shortest`: one that is closer is met here.
+        """
+        near = max(MERGE, 2 * shortest)
+        passed = list(takewhile(lambda kink: kink.xi - xi <= near, self.ahead))
+        del self.ahead[: len(passed)]
+        return min((kink.order + 1 for kink in passed if xi - kink.xi <= near), default=None)
+
+    def next_kink(self, xi: float, h: float, gains: list[float], tolerance: float) -> float:
+        """Where the next kink lies that a step of length `h` from `xi` must not pass; inf if there is none.
+
+        It may pass those that change it by less than the tolerance: `gains` is what it changes by, per change of
+        Y(ξ−s_i).
+        """
+        for kink in self.ahead:
+            if kink.xi >= xi + h:
+                break
+            order = kink.order + 1
+            if gains[kink.i] * kink.jump * h**order > tolerance * factorial(order):
+                return kink.xi
+        return inf
+
+    def save(self) -> dict[str, Any]:
+        """The kinks, as plain lists."""
+        return {"ahead": self.ahead[:], "last": self._last}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take over the kinks from `save`."""
+        ahead: Iterable[tuple[float, int, float, int]] = state["ahead"]
+        self.ahead = [Kink(*kink) for kink in ahead]
+        xi, order, jump = state["last"]
+        self._last = xi, order, jump

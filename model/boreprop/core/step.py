@@ -1,0 +1,109 @@
+"""One step of the integrator: the state as polynomials, and the collocation that gives them."""
+
+from math import cos, inf, perm, sin
+from typing import NamedTuple
+
+from . import radau
+from .hole import Hole
+from .law import Law, Sine
+from .options import Options
+
+GAUSS = [(0.5 - 0.15**0.5, 5 / 18), (0.5, 8 / 18), (0.5 + 0.15**0.5, 5 / 18)]  # nodes and weights on [0, 1]
+REST = 0.03  # what may be left of sin⟨Θ⟩_1 beyond its linear part, in tolerances of θ: little against the step's error
+ITERATIONS = 10  # on that rest; each gains two digits or more
+
+
+class Step(NamedTuple):
+    """A stretch [xi, end] of the run: the state as polynomials in t = (ξ − xi)/h, and why it ends."""
+
+    xi: float
+    h: float
+    theta: tuple[float, ...]  # coefficients of t^0 … t^S
+    Y: tuple[float, ...]
+    end: float
+    event: int | None = None  # the part whose bound is met at the end
+    side: int = 0  # and on which side
+    next_h: float = inf
+
+    @classmethod
+    def standstill(cls, xi: float, theta: float, Y: float) -> "Step":
+        """A step of length zero at the bit, so that a run can start or restart there."""
+        rest = (0.0,) * radau.S
+        return cls(xi, 1.0, (theta, *rest), (Y, *rest), xi)
+
+    def state(self, xi: float) -> tuple[float, float]:
+        """(θ, Y) at `xi`."""
+        t = (xi - self.xi) / self.h
+        a0, a1, a2, a3, a4, a5 = self.theta
+        b0, b1, b2, b3, b4, b5 = self.Y
+        theta = a0 + t * (a1 + t * (a2 + t * (a3 + t * (a4 + t * a5))))
+        return theta, b0 + t * (b1 + t * (b2 + t * (b3 + t * (b4 + t * b5))))
+
+    def derivative(self, order: int, xi: float) -> float:
+        """A derivative of Y at `xi`."""
+        t, value = (xi - self.xi) / self.h, 0.0
+        for m in range(radau.S, order - 1, -1):
+            value = value * t + perm(m, order) * self.Y[m]
+        return value / self.h**order
+
+    def displacement(self, xi: float) -> tuple[float, float]:
+        """∫ sin Θ dξ and ∫ cos Θ dξ from the start of the step to `xi`."""
+        _, c1, c2, c3, c4, c5 = self.Y
+        length, x, z = xi - self.xi, 0.0, 0.0
+        for node, weight in GAUSS:
+            t = node * length / self.h
+            Theta = (c1 + t * (2 * c2 + t * (3 * c3 + t * (4 * c4 + t * 5 * c5)))) / self.h
+            x += weight * sin(Theta)
+            z += weight * cos(Theta)
+        return x * length, z * length
+
+
+class Trial(NamedTuple):
+    """A step as the collocation gives it, before events cut it. Lists run over `radau.POINTS`."""
+
+    step: Step
+    thetas: list[float]
+    Ys: list[float]
+    delayed: list[list[float]]  # Y(ξ − s_i), a list for each stabilizer
+    sines: list[float]
+    error: float  # estimated, over the tolerance
+
+
+def try_step(law: Law, hole: Hole, xi: float, h: float, theta: float, Y: float, options: Options) -> Trial:
+    """Collocation from (θ, Y) at `xi` over `h`, in the regime of `law`.
+
+    One linear solve, but for sin⟨Θ⟩_1: its linear part belongs to the Jacobian, and where the rest counts it goes to
+    the right-hand side and the solve is repeated.
+    """
+    delayed = [hole.look_up(xi - s_i, h, radau.POINTS) for s_i in law.s]
+    average = Y - delayed[0][0]
+    sine = Sine(average, sin(average), cos(average))
+    J = law.jacobian(sine)
+    frozen = sine.linear([Y - Y_1 for Y_1 in delayed[0]])
+    allowed = REST * options.relative_tolerance * (abs(law.theta_rate.theta) + 1 / h)
+    for _ in range(ITERATIONS):
+        f_theta, f_Y = law.frozen(theta, Y, delayed, frozen)
+        parts_theta, parts_Y = radau.collocate(h, J, f_theta, f_Y)
+        Ys = radau.values(Y, parts_Y)
+        averages = [Y_t - Y_1 for Y_t, Y_1 in zip(Ys, delayed[0])]
+        if sine.largest_error(averages) * abs(law.theta_rate.g) <= allowed:
+            sines = sine.linear(averages)
+            break
+        assumed = [s + sine.slope * (Y_t - Y) for s, Y_t in zip(frozen, Ys)]
+        sines = [sin(average) for average in averages]
+        rest = [s - linear for s, linear in zip(sines, assumed)]
+        if max(map(abs, rest)) * abs(law.theta_rate.g) <= allowed:
+            break
+        frozen = [s + r for s, r in zip(frozen, rest)]
+    thetas = radau.values(theta, parts_theta)
+    at = radau.AT_CHECK
+    moved_theta, moved_Y = thetas[at] - theta, Ys[at] - Y
+    error_theta, error_Y = radau.error(
+        h,
+        J,
+        radau.slope(parts_theta) - h * (f_theta[at] + J[0] * moved_theta + J[1] * moved_Y),
+        radau.slope(parts_Y) - h * (f_Y[at] + J[2] * moved_theta + J[3] * moved_Y),
+    )
+    step = Step(xi, h, radau.coefficients(theta, parts_theta), radau.coefficients(Y, parts_Y), xi + h)
+    error = max(options.theta_weight * abs(error_theta), abs(error_Y)) / options.relative_tolerance
+    return Trial(step, thetas, Ys, delayed, sines, error)

@@ -1,0 +1,77 @@
+"""The kinks ahead: the lattice of images of each jump in the hole."""
+
+import json
+from math import inf
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from boreprop.core.kinks import Kinks
+
+S = (1.0, 1.7, 2.9)
+GAINS = [1.0, 1.0, 1.0]
+NOWHERE_NEAR = 1e-12
+
+places = st.lists(st.floats(0.0, 50.0), min_size=1, max_size=6, unique=True)
+
+
+def taken(kinks: Kinks, xi: float) -> int | None:
+    return kinks.kink_here(xi, NOWHERE_NEAR)
+
+
+@given(places)
+def test_each_jump_comes_back_once_at_every_stabilizer(jumps: list[float]) -> None:
+    kinks = Kinks(S)
+    for xi in sorted(jumps):
+        kinks.add_images(xi, 1, 0.1)
+    met, at = [], kinks.next_kink(-1.0, inf, GAINS, 0.0)
+    while at < inf:
+        met.append(at)
+        assert taken(kinks, at) == 2
+        at = kinks.next_kink(at, inf, GAINS, 0.0)
+    images = sorted({xi + s_i for xi in jumps for s_i in S})
+    for image in images:
+        assert min(abs(image - at) for at in met) <= 1e-9
+    assert len(met) <= len(images)
+
+
+def test_jumps_at_one_place_add_up() -> None:
+    kinks = Kinks(S)
+    kinks.add_images(2.0, 1, 3e-3)
+    kinks.add_images(2.0, 1, 4e-3)
+    assert [kink.xi for kink in kinks.ahead] == [2.0 + s_i for s_i in S]
+    assert [kink.jump for kink in kinks.ahead] == pytest.approx([7e-3] * 3)
+
+
+def test_the_lowest_derivative_of_those_at_one_place_counts() -> None:
+    kinks = Kinks((1.0, 2.0))
+    kinks.add_images(1.0, 3, 0.1)  # passes stabilizer 2 where
+    kinks.add_images(2.0, 1, 0.1)  # this one passes stabilizer 1
+    assert taken(kinks, 2.0) == 4
+    assert taken(kinks, 3.0) == 2
+
+
+def test_jumps_in_smoother_derivatives_are_not_kept() -> None:
+    kinks = Kinks(S)
+    kinks.add_images(0.0, 4, 1.0)
+    assert kinks.ahead == []
+
+
+def test_a_step_may_pass_over_a_jump_that_changes_it_by_less_than_the_tolerance() -> None:
+    """By h²/2 times the jump of Y' at a stabilizer, times the gain there."""
+    kinks = Kinks((1.0,))
+    kinks.add_images(0.0, 1, 1e-3)
+    change = 5.0 * 1e-3 * 0.4**2 / 2
+    assert kinks.next_kink(0.9, 0.4, [5.0], 1.01 * change) == inf
+    assert kinks.next_kink(0.9, 0.4, [5.0], 0.99 * change) == 1.0
+
+
+def test_saved_kinks_are_the_same_after_a_journey_through_json() -> None:
+    kinks, other = Kinks(S), Kinks(S)
+    kinks.add_images(0.0, 1, 0.1)
+    kinks.add_images(0.4, 2, 0.2)
+    other.restore(json.loads(json.dumps(kinks.save())))
+    kinks.add_images(0.4, 2, 0.3)
+    other.add_images(0.4, 2, 0.3)
+    assert other.ahead == kinks.ahead
