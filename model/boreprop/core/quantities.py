@@ -15,6 +15,7 @@ Kind = Literal["Real", "Integer", "String"]
 Size = Literal["1", "n", "n-1", "column"]  # "column": as long as the table that it is a column of
 
 MAX_STABILIZERS = 6
+RELATIVE_TOLERANCE = 1e-7  # with it θ is within 5e-7 rad of the reference trajectories
 
 
 @dataclass(frozen=True)
@@ -121,7 +122,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("lateral_steering_resistance", "parameter", "", "η", "(4)", "lateral over axial drilling resistance", above=0.0, nominal=10.0, key="bit.lateral_steering_resistance", field="bit.lateral_steering_resistance"),
     Quantity("angular_steering_resistance", "parameter", "", "χ", "(4)", "angular over axial drilling resistance", above=0.0, key="bit.angular_steering_resistance", field="bit.angular_steering_resistance"),
     Quantity("bit_tilt_limit", "parameter", "rad", "ψ*", "(10)", "tilt at which the bit gauge meets the wall", above=0.0, at_most=pi / 2, nominal=0.01, key="bit.tilt_limit_deg", field="bit.tilt_limit"),
-    Quantity("relative_tolerance", "parameter", "", "", "", "local error of one step of the integrator, over 1 rad and ℓ₁", at_least=1e-12, at_most=1e-2, nominal=1e-7, start=1e-7),
+    Quantity("relative_tolerance", "parameter", "", "", "", "local error of one step of the integrator, over 1 rad and ℓ₁", at_least=1e-12, at_most=1e-2, nominal=1e-7, start=RELATIVE_TOLERANCE),
     Quantity("survey_file", "parameter", "", "", "", "survey of the existing hole (CSV); empty: the survey packed in the FMU", kind="String", start="", key="hole.survey"),
 
     Quantity("bit_diameter", "case", "m", "", "", "diameter of the hole, for drawing", above=0.0, key="bit.diameter", field="bit_diameter"),
