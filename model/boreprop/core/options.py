@@ -3,10 +3,8 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from .checks import check_number
-from .quantities import BY_NAME
-
-RELATIVE_TOLERANCE = 1e-7  # with it θ is within 5e-7 rad of the reference trajectories
+from .checks import check_number, check_quantity
+from .quantities import RELATIVE_TOLERANCE as RELATIVE_TOLERANCE
 
 
 @dataclass(frozen=True)
@@ -67,5 +65,4 @@ class Statistics(NamedTuple):
 
 def check_tolerance(relative_tolerance: float) -> None:
     """Raise `ParameterError` unless the tolerance is in the range of the table of quantities."""
-    allowed = BY_NAME["relative_tolerance"]
-    check_number("relative_tolerance", relative_tolerance, at_least=allowed.min, at_most=allowed.max)
+    check_quantity("relative_tolerance", relative_tolerance)
