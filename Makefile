@@ -25,11 +25,12 @@ test: .venv/dev.installed  # the whole suite
 soak: .venv/dev.installed  # new examples of the property tests, then the fuzzers: make soak MINUTES=40 [SEED=…]
 	$(BIN)/python tests/soak.py --minutes $(MINUTES) $(if $(SEED),--seed $(SEED))
 
-lint: .venv/dev.installed  # style, types and the import contract
+lint: .venv/dev.installed  # style, types and the import contract; style and faults of the C
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/python tests/lint_c.py
 
 bench: .venv/bench.installed  # speed, side by side with something else
 	$(BIN)/python benchmarks/integrator.py

@@ -14,7 +14,7 @@
 
 #include "fmi2Functions.h"
 
-#define STEP 3.66e-3 /* s, at 1 m/s a thousandth of ℓ₁ */
+#define STEP 3.66e-3   /* s, at 1 m/s a thousandth of ℓ₁ */
 #define FORCE_STEP 1e3 /* N, from one step to the next where the force changes */
 
 enum { REPETITIONS = 7, STARTS = 200, STEPS = 100000 };
@@ -78,9 +78,9 @@ static double step(int set, int get) {
         expect(DoStep(component, k * STEP, STEP, fmi2True) == fmi2OK, "fmi2DoStep");
         if (get) expect(GetReal(component, &output, 1, &value) == fmi2OK, "fmi2GetReal");
     }
-    double mean = (now() - begin) / STEPS;
+    double mean = (now() - begin) / (double)STEPS;
     expect(GetReal(component, &length, 1, &value) == fmi2OK, "fmi2GetReal");
-    expect(fabs(value - STEPS * STEP) < 1e-6, "drilling as far as the steps go");
+    expect(fabs(value - (double)STEPS * STEP) < 1e-6, "drilling as far as the steps go");
     FreeInstance(component);
     return mean;
 }
@@ -94,7 +94,7 @@ static double starts(void) {
         sum += now() - begin;
         FreeInstance(component);
     }
-    return sum / STARTS;
+    return sum / (double)STARTS;
 }
 
 static int compare(const void *a, const void *b) {

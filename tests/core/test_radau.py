@@ -25,21 +25,50 @@ def solve(
     return np.array([radau.values(start, part)[-1] for start, part in zip(x, parts, strict=True)]), coefficients
 
 
+NODES = [t for t in radau.POINTS if t != radau.CHECK]
+
+
 def test_nodes_are_the_right_radau_nodes() -> None:
     """Roots of P_{S−1} − P_S on [0, 1]."""
     legendre = np.zeros(radau.S + 1)
     legendre[radau.S - 1], legendre[radau.S] = 1, -1
     roots = np.sort(np.polynomial.legendre.legroots(legendre))
-    assert radau.NODES == pytest.approx((roots + 1) / 2, abs=1e-13)
+    assert NODES == pytest.approx((roots + 1) / 2, abs=1e-13)
 
 
 def test_eigenvalues_are_those_of_the_inverse_collocation_matrix() -> None:
-    t = np.array(radau.NODES)
+    t = np.array(NODES)
     powers = np.arange(1, radau.S + 1)
     A = (t[:, None] ** powers) @ np.linalg.inv(powers * t[:, None] ** (powers - 1))
     eigenvalues = np.linalg.eigvals(np.linalg.inv(A))
     for gamma in radau.GAMMA:
         assert np.abs(eigenvalues - gamma).min() < 1e-11
+
+
+def eigenpolynomials() -> np.ndarray:
+    """Coefficients of t … t^S of the polynomials v with v(0) = 0 and v' = γ v at every node, one row for each γ."""
+    R = np.polynomial.polynomial.polyfromroots(NODES)  # v' − γ v = R, which is zero there
+    v = np.zeros((len(radau.GAMMA), radau.S + 2), dtype=complex)
+    for row, gamma in zip(v, radau.GAMMA, strict=True):
+        for m in range(radau.S, 0, -1):
+            row[m] = ((m + 1) * row[m + 1] - R[m]) / gamma
+    return v[:, 1:-1]
+
+
+def in_real_parts(values: np.ndarray) -> np.ndarray:
+    """Factors of the five parts of W in Re Σ_k values[k] W_k, the conjugate halves added."""
+    a, b, c = values
+    return np.array([a.real, 2 * b.real, -2 * b.imag, 2 * c.real, -2 * c.imag]).T
+
+
+def test_the_printed_tables_are_those_of_the_nodes_and_eigenvalues() -> None:
+    v, m, points = eigenpolynomials(), np.arange(1, radau.S + 1), np.array(radau.POINTS)
+    values = in_real_parts(v @ points ** m[:, None])
+    into_parts = np.insert(np.linalg.inv(np.delete(values, radau.AT_CHECK, axis=0)), radau.AT_CHECK, 0.0, axis=1)
+    np.testing.assert_allclose(radau.VALUES, values, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(radau.COEFFICIENTS, in_real_parts(v), rtol=0, atol=1e-15)
+    np.testing.assert_allclose(radau.SLOPE, in_real_parts(v @ (m * radau.CHECK ** (m - 1))), rtol=0, atol=1e-15)
+    np.testing.assert_allclose(radau.INTO_PARTS, into_parts, rtol=1e-13)
 
 
 @given(st.floats(1e-4, 1.0), st.sampled_from([STIFF, GENTLE]), st.integers(0, 2**32))
@@ -53,7 +82,7 @@ def test_the_polynomial_meets_the_equation_at_every_node(h: float, J: radau.Jaco
 
     _, c = solve(h, J, x, g)
     m = np.arange(1, radau.S + 1)
-    for t in radau.NODES:
+    for t in NODES:
         slope = (c * m * t ** (m - 1)).sum(axis=1) / h
         value = x + (c * t**m).sum(axis=1)
         right = np.array(J).reshape(2, 2) @ value + g(t * h)

@@ -16,8 +16,9 @@ typedef struct {
     void *environment;
 } Callbacks;
 
-static void print_message(void *environment, const char *instance, int status, const char *category,
-                          const char *message, ...) {
+static void print_message(
+    void *environment, const char *instance, int status, const char *category, const char *message, ...
+) {
     va_list arguments;
     (void)environment, (void)instance, (void)status, (void)category;
     va_start(arguments, message);

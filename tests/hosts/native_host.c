@@ -61,66 +61,87 @@ static int has_python(void) {
     return found;
 }
 
-#define FIND(name) \
-    fmi2##name##TYPE *name; \
-    *(void **)&name = find("fmi2" #name); \
-    must(name != NULL, "the library must export fmi2" #name)
+/* The functions of the library that are called here. */
+#define FUNCTIONS(DO)                                                                                                  \
+    DO(Instantiate)                                                                                                    \
+    DO(SetupExperiment)                                                                                                \
+    DO(EnterInitializationMode)                                                                                        \
+    DO(ExitInitializationMode)                                                                                         \
+    DO(SetReal)                                                                                                        \
+    DO(GetReal)                                                                                                        \
+    DO(DoStep)                                                                                                         \
+    DO(GetRealStatus)                                                                                                  \
+    DO(GetFMUstate)                                                                                                    \
+    DO(SetFMUstate)                                                                                                    \
+    DO(FreeFMUstate)                                                                                                   \
+    DO(SerializedFMUstateSize)                                                                                         \
+    DO(SerializeFMUstate)                                                                                              \
+    DO(DeSerializeFMUstate)                                                                                            \
+    DO(Terminate)                                                                                                      \
+    DO(Reset)                                                                                                          \
+    DO(FreeInstance)
+#define DECLARE(name) static fmi2##name##TYPE *name;
+#define FIND(name)                                                                                                     \
+    *(void **)&(name) = find("fmi2" #name);                                                                            \
+    must((name) != NULL, "the library must export fmi2" #name);
 
-static int lead(int count, char **arguments) {
-    static const fmi2CallbackFunctions callbacks = {hear, calloc, free, NULL, &messages};
-    double first[MOST], row[MOST], again[MOST], nothing = (double)NAN, zero = 0.0, time = -1.0;
-    fmi2ValueReference output[MOST], force, no_reference = 100000;
-    fmi2FMUstate state = NULL, copy = NULL;
-    size_t size = 0, outputs = 0;
-    char number[40];
-    if (count < 7 || count > 6 + MOST) return 2;
-    load(arguments[1]);
-    must(library != NULL, "the library must load");
-    FIND(Instantiate);
-    FIND(SetupExperiment);
-    FIND(EnterInitializationMode);
-    FIND(ExitInitializationMode);
-    FIND(SetReal);
-    FIND(GetReal);
-    FIND(DoStep);
-    FIND(GetRealStatus);
-    FIND(GetFMUstate);
-    FIND(SetFMUstate);
-    FIND(FreeFMUstate);
-    FIND(SerializedFMUstateSize);
-    FIND(SerializeFMUstate);
-    FIND(DeSerializeFMUstate);
-    FIND(Terminate);
-    FIND(Reset);
-    FIND(FreeInstance);
-    int steps = atoi(arguments[3]);
-    double step = strtod(arguments[4], NULL);
+FUNCTIONS(DECLARE)
+
+static const fmi2CallbackFunctions callbacks = {hear, calloc, free, NULL, &messages};
+
+/* What is asked of the instance. */
+static const char *guid;
+static int steps;
+static double step;
+static fmi2ValueReference force, output[MOST];
+static size_t outputs;
+
+static void read_arguments(int count, char **arguments) {
+    guid = arguments[2];
+    steps = atoi(arguments[3]);
+    step = strtod(arguments[4], NULL);
     force = (unsigned)atoi(arguments[5]);
-    while ((int)outputs + 6 < count) output[outputs] = (unsigned)atoi(arguments[6 + outputs]), outputs++;
-    size_t bytes = outputs * sizeof *row;
+    for (; (int)outputs + 6 < count; outputs++) output[outputs] = (unsigned)atoi(arguments[6 + outputs]);
+}
 
-    /* a run */
-    fmi2Component c = Instantiate("host", fmi2CoSimulation, arguments[2], NULL, &callbacks, fmi2False, fmi2True);
-    must(c != NULL, "fmi2Instantiate: must give an instance");
+static void initialize(fmi2Component c) {
     must(SetupExperiment(c, fmi2False, 0.0, 0.0, fmi2False, 0.0) == fmi2OK, "fmi2SetupExperiment: must be OK");
     must(EnterInitializationMode(c) == fmi2OK, "fmi2EnterInitializationMode: must be OK");
     must(ExitInitializationMode(c) == fmi2OK, "fmi2ExitInitializationMode: must be OK");
+}
+
+static void read_outputs(fmi2Component c, double row[MOST]) {
+    must(GetReal(c, output, outputs, row) == fmi2OK, "fmi2GetReal: must be OK");
+}
+
+static int same(const double a[MOST], const double b[MOST]) { return !memcmp(a, b, outputs * sizeof *a); }
+
+/* A run: prints a row at the start, of which `first` are the numbers, and after each step. */
+static void drill(fmi2Component c, double first[MOST]) {
+    double row[MOST] = {0};
+    char number[40];
     for (int k = 0; k <= steps; k++) {
         must(!k || DoStep(c, (k - 1) * step, step, fmi2False) == fmi2OK, "fmi2DoStep: must be OK");
-        must(GetReal(c, output, outputs, row) == fmi2OK, "fmi2GetReal: must be OK");
+        read_outputs(c, row);
         for (size_t i = 0; i < outputs; i++) {
             snprintf(number, sizeof number, i + 1 < outputs ? "%.17g " : "%.17g\n", row[i]);
             fputs(number, stdout);
         }
-        if (!k) memcpy(first, row, bytes);
+        if (!k) memcpy(first, row, sizeof row);
     }
     must(messages == 0, "a run must have nothing to say");
+}
 
-    /* errors: each is logged, nothing moves, and the instance goes on */
+/* Errors: each is logged, nothing moves, and the instance goes on. */
+static void make_errors(fmi2Component c) {
+    double row[MOST] = {0}, again[MOST] = {0}, nothing = (double)NAN, zero = 0.0, time = -1.0;
+    fmi2ValueReference no_reference = 100000;
+    read_outputs(c, row);
     must(SetReal(c, &force, 1, &nothing) == fmi2OK, "fmi2SetReal: must take what is checked later");
     must(DoStep(c, steps * step, step, fmi2False) == fmi2Discard && messages == 1, "a bad force must be refused");
     must(SetReal(c, &force, 1, &zero) == fmi2OK, "fmi2SetReal: must be OK");
-    must(GetReal(c, output, outputs, again) == fmi2OK && !memcmp(row, again, bytes), "a bad step must move nothing");
+    read_outputs(c, again);
+    must(same(row, again), "a bad step must move nothing");
     must(GetRealStatus(c, fmi2LastSuccessfulTime, &time) == fmi2OK, "fmi2GetRealStatus: must be OK");
     must(fabs(time - steps * step) < 1e-9, "a bad step must take no time");
     must(GetReal(c, &no_reference, 1, again) == fmi2Error && messages == 2, "an unknown reference must be an error");
@@ -131,32 +152,49 @@ static int lead(int count, char **arguments) {
         !Instantiate("host", fmi2CoSimulation, "another", NULL, &callbacks, fmi2False, fmi2True) && messages == 6,
         "another guid must be refused"
     );
+}
 
-    /* states: one kept, and one that went through bytes */
+/* States: one kept, and one that went through bytes. */
+static void take_states(fmi2Component c) {
+    double row[MOST] = {0}, again[MOST] = {0};
+    fmi2FMUstate state = NULL, copy = NULL;
+    size_t size = 0;
     must(GetFMUstate(c, &state) == fmi2OK, "fmi2GetFMUstate: must be OK");
     must(SerializedFMUstateSize(c, state, &size) == fmi2OK && size > 0, "fmi2SerializedFMUstateSize: must be OK");
     fmi2Byte *content = malloc(size);
     must(content && SerializeFMUstate(c, state, content, size) == fmi2OK, "fmi2SerializeFMUstate: must be OK");
     must(DeSerializeFMUstate(c, content, size, &copy) == fmi2OK, "fmi2DeSerializeFMUstate: must be OK");
     must(DoStep(c, steps * step, step, fmi2False) == fmi2OK, "fmi2DoStep: must be OK");
-    must(GetReal(c, output, outputs, row) == fmi2OK, "fmi2GetReal: must be OK");
+    read_outputs(c, row);
     for (int k = 0; k < 2; k++) {
         must(SetFMUstate(c, k ? copy : state) == fmi2OK, "fmi2SetFMUstate: must be OK");
         must(DoStep(c, steps * step, step, fmi2False) == fmi2OK, "fmi2DoStep: must be OK");
-        must(GetReal(c, output, outputs, again) == fmi2OK, "fmi2GetReal: must be OK");
-        must(!memcmp(row, again, bytes), "a step must be the same from the same state");
+        read_outputs(c, again);
+        must(same(row, again), "a step must be the same from the same state");
     }
     must(FreeFMUstate(c, &state) == fmi2OK && FreeFMUstate(c, &copy) == fmi2OK, "fmi2FreeFMUstate: must be OK");
-    content[size / 2] ^= 1;
+    if (content) content[size / 2] ^= 1;
     must(DeSerializeFMUstate(c, content, size, &state) == fmi2Error && !state, "a changed state must be refused");
     free(content);
+}
 
-    /* and from the start */
+static int lead(int count, char **arguments) {
+    double first[MOST] = {0}, again[MOST] = {0};
+    if (count < 7 || count > 6 + MOST) return 2;
+    load(arguments[1]);
+    must(library != NULL, "the library must load");
+    FUNCTIONS(FIND)
+    read_arguments(count, arguments);
+    fmi2Component c = Instantiate("host", fmi2CoSimulation, guid, NULL, &callbacks, fmi2False, fmi2True);
+    must(c != NULL, "fmi2Instantiate: must give an instance");
+    initialize(c);
+    drill(c, first);
+    make_errors(c);
+    take_states(c);
     must(Terminate(c) == fmi2OK && Reset(c) == fmi2OK, "fmi2Reset: must be OK");
-    must(SetupExperiment(c, fmi2False, 0.0, 0.0, fmi2False, 0.0) == fmi2OK, "fmi2SetupExperiment: must be OK");
-    must(EnterInitializationMode(c) == fmi2OK, "fmi2EnterInitializationMode: must be OK");
-    must(ExitInitializationMode(c) == fmi2OK, "fmi2ExitInitializationMode: must be OK");
-    must(GetReal(c, output, outputs, again) == fmi2OK && !memcmp(first, again, bytes), "the start must be the same");
+    initialize(c);
+    read_outputs(c, again);
+    must(same(first, again), "the start must be the same");
     FreeInstance(c);
     must(!has_python(), "no Python must be in this process");
     unload();

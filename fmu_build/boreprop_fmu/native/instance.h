@@ -3,9 +3,9 @@
 #define BOREPROP_INSTANCE_H
 
 #include "fmi2Functions.h"
-#include "growing.h"
-#include "state.h"
-#include "survey.h"
+#include "run.h"
+#include "serialized.h"
+#include "survey_file.h"
 
 typedef enum { INPUT, OUTPUT, PARAMETER } Role;
 typedef enum { REAL, INTEGER, BOOLEAN, STRING } Kind;
@@ -156,7 +156,7 @@ static int drill_on(Component *c, double to, const double end[INPUTS], char why[
     int stairs = to > from ? (int)ceil(MOST_STAIRS * (fabs(rise) / larger(weight, weight + rise))) : 1;
     int stair = 0, done = 1;
     Count size = drilling_state_size(drilling);
-    double *before = NULL, accepted = drilling->propagation.now.accepted;
+    double *before = NULL, accepted = drilling->integrator.now.accepted;
     if (!check_finite("rss_force_slope", slope, why)) return 0;
     if (stairs > 1) {
         before = malloc((size_t)size * sizeof *before);
@@ -168,8 +168,10 @@ static int drill_on(Component *c, double to, const double end[INPUTS], char why[
         Inputs inputs = {force + slope * (at - from), slope, weight + rise * (stair + 0.5) / stairs};
         double next = stair + 1 < stairs ? from + (to - from) * (stair + 1) / stairs : to;
         done = run_advance(c->run, next, inputs, why) == DONE;
-        if (done && drilling->propagation.now.accepted - accepted > (double)MOST_STEPS)
-            done = too_long(why) == DONE;
+        if (done && drilling->integrator.now.accepted - accepted > (double)MOST_STEPS) {
+            too_long(why);
+            done = 0;
+        }
     }
     if (!done && before) drilling_return(drilling, before);
     free(before);
@@ -216,8 +218,8 @@ static fmi2Status save(Component *c, Saved *saved) {
     size_t text = strlen(c->survey_file), size = ((size_t)count + FIXED + VARIABLES) * 8 + text;
     unsigned char *bytes = malloc(size), *to = bytes;
     double *numbers = malloc((size_t)(count + 1) * sizeof *numbers);
-    double fixed[FIXED] = {c->phase, c->time, c->since, c->from, c->rate, c->run_has_inputs, c->derivative[0],
-                           c->derivative[1], c->derivative[2], (double)text};
+    double fixed[FIXED] = {c->phase,   c->time,          c->since,         c->from,          c->rate,
+                           c->run_has_inputs, c->derivative[0], c->derivative[1], c->derivative[2], (double)text};
     if (bytes && numbers) {
         for (int i = 0; i < FIXED; i++) to = put_double(to, fixed[i]);
         for (int i = 0; i < VARIABLES; i++) to = put_double(to, VARIABLE[i].role == OUTPUT ? 0.0 : c->value[i]);

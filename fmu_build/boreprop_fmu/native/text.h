@@ -2,7 +2,7 @@
 #ifndef BOREPROP_TEXT_H
 #define BOREPROP_TEXT_H
 
-#include "assembly.h"
+#include "checks.h"
 #include <stdarg.h>
 #include <stdint.h>
 

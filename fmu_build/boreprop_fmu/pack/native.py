@@ -73,7 +73,7 @@ def pack_sources() -> dict[str, bytes]:
 
 
 def case_header(case: Case, guid: str) -> bytes:
-    """The case, and the table of variables with their start values, as a C header."""
+    """The numbers, and the variables with their start values, as a C header."""
     start = start_values(case)
     n = len(case.bha.stabilizer_positions)
     scalars = [(name, variable) for variable in VARIABLES for name in variable.names(n)]

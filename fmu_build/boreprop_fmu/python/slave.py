@@ -23,7 +23,7 @@ from boreprop.core.columns import read_columns
 from boreprop.core.drilling import Drilling
 from boreprop.core.errors import CannotContinue, ParameterError, TableError
 from boreprop.core.options import Options
-from boreprop.core.quantities import VARIABLES, Quantity, fields_of
+from boreprop.core.quantities import VARIABLES, Quantity, columns_of, fields_of
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 
@@ -145,7 +145,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         if not path:
             return self._survey
         try:
-            measured_depth, inclination_deg = read_columns(path, ("measured_depth", "inclination_deg"))
+            measured_depth, inclination_deg = read_columns(path, columns_of("hole"))
             return Survey(measured_depth, tuple(map(radians, inclination_deg)))
         except TableError as error:  # begins with the path
             raise SlaveError(f"{error} (survey_file)") from error

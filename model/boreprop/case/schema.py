@@ -15,7 +15,7 @@ from pydantic_core import ErrorDetails
 
 from ..core.checks import check_number
 from ..core.errors import ParameterError
-from ..core.quantities import QUANTITIES, Quantity, quantity_of
+from ..core.quantities import QUANTITIES, Quantity, columns_of, quantity_of
 from ..core.survey import Survey
 from ..errors import InputError, shown
 from .case import Case, Schedule
@@ -66,7 +66,7 @@ def check_keys(document: dict[str, Any], source: Path) -> None:
                 raise InputError(f"{source}: {where}: must be a text, got {shown(value)}")
     for where in OF_FILES:
         table, _, file = where.partition(".")
-        columns = [key for key in _keys(table) if key != file]
+        columns = columns_of(table)
         if table in document and set(document[table]) not in ({file}, set(columns)):
             constraint = f"must hold either {' and '.join(columns)}, or {file}"
             raise InputError(f"{source}: {table}: {constraint}, got {shown(document[table])}")
@@ -92,10 +92,6 @@ def read_files(document: Document, source: Path) -> dict[str, Any]:
         if key in document.get(table, {}):
             fields[part] = asdict(read(source.parent / document[table][key]))
     return fields
-
-
-def _keys(table: str) -> list[str]:
-    return [key.removeprefix(f"{table}.") for key in BY_KEY if key.startswith(f"{table}.")]
 
 
 def _unknown(key: str) -> str:

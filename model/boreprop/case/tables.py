@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ..core.columns import read_columns
 from ..core.errors import ParameterError, TableError
+from ..core.quantities import columns_of
 from ..core.survey import Survey
 from ..errors import InputError, shown
 from .case import Schedule
@@ -21,7 +22,7 @@ def read_survey(path: str | Path) -> Survey:
         If it cannot be read, or the depths do not increase.
     """
     with _naming(path):
-        measured_depth, inclination_deg = read_columns(path, ("measured_depth", "inclination_deg"))
+        measured_depth, inclination_deg = read_columns(path, columns_of("hole"))
         return Survey(measured_depth, tuple(map(radians, inclination_deg)))
 
 
@@ -34,7 +35,7 @@ def read_schedule(path: str | Path) -> Schedule:
         If it cannot be read, does not start at 0, or the lengths do not increase.
     """
     with _naming(path):
-        return Schedule(*read_columns(path, ("drilled_length", "force")))
+        return Schedule(*read_columns(path, columns_of("rss")))
 
 
 @contextmanager

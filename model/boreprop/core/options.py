@@ -4,8 +4,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from .checks import check_number, check_quantity
-
-RELATIVE_TOLERANCE = 1e-7  # with it θ is within 5e-7 rad of the reference trajectories
+from .quantities import RELATIVE_TOLERANCE as RELATIVE_TOLERANCE
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ Kind = Literal["Real", "Integer", "String"]
 Size = Literal["1", "n", "n-1", "column"]  # "column": as long as the table that it is a column of
 
 MAX_STABILIZERS = 6
+RELATIVE_TOLERANCE = 1e-7  # with it θ is within 5e-7 rad of the reference trajectories
 
 
 @dataclass(frozen=True)
@@ -121,7 +122,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("lateral_steering_resistance", "parameter", "", "η", "(4)", "lateral over axial drilling resistance", above=0.0, nominal=10.0, key="bit.lateral_steering_resistance", field="bit.lateral_steering_resistance"),
     Quantity("angular_steering_resistance", "parameter", "", "χ", "(4)", "angular over axial drilling resistance", above=0.0, key="bit.angular_steering_resistance", field="bit.angular_steering_resistance"),
     Quantity("bit_tilt_limit", "parameter", "rad", "ψ*", "(10)", "tilt at which the bit gauge meets the wall", above=0.0, at_most=pi / 2, nominal=0.01, key="bit.tilt_limit_deg", field="bit.tilt_limit"),
-    Quantity("relative_tolerance", "parameter", "", "", "", "local error of one step of the integrator, over 1 rad and ℓ₁", at_least=1e-12, at_most=1e-2, nominal=1e-7, start=1e-7),
+    Quantity("relative_tolerance", "parameter", "", "", "", "local error of one step of the integrator, over 1 rad and ℓ₁", at_least=1e-12, at_most=1e-2, nominal=1e-7, start=RELATIVE_TOLERANCE),
     Quantity("survey_file", "parameter", "", "", "", "survey of the existing hole (CSV); empty: the survey packed in the FMU", kind="String", start="", key="hole.survey"),
 
     Quantity("bit_diameter", "case", "m", "", "", "diameter of the hole, for drawing", above=0.0, key="bit.diameter", field="bit_diameter"),
@@ -129,8 +130,8 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("measured_depth", "case", "m", "", "", "stations along the existing hole, the last one is the bit", size="column", key="hole.measured_depth", field="survey.measured_depth"),
     Quantity("inclination", "case", "rad", "Θ", "", "inclination of the existing hole at each station", size="column", key="hole.inclination_deg", field="survey.inclination"),
     Quantity("schedule_file", "case", "", "", "", "steering force over the drilled length (CSV)", kind="String", key="rss.schedule"),
-    Quantity("engine", "case", "", "", "", "what drilled the run of the case, in the case file beside it", kind="String", key="run.engine"),
-    Quantity("stopped", "case", "", "", "", "why the run of the case ended before its length, in the case file beside it", kind="String", key="run.stopped"),
+    Quantity("engine", "case", "", "", "", "which engine drilled the case, in the case file beside the run", kind="String", key="run.engine"),
+    Quantity("stopped", "case", "", "", "", "why the run of the case ended before its length, in the same place", kind="String", key="run.stopped"),
 )  # fmt: skip
 
 BY_NAME = {quantity.name: quantity for quantity in QUANTITIES}
@@ -148,6 +149,12 @@ def scalar_names(quantities: tuple[Quantity, ...], n: int) -> list[str]:
 def quantity_of(scalar_name: str) -> Quantity:
     """The quantity that a scalar name, ``name`` or ``name[i]``, is a value of; `KeyError` if there is none."""
     return BY_NAME[scalar_name.partition("[")[0]]
+
+
+def columns_of(table: str) -> tuple[str, ...]:
+    """The columns of a table of the case file that may be a CSV file of its own, "hole" or "rss", as people name them."""
+    keys = (quantity.key.split(".") for quantity in QUANTITIES if quantity.key and quantity.field)
+    return tuple(key for place, key in keys if place == table)
 
 
 # A part of a drilling system is a dataclass, say `BottomHoleAssembly`, whose fields the table names.

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 from .checks import check_increasing, check_number, check_part
 from .errors import ParameterError
-from .quantities import MAX_STABILIZERS
+from .quantities import MAX_STABILIZERS as MAX_STABILIZERS
 
 LEAST_SPAN = 0.01  # m between stabilizers: none is shorter, and the force between closer ones is rounding
 

@@ -8,7 +8,7 @@
 #ifndef BOREPROP_BEAM_H
 #define BOREPROP_BEAM_H
 
-#include "assembly.h"
+#include "system.h"
 
 /* Deflection at `s` under a unit force at `p`, eq. (20); symmetric in s and p. */
 static inline double flexibility(double s, double p, double lambda_) {

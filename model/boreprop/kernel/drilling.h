@@ -4,13 +4,13 @@
 
 #include "propagation.h"
 
-enum { LEAST_CAPACITY = 1024 };
+enum { LEAST_CAPACITY = 1024, MOST_PIECES = 1 << 19 }; /* of hole */
 
 /* A borehole as it is drilled, from the end of the survey on. */
 typedef struct {
     System system;
     double drilled_length; /* m */
-    Propagation propagation;
+    Integrator integrator;
 } Drilling;
 
 static inline int check_inputs(Inputs inputs, char why[MESSAGE]) {
@@ -41,9 +41,12 @@ static inline Count drilling_capacity(const System *system, const Survey *survey
 /* Bytes for a capacity (a power of two). */
 static inline size_t drilling_memory(Count capacity) { return (size_t)capacity * (sizeof(Piece) + sizeof(Kink)); }
 
-static inline Hole lay_out(void *memory, Count capacity) {
-    Hole hole = {(Piece *)memory, (Kink *)(void *)((Piece *)memory + capacity), capacity};
-    return hole;
+/* Where the kinks lie in it: behind the pieces. */
+static inline Kink *kinks_in(void *memory, Count capacity) { return (Kink *)(void *)((Piece *)memory + capacity); }
+
+/* Go on in a larger memory; the old one may be freed then. */
+static inline void drilling_move(Drilling *d, void *memory, Count capacity) {
+    move_rings(&d->integrator, memory, kinks_in(memory, capacity), capacity);
 }
 
 /* A drilling system that has not begun: `drilling_start` or `drilling_restore` is next. The memory must live on. */
@@ -58,7 +61,8 @@ static inline Status drilling_prepare(
         return FAILED;
     d->system = *system;
     d->drilled_length = 0.0;
-    prepare(&d->propagation, &scaled, length_scale(system), system->relative_tolerance, lay_out(memory, capacity));
+    prepare(&d->integrator, &scaled, length_scale(system), system->relative_tolerance);
+    drilling_move(d, memory, capacity);
     return DONE;
 }
 
@@ -67,8 +71,8 @@ static inline Status drilling_start(Drilling *d, const Survey *survey, Inputs in
     ScaledInputs scaled_inputs;
     if (!check_survey(survey, why)) return FAILED;
     if (!scale_inputs(&d->system, inputs, &scaled_inputs, why)) return FAILED;
-    if (d->propagation.hole.capacity < drilling_capacity(&d->system, survey)) return FULL;
-    return begin(&d->propagation, survey, scaled_inputs, why);
+    if (d->integrator.now.hole.capacity < drilling_capacity(&d->system, survey)) return FULL;
+    return begin(&d->integrator, survey, scaled_inputs, why);
 }
 
 /* Drill on to a length, m from the start, under inputs from here; where the bit is, only they are taken over.
@@ -78,12 +82,12 @@ static inline Status drilling_advance(Drilling *d, double drilled_length, Inputs
     if (!scale_inputs(&d->system, inputs, &scaled_inputs, why)) return FAILED;
     if (!check_at_least("drilled_length", drilled_length, d->drilled_length, why)) return FAILED;
     double xi = drilled_length / length_scale(&d->system);
-    Status status = drill(&d->propagation, xi, scaled_inputs, why);
+    Status status = drill(&d->integrator, xi, scaled_inputs, why);
     if (status == DONE) d->drilled_length = drilled_length;
     return status;
 }
 
-static inline void drilling_cancel(Drilling *d) { go_back(&d->propagation); }
+static inline void drilling_cancel(Drilling *d) { go_back(&d->integrator); }
 
 /* What the outputs follow from: the state where the bit is. */
 typedef struct {
@@ -93,28 +97,29 @@ typedef struct {
 } Present;
 
 static inline Present present(Drilling *d) {
-    Propagation *p = &d->propagation;
+    Integrator *p = &d->integrator;
     const State *now = &p->now;
-    double Y;
+    double state[COMPONENTS];
     Present at;
     at.l1 = length_scale(&d->system), at.F_star = force_scale(&d->system);
     at.earlier = earlier_inclination(p, now->xi - 1.0);
-    step_state(&now->step, now->xi, &at.theta, &Y);
+    step_state(&now->step, now->xi, state);
+    at.theta = state[ANGLE];
     at.loads = present_loads(p);
-    at.mode = settle(&p->modes, &at.loads, now->contact);
+    at.mode = settle(&p->modes, &at.loads, now->regime.contact);
     at.F_0 = row_value(&at.mode->F_0, &at.loads, p->scaled.n);
     for (int i = 0; i < p->scaled.n - 1; i++) at.F[i] = row_value(&at.mode->F[i], &at.loads, p->scaled.n);
     at.psi = bit_tilt(at.F_0, now->inputs.eta_pi, p->scaled.psi_star);
     at.Theta = at.theta - at.psi;
-    position_at(now, now->xi, &at.x, &at.z);
+    position(now, &at.x, &at.z);
     return at;
 }
 
 /* One output; of several of a kind the one with this index. A compiler refuses it where one of the table is missing. */
 static inline double output(const Drilling *d, const Present *at, Output which, int i) {
-    const Scaled *scaled = &d->propagation.scaled;
+    const Scaled *scaled = &d->integrator.scaled;
     const Loads *loads = &at->loads;
-    const ScaledInputs *inputs = &d->propagation.now.inputs;
+    const ScaledInputs *inputs = &d->integrator.now.inputs;
     double l1 = at->l1, F_star = at->F_star;
     int n = scaled->n;
     switch (which) {
@@ -127,7 +132,7 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
     case OUT_STABILIZER_DEFLECTION: return row_value(&at->mode->delta[i], loads, n) * l1;
     case OUT_STABILIZER_FORCE: return at->F[i] * F_star;
     case OUT_STABILIZER_CONTACT: return wall(at->F[i]);
-    case OUT_BIT_TILT_SATURATION: return left(at->F_0 / inputs->eta_pi, -scaled->psi_star, scaled->psi_star, ROUNDING);
+    case OUT_BIT_TILT_SATURATION: return side_beyond(at->F_0 / inputs->eta_pi, -scaled->psi_star, scaled->psi_star, ROUNDING);
     case OUT_BIT_LATERAL_FORCE: return at->F_0 * F_star;
     case OUT_BIT_MOMENT: return -row_value(&at->mode->M, loads, n) * F_star * l1;
     case OUT_BOREHOLE_CURVATURE: return (at->Theta - at->earlier) / l1;
@@ -152,159 +157,6 @@ static inline int drilling_outputs(Drilling *d, double out[MOST_OUTPUTS]) {
     for (int k = 0; k < OUTPUT_COUNT; k++)
         for (int i = 0; i < value_count(OUTPUT_SIZE[k], d->system.n); i++) *next++ = output(d, &at, (Output)k, i);
     return (int)(next - out);
-}
-
-/* A state as numbers, written to or read from a tape: first the whole ones, then the others of which there is a fixed
-   count, then the pieces of the hole and the kinks. */
-typedef struct {
-    double *at;
-    int reading;
-} Tape;
-
-enum { WHOLE_NUMBERS = 5 + 2 * MAX_STABILIZERS, FIXED_NUMBERS = WHOLE_NUMBERS + 28 };
-enum { NUMBERS_OF_PIECE = 2 * S + 7, NUMBERS_OF_KINK = 3 };
-enum { AT_LENGTH = WHOLE_NUMBERS + 1, AT_XI, AT_ETA_PI = AT_XI + 3, AT_INPUTS_XI, AT_STEP = AT_INPUTS_XI + 4 };
-enum { AT_Y = AT_STEP + S + 3, AT_STEP_END = AT_Y + S + 1 }; /* places of some of the fixed numbers */
-
-static inline void pass(Tape *tape, int count, double *values) {
-    memcpy(tape->reading ? values : tape->at, tape->reading ? tape->at : values, (size_t)count * sizeof *values);
-    tape->at += count;
-}
-
-static inline Count pass_whole(Tape *tape, Count value) {
-    double number = (double)value;
-    pass(tape, 1, &number);
-    return (Count)number;
-}
-
-static inline void pass_state(Tape *tape, Drilling *d) {
-    Propagation *p = &d->propagation;
-    State *now = &p->now;
-    Step *step = &now->step;
-    Count first_kink = now->ahead[p->scaled.n - 1];
-    if (tape->reading) now->pieces.first = first_kink = 0;
-    now->pieces.end = now->pieces.first + pass_whole(tape, now->pieces.end - now->pieces.first);
-    now->kinks_end = first_kink + pass_whole(tape, now->kinks_end - first_kink);
-    for (int i = 0; i < MAX_STABILIZERS; i++) {
-        now->ahead[i] = first_kink + pass_whole(tape, i < p->scaled.n ? now->ahead[i] - first_kink : 0);
-        now->contact.of[i] = (signed char)pass_whole(tape, now->contact.of[i]);
-    }
-    now->tilt = (int)pass_whole(tape, now->tilt);
-    step->event = (int)pass_whole(tape, step->event);
-    step->side = (int)pass_whole(tape, step->side);
-    pass(tape, 1, &step->next_h); /* the one that may be infinite */
-    pass(tape, 1, &d->drilled_length);
-    pass(tape, 1, &now->xi);
-    pass(tape, 1, &now->inputs.F_rss);
-    pass(tape, 1, &now->inputs.F_rss_slope);
-    pass(tape, 1, &now->inputs.eta_pi);
-    pass(tape, 1, &now->inputs_xi);
-    pass(tape, 2, now->path);
-    pass(tape, 1, &now->origin);
-    pass(tape, 1, &step->xi);
-    pass(tape, 1, &step->h);
-    pass(tape, S + 1, step->theta);
-    pass(tape, S + 1, step->Y);
-    pass(tape, 1, &step->end);
-    pass(tape, 1, &now->accepted);
-    pass(tape, 1, &now->rejected);
-    pass(tape, 1, &now->events);
-    for (Count k = now->pieces.first; k < now->pieces.end; k++) {
-        Piece *at = piece(&p->hole, k);
-        pass(tape, 1, &at->start), pass(tape, 1, &at->rate), pass(tape, S + 1, at->c), pass(tape, S + 1, at->theta);
-        pass(tape, 1, &at->inputs.F_rss), pass(tape, 1, &at->inputs.F_rss_slope), pass(tape, 1, &at->inputs.eta_pi);
-    }
-    for (Count k = first_kink; k < now->kinks_end; k++) {
-        Kink *at = kink(&p->hole, k);
-        pass(tape, 1, &at->xi), pass(tape, 1, &at->jump), pass(tape, 1, &at->order);
-    }
-}
-
-/* How many numbers `drilling_save` writes. */
-static inline Count drilling_state_size(const Drilling *d) {
-    const State *now = &d->propagation.now;
-    return FIXED_NUMBERS + NUMBERS_OF_PIECE * (now->pieces.end - now->pieces.first) +
-           NUMBERS_OF_KINK * (now->kinks_end - now->ahead[d->propagation.scaled.n - 1]);
-}
-
-/* Write everything that evolves. */
-static inline void drilling_save(Drilling *d, double *state) {
-    Tape tape = {state, 0};
-    pass_state(&tape, d);
-}
-
-static inline int is_whole(double value, double least, double most) {
-    return value >= least && value <= most && value == floor(value);
-}
-
-/* Whether these numbers can be a state: counts that agree, flags that are some, nothing that is no number. */
-static inline int is_state(const Drilling *d, const double *state, Count count) {
-    int n = d->propagation.scaled.n;
-    if (count < FIXED_NUMBERS) return 0;
-    double pieces = state[0], kinks = state[1], most = (double)count;
-    if (!is_whole(pieces, 1, most) || !is_whole(kinks, 0, most)) return 0;
-    if ((double)FIXED_NUMBERS + (double)NUMBERS_OF_PIECE * pieces + (double)NUMBERS_OF_KINK * kinks != most) return 0;
-    for (int i = 0; i < MAX_STABILIZERS; i++)
-        if (!is_whole(state[2 + 2 * i], 0, kinks) || !is_whole(state[3 + 2 * i], -1, 1)) return 0;
-    if (state[2 * n] != 0) return 0; /* the last stabilizer is the last to pass a kink */
-    if (!is_whole(state[WHOLE_NUMBERS - 3], -1, 1) || !is_whole(state[WHOLE_NUMBERS - 2], NONE, n - 1)) return 0;
-    if (!is_whole(state[WHOLE_NUMBERS - 1], -1, 1) || !(state[WHOLE_NUMBERS] > 0)) return 0;
-    for (Count k = WHOLE_NUMBERS + 1; k < count; k++)
-        if (!isfinite(state[k])) return 0;
-    double xi = state[AT_XI];
-    if (state[AT_LENGTH] < 0 || state[AT_LENGTH] / length_scale(&d->system) != xi) return 0;
-    if (!(state[AT_ETA_PI] > 0) || !isfinite(1 / state[AT_ETA_PI]) || state[AT_INPUTS_XI] > xi) return 0;
-    if (state[AT_STEP] > xi || xi > state[AT_STEP_END] || !(state[AT_STEP + 1] > 0)) return 0;
-    for (Count k = 0; k < (Count)pieces; k++) { /* the hole is in one piece, and the last is that of the step */
-        const double *at = state + FIXED_NUMBERS + NUMBERS_OF_PIECE * k, *step = state + AT_STEP;
-        int last = k + 1 == (Count)pieces, stands = state[AT_STEP_END] == step[0];
-        double end = last ? step[0] : at[NUMBERS_OF_PIECE], Y = last ? state[AT_Y] : at[NUMBERS_OF_PIECE + 2];
-        if (at[NUMBERS_OF_PIECE - 1] != 0 && !(at[NUMBERS_OF_PIECE - 1] > 0)) return 0;
-        if (!(at[1] > 0) || end < at[0] || !(fabs(polynomial(at + 2, (end - at[0]) * at[1]) - Y) <= MERGE)) return 0;
-        if (last && !stands && (at[0] != step[0] || at[1] != 1 / step[1])) return 0;
-        if (last && !stands && memcmp(at + 2, state + AT_Y, (S + 1) * sizeof *at)) return 0;
-    }
-    for (Count k = count - 1; k >= count - NUMBERS_OF_KINK * (Count)kinks; k -= NUMBERS_OF_KINK)
-        if (!is_whole(state[k], 1, SMOOTHEST_KINK)) return 0;
-    return 1;
-}
-
-/* Capacity that a state needs. */
-static inline Count drilling_state_capacity(const double *state, Count count) {
-    Count capacity = LEAST_CAPACITY;
-    double wanted = count < FIXED_NUMBERS ? 0 : larger(state[0], state[1]);
-    while ((double)capacity < 2 * wanted + 2 && capacity < 4 * count) capacity *= 2;
-    return capacity;
-}
-
-/* Go back to a state that this run has saved itself. */
-static inline void drilling_return(Drilling *d, const double *state) {
-    Tape tape = {(double *)state, 1}; /* which is only read */
-    pass_state(&tape, d);
-    d->propagation.law_known = d->propagation.under_way = 0;
-}
-
-/* Go to a state of a run with the same system, if it can be one. */
-static inline Status drilling_restore(Drilling *d, const double *state, Count count, char why[MESSAGE]) {
-    if (!is_state(d, state, count)) {
-        snprintf(why, MESSAGE, "state: must be one of this system, got %lld numbers that are none", count);
-        return FAILED;
-    }
-    if (d->propagation.hole.capacity < drilling_state_capacity(state, count)) return FULL;
-    drilling_return(d, state);
-    return DONE;
-}
-
-/* Go on in a larger memory; the old one may be freed then. */
-static inline void drilling_move(Drilling *d, void *memory, Count capacity) {
-    Propagation *p = &d->propagation;
-    State *now = &p->now;
-    Hole hole = lay_out(memory, capacity);
-    Count first_piece = p->under_way ? p->oldest_piece : now->pieces.first;
-    Count first_kink = p->under_way ? p->oldest_kink : now->ahead[p->scaled.n - 1];
-    for (Count k = first_piece; k < now->pieces.end; k++) *piece(&hole, k) = *piece(&p->hole, k);
-    for (Count k = first_kink; k < now->kinks_end; k++) *kink(&hole, k) = *kink(&p->hole, k);
-    p->hole = hole;
 }
 
 /* m drilled. */

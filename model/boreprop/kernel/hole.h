@@ -1,162 +1,132 @@
-/* The hole behind the bit: the survey of the existing hole, the drilled history, and the delayed look-up. */
+/* The hole behind the bit: what is kept of the survey and of the drilled history, and the delayed look-up. */
 #ifndef BOREPROP_HOLE_H
 #define BOREPROP_HOLE_H
 
-#include "law.h"
+#include "kinks.h"
+#include "step.h"
+#include "survey.h"
 
-/* The existing hole: inclination (rad) at measured depths (m), linear in between, straight above the first station.
-   The last station is the bit at the start of the run. */
+/* From `start` to the start of the next piece the state is x[c] = Σ x[c][m] t^m with t = (ξ − start) · rate, and these
+   were the inputs from its start on. Of the survey there are the lateral coordinates only, and ηΠ is zero. */
 typedef struct {
-    Count count;
-    const double *measured_depth, *inclination;
-} Survey;
-
-static inline int check_survey(const Survey *survey, char why[MESSAGE]) {
-    if (survey->count < 1) {
-        snprintf(why, MESSAGE, "measured_depth: must hold at least one station, got ()");
-        return 0;
-    }
-    if (!check_increasing("measured_depth", survey->count, survey->measured_depth, why)) return 0;
-    for (Count k = 0; k < survey->count; k++)
-        if (!check_finite("inclination", survey->inclination[k], why)) return 0;
-    return 1;
-}
-
-/* From `start` to the start of the next piece Y = Σ c[m] t^m with t = (ξ − start) · rate. If it was drilled, θ is a sum
-   like that, and these were the inputs from its start on; ηΠ is zero if it is of the survey. */
-typedef struct {
-    double start, rate, c[S + 1], theta[S + 1];
+    double start, rate, x[COMPONENTS][S + 1];
     ScaledInputs inputs;
 } Piece;
 
-/* A jump in derivative `order` of Y at `xi`, that the stabilizers will pass. */
+/* The borehole's lateral coordinate Y(ξ) = ∫Θ dξ. It counts from an origin that moves with the bit, so only differences
+   mean anything. The pieces that are kept, oldest first, are number `first` up to the one before `end`; number k lies at
+   k modulo the capacity of the ring, a power of two. A look-up at stabilizer i begins at piece cursor[i] if that lies
+   before the place; where else the cursors stand costs time only. */
 typedef struct {
-    double xi, jump, order;
-} Kink;
-
-/* The rings that hold the borehole's lateral coordinate Y(ξ) = ∫Θ dξ and its kinks: number k lies at k modulo the
-   capacity, a power of two. Y counts from an origin that moves with the bit, so only differences mean anything. */
-typedef struct {
-    Piece *pieces;
-    Kink *kinks;
-    Count capacity;
+    Piece *ring;
+    Count capacity, first, end, cursor[MAX_STABILIZERS];
 } Hole;
 
-/* The pieces of the hole that are kept, oldest first: number `first` up to the one before `end`. */
-typedef struct {
-    Count first, end;
-} Pieces;
+static inline Piece *piece(const Hole *hole, Count k) { return &hole->ring[k & (hole->capacity - 1)]; }
 
-static inline Piece *piece(const Hole *hole, Count k) { return &hole->pieces[k & (hole->capacity - 1)]; }
-
-static inline Kink *kink(const Hole *hole, Count k) { return &hole->kinks[k & (hole->capacity - 1)]; }
-
-/* Whether the survey begins below the reach of the BHA; then one more station stands above it. */
-static inline int starts_late(const Survey *survey, double length_scale, double reach) {
-    return (survey->measured_depth[0] - survey->measured_depth[survey->count - 1]) / length_scale >= -reach;
-}
-
-/* Position of station k of the survey, in ℓ₁ from the bit, and the inclination there. */
-static inline double station(const Survey *survey, double length_scale, double reach, Count k, double *inclination) {
-    int late = starts_late(survey, length_scale, reach);
-    Count own = k - (late && k > 0);
-    double xi = (survey->measured_depth[own] - survey->measured_depth[survey->count - 1]) / length_scale;
-    *inclination = survey->inclination[own];
-    return late && k == 0 ? smaller(xi, -reach) - 1.0 : xi;
-}
-
-/* Number of the last station before the reach of the BHA, and of all. */
-static inline Count first_station(const Survey *survey, double length_scale, double reach, Count *count) {
-    double inclination;
-    Count first = 0;
-    *count = survey->count + starts_late(survey, length_scale, reach);
-    while (first + 1 < *count && station(survey, length_scale, reach, first + 1, &inclination) <= -reach) first++;
-    return first;
-}
-
-/* Take the last `reach` (in ℓ₁) of the survey; the bit is at ξ = 0, where Y = 0. Gives the inclination there.
-   The kinks in it become numbers 0 … count−1. */
-static inline double take_survey(
-    const Hole *hole, const Survey *survey, double length_scale, double reach, Pieces *pieces, Count *kinks
-) {
+/* Take the last `reach` (in ℓ₁) of the survey; the bit is at ξ = 0, where Y = 0. Gives the inclination there. */
+static inline double take_survey(Hole *hole, const Survey *survey, double length_scale, double reach) {
     Count count, first = first_station(survey, length_scale, reach, &count);
-    double Y = 0.0, bend = 0.0, end_inclination, final_inclination;
+    double Y = 0.0, end_inclination, final_inclination;
     double end = station(survey, length_scale, reach, count - 1, &end_inclination);
     final_inclination = end_inclination;
-    pieces->first = 0, pieces->end = count - 1 - first;
-    for (Count k = pieces->end - 1; k >= 0; k--) {
+    hole->first = 0, hole->end = count - 1 - first;
+    for (Count k = hole->end - 1; k >= 0; k--) {
         double inclination, xi = station(survey, length_scale, reach, first + k, &inclination), width = end - xi;
-        double slope = inclination * width, curve = (end_inclination - inclination) * width / 2;
-        Piece arc = {xi, 1 / width, {Y -= slope + curve, slope, curve}, {0}, {0, 0, 0}};
-        *piece(hole, k) = arc;
+        double slope = inclination * width, bend = (end_inclination - inclination) * width / 2;
+        double arc[S + 1] = {Y -= slope + bend, slope, bend};
+        Piece *own = piece(hole, k);
+        memset(own, 0, sizeof *own);
+        own->start = xi, own->rate = 1 / width;
+        memcpy(own->x[LATERAL], arc, sizeof arc);
         end = xi, end_inclination = inclination;
-    }
-    *kinks = 0;
-    for (Count k = 0; k < pieces->end; k++) {
-        double from, to, before = bend;
-        station(survey, length_scale, reach, first + k, &from);
-        station(survey, length_scale, reach, first + k + 1, &to);
-        bend = (to - from) * piece(hole, k)->rate;
-        Kink passed = {piece(hole, k)->start, fabs(bend - before), 2.0};
-        if (k > 0) *kink(hole, (*kinks)++) = passed;
     }
     return final_inclination;
 }
 
+/* The kinks at the stations that were taken: jumps of the curvature. */
+static inline void take_kinks(const Hole *hole, Kinks *kinks, const Survey *survey, double length_scale, double reach) {
+    Count count, first = first_station(survey, length_scale, reach, &count);
+    double curvature = 0.0;
+    kinks->end = 0;
+    for (Count k = 0; k < hole->end; k++) {
+        double from, to, before = curvature;
+        station(survey, length_scale, reach, first + k, &from);
+        station(survey, length_scale, reach, first + k + 1, &to);
+        curvature = (to - from) * piece(hole, k)->rate;
+        Kink passed = {piece(hole, k)->start, fabs(curvature - before), 2.0};
+        if (k > 0) *kink(kinks, kinks->end++) = passed;
+    }
+}
+
 /* Add the piece that was drilled last; the piece before ends where it starts. */
-static inline void append(const Hole *hole, Pieces *pieces, const Piece *drilled) {
-    *piece(hole, pieces->end++) = *drilled;
+static inline void append(Hole *hole, const Step *step, ScaledInputs inputs) {
+    Piece *drilled = piece(hole, hole->end++);
+    drilled->start = step->xi, drilled->rate = 1 / step->h, drilled->inputs = inputs;
+    memcpy(drilled->x, step->x, sizeof drilled->x);
 }
 
 /* Number of the piece that covers `xi`. */
-static inline Count find(const Hole *hole, Pieces pieces, double xi) {
-    Count low = pieces.first, high = pieces.end; /* the first that starts beyond xi is among low … high */
+static inline Count find(const Hole *hole, double xi) {
+    Count low = hole->first, high = hole->end; /* the first that starts beyond xi is among low … high */
     while (low < high) {
         Count middle = low + (high - low) / 2;
         if (xi < piece(hole, middle)->start) high = middle;
         else low = middle + 1;
     }
-    return low > pieces.first ? low - 1 : low;
+    return low > hole->first ? low - 1 : low;
 }
 
-static inline double polynomial(const double c[S + 1], double t) {
-    return c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * c[5]))));
+/* The same by a walk from a piece before it. */
+static inline Count find_from(const Hole *hole, Count k, double xi) {
+    if (k < hole->first || k >= hole->end || piece(hole, k)->start > xi) return find(hole, xi);
+    while (k + 1 < hole->end && piece(hole, k + 1)->start <= xi) k++;
+    return k;
 }
 
-static inline double polynomial_slope(const double c[S + 1], double t) {
-    return c[1] + t * (2 * c[2] + t * (3 * c[3] + t * (4 * c[4] + t * 5 * c[5])));
+/* Bring the cursors to where the stabilizers are with the bit at `xi`. */
+static inline void move_cursors(Hole *hole, const Scaled *scaled, double xi) {
+    for (int i = 0; i < scaled->n; i++) hole->cursor[i] = find_from(hole, hole->cursor[i], xi - scaled->s[i]);
 }
 
-/* Lateral coordinate of the hole axis at `xi`. */
-static inline double hole_Y(const Hole *hole, Pieces pieces, double xi) {
-    const Piece *at = piece(hole, find(hole, pieces, xi));
-    return polynomial(at->c, (xi - at->start) * at->rate);
-}
-
-/* Y' at `xi`: the inclination; where the hole was drilled, but for the error of a step between its nodes. */
-static inline double hole_Theta(const Hole *hole, Pieces pieces, double xi) {
-    const Piece *at = piece(hole, find(hole, pieces, xi));
-    return polynomial_slope(at->c, (xi - at->start) * at->rate) * at->rate;
-}
-
-/* Y at `xi` + t h for the points t of a step: one search, then a walk from piece to piece. */
-static inline void look_up(const Hole *hole, Pieces pieces, double xi, double h, double values[POINTS]) {
-    Count k = find(hole, pieces, xi);
-    for (int i = 0; i < POINTS; i++) {
-        double at = xi + POINT[i] * h;
-        while (k + 1 < pieces.end && at > piece(hole, k + 1)->start) k++;
-        const Piece *own = piece(hole, k);
-        values[i] = polynomial(own->c, (at - own->start) * own->rate);
+/* Lateral coordinates of the hole axis at each stabilizer with the bit at `xi`. */
+static inline void hole_at_stabilizers(
+    const Hole *hole, const Scaled *scaled, double xi, double delayed[MAX_STABILIZERS][DIRECTIONS]
+) {
+    for (int i = 0; i < scaled->n; i++) {
+        double at = xi - scaled->s[i];
+        const Piece *own = piece(hole, find_from(hole, hole->cursor[i], at));
+        double t = (at - own->start) * own->rate;
+        for (int d = 0; d < DIRECTIONS; d++) delayed[i][d] = polynomial(own->x[LATERAL + d], t);
     }
 }
 
-/* Move the origin of the lateral coordinate by `Y`. The moved pieces are new ones: the old ones stay where they are. */
-static inline void shift(const Hole *hole, Pieces *pieces, double Y) {
-    for (Count k = pieces->first, count = pieces->end - k; count > 0; k++, count--) {
-        Piece *moved = piece(hole, pieces->end++);
+/* The same at the points of a trial step: one search a stabilizer, then a walk from piece to piece. */
+static inline void look_up(const Hole *hole, const Scaled *scaled, Trial *trial) {
+    for (int i = 0; i < scaled->n; i++) {
+        double from = trial->step.xi - scaled->s[i];
+        Count k = find_from(hole, hole->cursor[i], from);
+        for (int point = 0; point < POINTS; point++) {
+            double at = from + POINT[point] * trial->step.h;
+            while (k + 1 < hole->end && at > piece(hole, k + 1)->start) k++;
+            const Piece *own = piece(hole, k);
+            double t = (at - own->start) * own->rate;
+            for (int d = 0; d < DIRECTIONS; d++) trial->delayed[i][d][point] = polynomial(own->x[LATERAL + d], t);
+        }
+    }
+}
+
+/* Drop the pieces that end before `xi`. */
+static inline void forget(Hole *hole, double xi) { hole->first = find_from(hole, hole->first, xi); }
+
+/* Move the origin of the lateral coordinates by those of `x`. The moved pieces are new ones: the old ones stay where
+   they are. */
+static inline void shift_origin(Hole *hole, const double x[COMPONENTS]) {
+    for (Count k = hole->first, count = hole->end - k; count > 0; k++, count--) {
+        Piece *moved = piece(hole, hole->end++);
         *moved = *piece(hole, k);
-        moved->c[0] -= Y;
-        pieces->first = k + 1;
+        for (int c = LATERAL; c < COMPONENTS; c++) moved->x[c][0] -= x[c];
+        hole->first = k + 1;
     }
 }
 

@@ -1,24 +1,24 @@
-/* The right-hand side of the propagation, mode by mode, as a linear function of the state and the delayed hole.
+/* The planar law: the right-hand side of the propagation, regime by regime, as a linear function of the state and the
+   delayed hole.
 
        εηΠ θ' = M ,   Y' = Θ = θ − ψ ,   ψ = clip(F_0/(ηΠ), −ψ*, ψ*)                                      (16), (17)
 
-   with M and F_0 from the beam in the hole it drilled, e_i = Y(ξ) − Y(ξ−s_i) − s_i θ. Within a mode (which stabilizers
-   touch which wall, tilt saturated or not) only sin⟨Θ⟩_1 is not linear. */
+   with M and F_0 from the beam in the hole it drilled, e_i = Y(ξ) − Y(ξ−s_i) − s_i θ. Within a regime (which stabilizers
+   touch which wall, tilt saturated or not) only sin⟨Θ⟩_1 is not linear, so one step is one linear solve of Radau
+   collocation.
+
+   What the integrator asks of a law is `make_law`, `law_try`, `law_at`, `law_along` and `displacement`, and of what is in
+   a `Law` the relaxation length, the bounds and the gains; it asks modes.h for what comes after a bound. */
 #ifndef BOREPROP_LAW_H
 #define BOREPROP_LAW_H
 
-#include "contact.h"
-#include "radau.h"
-
-/* The inputs from where they were taken over: F_RSS, its slope over ξ, and ηΠ. */
-typedef struct {
-    double F_rss, F_rss_slope, eta_pi;
-} ScaledInputs;
+#include "modes.h"
+#include "step.h"
 
 /* A `Row` under given inputs, on the state:
-   theta θ + Y Y + Σ_i delayed[i] Y(ξ−s_i) + g sin⟨Θ⟩_1 + one + slope (ξ − ξ of the inputs). */
+   theta θ + Y Y + Σ_i delayed[i] Y(ξ−s_i) + g sin⟨Θ⟩_1 + constant + slope (ξ − ξ of the inputs). */
 typedef struct {
-    double theta, Y, delayed[MAX_STABILIZERS], g, one, slope;
+    double theta, Y, delayed[MAX_STABILIZERS], g, constant, slope;
 } Linear;
 
 /* `scale` times `row`, with e_i = Y − Y(ξ−s_i) − s_i θ put in. */
@@ -31,92 +31,55 @@ static inline Linear make_linear(const Row *row, const Scaled *scaled, ScaledInp
     }
     linear.theta *= -scale, linear.Y *= scale;
     linear.g = scale * row->g;
-    linear.one = scale * (row->rss * inputs.F_rss + row->one);
+    linear.constant = scale * (row->rss * inputs.F_rss + row->constant);
     linear.slope = scale * row->rss * inputs.F_rss_slope;
     return linear;
 }
 
-/* Value at one point, `ahead` of where the inputs were taken over. */
-static inline double linear_at(
-    const Linear *f, int n, double theta, double Y, const double *delayed, double sine, double ahead
-) {
-    double value = f->theta * theta + f->Y * Y + f->g * sine + f->one;
-    for (int i = 0; i < n; i++) value += f->delayed[i] * delayed[i];
-    return value + f->slope * ahead;
-}
-
-/* Add the parts of stabilizers 2 … n, and of a force that changes along the step. */
-static inline void add_others(
-    const Linear *f, int n, double delayed[][POINTS], const double *ahead, double values[POINTS]
-) {
-    for (int i = 1; i < n; i++)
-        if (f->delayed[i] != 0)
-            for (int k = 0; k < POINTS; k++) values[k] += f->delayed[i] * delayed[i][k];
-    if (f->slope != 0)
-        for (int k = 0; k < POINTS; k++) values[k] += f->slope * ahead[k];
-}
-
-/* Values along a step with (θ, Y) held; `delayed` has one list for each stabilizer. */
-static inline void linear_held(
-    const Linear *f, int n, double theta, double Y, double delayed[][POINTS], const double *sines, const double *ahead,
-    double values[POINTS]
-) {
-    double state = f->theta * theta + f->Y * Y + f->one;
-    for (int k = 0; k < POINTS; k++) values[k] = state + f->g * sines[k] + f->delayed[0] * delayed[0][k];
-    add_others(f, n, delayed, ahead, values);
-}
-
-/* Values along a step; `delayed` has one list for each stabilizer. */
-static inline void linear_along(
-    const Linear *f, int n, const double *thetas, const double *Ys, double delayed[][POINTS], const double *sines,
-    const double *ahead, double values[POINTS]
-) {
-    for (int k = 0; k < POINTS; k++)
-        values[k] = f->one + f->theta * thetas[k] + f->Y * Ys[k] + f->delayed[0] * delayed[0][k] + f->g * sines[k];
-    add_others(f, n, delayed, ahead, values);
-}
-
-/* What stays between `lower` and `upper` while a mode holds: of stabilizer `part`, or of the tilt (part n−1). */
+/* What stays between `lower` and `upper` while a regime holds: of stabilizer `part`, or of the tilt (part n−1). */
 typedef struct {
     int part;
     Linear value;
     double lower, upper;
 } Bound;
 
-/* The right-hand side in one mode under given inputs, and the bounds within which it holds. */
+/* The right-hand side in one regime under given inputs, and the bounds within which it holds. */
 typedef struct {
+    int n;
+    double inputs_xi; /* where the inputs were taken over */
     Linear theta_rate, Theta;
-    double relaxation;
+    double relaxation; /* ℓ₁ over which θ forgets */
     int bound_count;
     Bound bounds[MAX_STABILIZERS];
     double gains[MAX_STABILIZERS]; /* change per change of Y(ξ−s_i): of Θ, θ having settled, or of what is bounded */
 } Law;
 
-static inline Law make_law(const Scaled *scaled, const Modes *modes, const Mode *mode, int tilt, ScaledInputs inputs) {
+/* Θ = θ − ψ, with ψ as it is without saturation. */
+static inline Linear less_tilt(Linear psi, int n) {
+    Linear Theta = {1.0 - psi.theta, -psi.Y, {0}, -psi.g, -psi.constant, -psi.slope};
+    for (int i = 0; i < n; i++) Theta.delayed[i] = -psi.delayed[i];
+    return Theta;
+}
+
+static inline Law make_law(const Scaled *scaled, Modes *modes, Regime regime, ScaledInputs inputs, double inputs_xi) {
+    const Mode *mode = mode_of(modes, regime.contact);
     int n = scaled->n;
-    double psi_star = scaled->psi_star;
     Law law = {0};
     Linear psi = make_linear(&mode->F_0, scaled, inputs, 1 / inputs.eta_pi);
+    Linear saturated = {1.0, 0.0, {0}, 0.0, -regime.saturation * scaled->psi_star, 0.0};
+    law.n = n, law.inputs_xi = inputs_xi;
     law.theta_rate = make_linear(&mode->M, scaled, inputs, 1 / (scaled->epsilon * inputs.eta_pi));
-    law.Theta.theta = 1.0;
-    if (tilt) law.Theta.one = -tilt * psi_star;
-    else {
-        law.Theta.theta -= psi.theta, law.Theta.Y = -psi.Y, law.Theta.g = -psi.g, law.Theta.one = -psi.one;
-        for (int i = 0; i < n; i++) law.Theta.delayed[i] = -psi.delayed[i];
-        law.Theta.slope = -psi.slope;
-    }
+    law.Theta = regime.saturation ? saturated : less_tilt(psi, n);
     law.relaxation = 1 / fabs(law.theta_rate.theta + law.Theta.Y);
-    Bound tilt_bound = {n - 1, psi, -psi_star, psi_star};
-    if (tilt > 0) tilt_bound.lower = psi_star, tilt_bound.upper = INFINITY;
-    if (tilt < 0) tilt_bound.lower = -INFINITY, tilt_bound.upper = -psi_star;
-    law.bounds[law.bound_count++] = tilt_bound;
+    Bound of_tilt = {n - 1, psi, 0.0, 0.0};
+    saturation_bounds(regime.saturation, scaled->psi_star, &of_tilt.lower, &of_tilt.upper);
+    law.bounds[law.bound_count++] = of_tilt;
     for (int i = 0; i < n - 1; i++) {
-        Bound bound = {0};
-        bound.part = i;
-        const Row *row = mode_bounds(modes, mode, i, &bound.lower, &bound.upper);
-        if (bound.lower == -INFINITY && bound.upper == INFINITY) continue;
-        bound.value = make_linear(row, scaled, inputs, 1.0);
-        law.bounds[law.bound_count++] = bound;
+        Bound *bound = &law.bounds[law.bound_count];
+        const Row *row = contact_bounds(modes, mode, i, &bound->lower, &bound->upper);
+        if (bound->lower == -INFINITY && bound->upper == INFINITY) continue;
+        bound->part = i, bound->value = make_linear(row, scaled, inputs, 1.0);
+        law.bound_count++;
     }
     for (int i = 0; i < n; i++) {
         law.gains[i] = fabs(law.theta_rate.delayed[i] / law.theta_rate.theta) + fabs(law.Theta.delayed[i]);
@@ -125,6 +88,132 @@ static inline Law make_law(const Scaled *scaled, const Modes *modes, const Mode 
     }
     law.gains[0] += fabs(law.theta_rate.g / law.theta_rate.theta) + fabs(law.Theta.g);
     return law;
+}
+
+/* Value of what is bounded at one place. */
+static inline double law_at(
+    const Law *law, const Bound *bound, double xi, const double x[COMPONENTS], double delayed[][DIRECTIONS]
+) {
+    const Linear *f = &bound->value;
+    double sine = sin(x[LATERAL] - delayed[0][0]);
+    double value = f->theta * x[ANGLE] + f->Y * x[LATERAL] + f->g * sine + f->constant;
+    for (int i = 0; i < law->n; i++) value += f->delayed[i] * delayed[i][0];
+    return value + f->slope * (xi - law->inputs_xi);
+}
+
+/* Add the parts of stabilizers 2 … n, and of a force that changes along the step. */
+static inline void add_others(const Linear *f, int n, const Trial *trial, double values[POINTS]) {
+    for (int i = 1; i < n; i++)
+        if (f->delayed[i] != 0)
+            for (int k = 0; k < POINTS; k++) values[k] += f->delayed[i] * trial->delayed[i][0][k];
+    if (f->slope != 0)
+        for (int k = 0; k < POINTS; k++) values[k] += f->slope * trial->ahead[k];
+}
+
+/* Value of what is bounded at the points of a trial step. */
+static inline void law_along(const Law *law, const Bound *bound, const Trial *trial, double values[POINTS]) {
+    const Linear *f = &bound->value;
+    const double *theta = trial->x[ANGLE], *Y = trial->x[LATERAL], *Y_1 = trial->delayed[0][0];
+    for (int k = 0; k < POINTS; k++)
+        values[k] = f->constant + f->theta * theta[k] + f->Y * Y[k] + f->delayed[0] * Y_1[k] + f->g * trial->sines[k];
+    add_others(f, law->n, trial, values);
+}
+
+/* The same of a part of the right-hand side, with (θ, Y) frozen at the start of the step. */
+static inline void linear_frozen(
+    const Linear *f, int n, const double x[COMPONENTS], const Trial *trial, const double sines[POINTS],
+    double values[POINTS]
+) {
+    double state = f->theta * x[ANGLE] + f->Y * x[LATERAL] + f->constant;
+    for (int k = 0; k < POINTS; k++) values[k] = state + f->g * sines[k] + f->delayed[0] * trial->delayed[0][0][k];
+    add_others(f, n, trial, values);
+}
+
+#define THETA_WEIGHT 0.1 /* of an error in θ, which is forgotten within εηΠ; Y carries it for the length of the BHA */
+#define REST 0.03     /* what may be left of sin⟨Θ⟩_1 beyond its linear part, in tolerances of θ: a small part of one */
+#define ITERATIONS 10 /* on that rest, more than are ever needed: each gains two digits or more */
+
+/* sin⟨Θ⟩_1 linearized about a value near the start of a step, ⟨Θ⟩_1 = Y(ξ) − Y(ξ−1). */
+typedef struct {
+    double near, sine, cosine;
+} Tangent;
+
+/* The sines of ⟨Θ⟩_1 at the points of a step that was solved with `frozen` sines; whether that step is good enough. If
+   not, `frozen` are better ones: the part with Y belongs to the Jacobian. */
+static inline int sines_agree(
+    Tangent tangent, double Y, double gain, double allowed, Trial *trial, double frozen[POINTS]
+) {
+    const double *Ys = trial->x[LATERAL], *Y_1 = trial->delayed[0][0];
+    double far = 0.0, largest = 0.0;
+    for (int k = 0; k < POINTS; k++) {
+        double away = Ys[k] - Y_1[k] - tangent.near;
+        trial->sines[k] = tangent.sine + tangent.cosine * away;
+        far = larger(far, fabs(away));
+    }
+    if (far * far / 2 * gain <= allowed) return 1; /* |sin(a + d) − sin a − d cos a| <= d²/2 */
+    for (int k = 0; k < POINTS; k++) {
+        double assumed = frozen[k] + tangent.cosine * (Ys[k] - Y);
+        trial->sines[k] = sin(Ys[k] - Y_1[k]);
+        frozen[k] += trial->sines[k] - assumed;
+        largest = larger(largest, fabs(trial->sines[k] - assumed));
+    }
+    return largest * gain <= allowed;
+}
+
+/* Collocation from the state `x` over a trial step, of which the place, the length and the delayed hole are given. */
+static inline void law_try(const Law *law, double tolerance, const double x[COMPONENTS], Trial *trial) {
+    const Linear *rate = &law->theta_rate, *Theta = &law->Theta;
+    const double theta = x[ANGLE], Y = x[LATERAL], h = trial->step.h, *Y_1 = trial->delayed[0][0];
+    double frozen[POINTS], f_theta[POINTS], f_Y[POINTS], parts_theta[S], parts_Y[S];
+    Tangent tangent = {Y - Y_1[0], sin(Y - Y_1[0]), cos(Y - Y_1[0])};
+    Jacobian J = {rate->theta, rate->Y + rate->g * tangent.cosine, Theta->theta, Theta->Y + Theta->g * tangent.cosine};
+    double allowed = REST * tolerance * (fabs(rate->theta) + 1 / h);
+    for (int k = 0; k < POINTS; k++) {
+        trial->ahead[k] = trial->step.xi - law->inputs_xi + POINT[k] * h;
+        frozen[k] = tangent.sine + tangent.cosine * (Y - Y_1[k] - tangent.near);
+    }
+    for (int iteration = 0; iteration < ITERATIONS; iteration++) {
+        linear_frozen(rate, law->n, x, trial, frozen, f_theta);
+        linear_frozen(Theta, law->n, x, trial, frozen, f_Y);
+        collocate(h, J, f_theta, f_Y, parts_theta, parts_Y);
+        radau_values(Y, parts_Y, trial->x[LATERAL]);
+        if (sines_agree(tangent, Y, fabs(rate->g), allowed, trial, frozen)) break;
+    }
+    radau_values(theta, parts_theta, trial->x[ANGLE]);
+    radau_coefficients(theta, parts_theta, trial->step.x[ANGLE]);
+    radau_coefficients(Y, parts_Y, trial->step.x[LATERAL]);
+    double moved_theta = trial->x[ANGLE][AT_CHECK] - theta, moved_Y = trial->x[LATERAL][AT_CHECK] - Y;
+    double slope_theta = f_theta[AT_CHECK] + J.theta_theta * moved_theta + J.theta_Y * moved_Y;
+    double slope_Y = f_Y[AT_CHECK] + J.Y_theta * moved_theta + J.Y_Y * moved_Y, error_theta, error_Y;
+    radau_error(
+        h, J, radau_slope(parts_theta) - h * slope_theta, radau_slope(parts_Y) - h * slope_Y, &error_theta, &error_Y
+    );
+    trial->error = larger(THETA_WEIGHT * fabs(error_theta), fabs(error_Y)) / tolerance;
+}
+
+#define SMALL_TURN 0.05 /* rad: the series below are exact to the last digit up to here */
+
+/* Sine and cosine of an angle and a little more, `turn`, from those of the angle. */
+static inline void turn_by(double turn, double sine, double cosine, double *new_sine, double *new_cosine) {
+    double square = turn * turn;
+    double s = turn * (1 - square / 6 * (1 - square / 20 * (1 - square / 42)));
+    double c = 1 - square / 2 * (1 - square / 12 * (1 - square / 30));
+    *new_sine = sine * c + cosine * s, *new_cosine = cosine * c - sine * s;
+}
+
+/* ∫ sin Θ dξ and ∫ cos Θ dξ from the start of the step to `xi`, by Gauss's three points. */
+static inline void displacement(const Step *step, double xi, double *x, double *z) {
+    double nodes[3] = {0.5 - sqrt(0.15), 0.5, 0.5 + sqrt(0.15)}, weights[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+    double length = xi - step->xi, sideways = 0.0, down = 0.0, Theta[3];
+    for (int k = 0; k < 3; k++) Theta[k] = polynomial_slope(step->x[LATERAL], nodes[k] * length / step->h) / step->h;
+    double sine = sin(Theta[1]), cosine = cos(Theta[1]);
+    for (int k = 0; k < 3; k++) {
+        double turn = Theta[k] - Theta[1], node_sine, node_cosine;
+        if (fabs(turn) <= SMALL_TURN) turn_by(turn, sine, cosine, &node_sine, &node_cosine);
+        else node_sine = sin(Theta[k]), node_cosine = cos(Theta[k]);
+        sideways += weights[k] * node_sine, down += weights[k] * node_cosine;
+    }
+    *x = sideways * length, *z = down * length;
 }
 
 #endif

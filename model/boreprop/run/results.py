@@ -49,7 +49,7 @@ def write_trajectory(trajectory: Trajectory, path: str | Path) -> None:
 def read_trajectory(path: str | Path, case: Case | None = None) -> Trajectory:
     """Read a run written by `write_trajectory` or by any FMI tool.
 
-    Columns that are not in the table of variables are left out; of those that are, only drilled_length must be there.
+    Columns that are not in the table of quantities are left out; of those that are, only drilled_length must be there.
     In a file of a system, those of the component that has drilled_length are read. Several may have it, as an input
     say: then the one that has every output that the others have.
 

@@ -51,7 +51,7 @@ def simulate(
     Returns
     -------
     Trajectory
-        The inputs `rss_force` and `active_weight_on_bit` and every output of the table of variables.
+        The inputs `rss_force` and `active_weight_on_bit` and every output of the table of quantities.
 
     Raises
     ------

@@ -1,18 +1,9 @@
 /* The drilling system in SI units, and the paper's dimensionless numbers made from it. */
-#ifndef BOREPROP_ASSEMBLY_H
-#define BOREPROP_ASSEMBLY_H
+#ifndef BOREPROP_SYSTEM_H
+#define BOREPROP_SYSTEM_H
 
+#include "checks.h"
 #include "quantities.h"
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-enum { MESSAGE = 512 };
-
-/* FAILED: `why` says in one line what is wrong, and nothing has moved. FULL: the memory is too small. */
-typedef enum { DONE, FAILED, FULL } Status;
-
-typedef long long Count; /* of stations, and of pieces of hole: 32 bits are not enough for a long life */
 
 /* The drilling system in the paper's numbers: lengths over ℓ₁, forces over F*, moments over F*ℓ₁. */
 typedef struct {
@@ -25,74 +16,8 @@ typedef struct {
     double psi_star;                    /* ψ*, rad */
 } Scaled;
 
-static inline double larger(double a, double b) { return b > a ? b : a; }
-static inline double smaller(double a, double b) { return b < a ? b : a; }
-
 /* How many values a quantity has for n stabilizers. */
 static inline int value_count(Size size, int n) { return size == ONE ? 1 : size == EACH_STABILIZER ? n : n - 1; }
-
-/* The number with so many digits, with a decimal point in every locale. */
-static inline const char *decimal(double value, int digits, char text[32]) {
-    char *end = text;
-    snprintf(text, 32, "%.*g", digits, value);
-    if (!isfinite(value)) return strcpy(text, isnan(value) ? "nan" : value > 0 ? "inf" : "-inf");
-    for (const char *from = text; *from; from++)
-        if (strchr("0123456789+-e", *from)) *end++ = *from;
-        else if (end == text || end[-1] != '.') *end++ = '.';
-    *end = '\0';
-    return text;
-}
-
-/* A short decimal that reads back as the same number. */
-static inline const char *represent(double value, char text[32]) {
-    int digits = 15;
-    char local[32];
-    do snprintf(local, sizeof local, "%.*g", digits, value);
-    while (strtod(local, NULL) != value && ++digits < 17);
-    decimal(value, digits, text);
-    return isfinite(value) && !strpbrk(text, ".e") ? strcat(text, ".0") : text;
-}
-
-/* Whether the value is finite, > above, >= at_least and <= at_most; `why` says what is not. */
-static inline int check_number(
-    const char *name, double value, double above, double at_least, double at_most, char why[MESSAGE]
-) {
-    char limit[32], got[32];
-    if (isfinite(value) && value > above && value >= at_least && value <= at_most) return 1;
-    represent(value, got);
-    if (!isfinite(value)) snprintf(why, MESSAGE, "%s: must be a finite number, got %s", name, got);
-    else if (value <= above) snprintf(why, MESSAGE, "%s: must be > %s, got %s", name, decimal(above, 6, limit), got);
-    else if (value < at_least)
-        snprintf(why, MESSAGE, "%s: must be >= %s, got %s", name, decimal(at_least, 6, limit), got);
-    else snprintf(why, MESSAGE, "%s: must be <= %s, got %s", name, decimal(at_most, 6, limit), got);
-    return 0;
-}
-
-static inline int check_finite(const char *name, double value, char why[MESSAGE]) {
-    return check_number(name, value, -INFINITY, -INFINITY, INFINITY, why);
-}
-
-static inline int check_positive(const char *name, double value, char why[MESSAGE]) {
-    return check_number(name, value, 0.0, -INFINITY, INFINITY, why);
-}
-
-static inline int check_at_least(const char *name, double value, double at_least, char why[MESSAGE]) {
-    return check_number(name, value, -INFINITY, at_least, INFINITY, why);
-}
-
-/* Whether every value is finite and larger than the one before. */
-static inline int check_increasing(const char *name, Count count, const double *values, char why[MESSAGE]) {
-    char before[32], after[32];
-    for (Count i = 0; i < count; i++)
-        if (!check_finite(name, values[i], why)) return 0;
-    for (Count i = 1; i < count; i++)
-        if (values[i] <= values[i - 1]) {
-            represent(values[i - 1], before), represent(values[i], after);
-            snprintf(why, MESSAGE, "%s: must increase, got (%s, %s)", name, before, after);
-            return 0;
-        }
-    return 1;
-}
 
 /* Whether stabilizers, in order, are far enough from each other and from the bit. */
 static inline int check_spans(const char *name, int count, const double *positions, char why[MESSAGE]) {
@@ -155,6 +80,11 @@ static inline double length_scale(const System *system) { return system->stabili
 static inline double force_scale(const System *system) {
     return 3.0 * system->flexural_stiffness / (length_scale(system) * length_scale(system));
 }
+
+/* The inputs from where they were taken over: F_RSS, its slope over ξ, and ηΠ. */
+typedef struct {
+    double F_rss, F_rss_slope, eta_pi;
+} ScaledInputs;
 
 /* λ_i: distance from stabilizer i−1 (the bit) to stabilizer i, counted from 0 here. */
 static inline double lambda_(const Scaled *scaled, int i) { return scaled->s[i] - (i ? scaled->s[i - 1] : 0.0); }

@@ -2,25 +2,27 @@
 
    With the contacts known (a mode), F follows from q̃ by elimination, so M, F_0, δ and F are linear functions of the
    hole, the RSS force and the weight; which contacts hold is found by pivoting from the last mode. */
-#ifndef BOREPROP_CONTACT_H
-#define BOREPROP_CONTACT_H
+#ifndef BOREPROP_MODES_H
+#define BOREPROP_MODES_H
 
 #include "beam.h"
 #include "linear.h"
+
+#define ROUNDING 1e-13 /* how far a force or deflection of order one may lie beyond its bound by rounding alone */
 
 /* What bends the beam besides the contacts: offsets e_1 … e_n, F_RSS and sin⟨Θ⟩_1. */
 typedef struct {
     double e[MAX_STABILIZERS], F_rss, sin_Theta_1;
 } Loads;
 
-/* A linear function of the loads: e · e_i + rss · F_RSS + g · sin⟨Θ⟩_1 + one. */
+/* A linear function of the loads: e · e_i + rss · F_RSS + g · sin⟨Θ⟩_1 + constant. */
 typedef struct {
-    double e[MAX_STABILIZERS], rss, g, one;
+    double e[MAX_STABILIZERS], rss, g, constant;
 } Row;
 
 /* Value under `loads`. */
 static inline double row_value(const Row *row, const Loads *loads, int n) {
-    return dot(n, row->e, loads->e) + row->rss * loads->F_rss + row->g * loads->sin_Theta_1 + row->one;
+    return dot(n, row->e, loads->e) + row->rss * loads->F_rss + row->g * loads->sin_Theta_1 + row->constant;
 }
 
 /* Add a sum of factors times rows. */
@@ -30,10 +32,10 @@ static inline Row row_plus(Row row, int count, const double *factors, const Row 
         for (int i = 0; i < MAX_STABILIZERS; i++) sum.e[i] += factors[k] * rows[k].e[i];
         sum.rss += factors[k] * rows[k].rss;
         sum.g += factors[k] * rows[k].g;
-        sum.one += factors[k] * rows[k].one;
+        sum.constant += factors[k] * rows[k].constant;
     }
     for (int i = 0; i < MAX_STABILIZERS; i++) row.e[i] += sum.e[i];
-    row.rss += sum.rss, row.g += sum.g, row.one += sum.one;
+    row.rss += sum.rss, row.g += sum.g, row.constant += sum.constant;
     return row;
 }
 
@@ -67,9 +69,9 @@ static inline Mode make_mode(const Beam *beam, const double *y_star, Contact con
     for (int k = 0; k < touching; k++) {
         for (int l = 0; l < touching; l++) K_inv_CC[k][l] = beam->K_inv[C[k]][C[l]];
         to_wall[k] = q[C[k]];
-        to_wall[k].one = contact.of[C[k]] * y_star[C[k]];
+        to_wall[k].constant = contact.of[C[k]] * y_star[C[k]];
     }
-    inverse(touching, (const double(*)[SIZE])K_inv_CC, K_C);
+    inverse(touching, (const double (*)[SIZE])K_inv_CC, K_C);
     for (int k = 0; k < touching; k++) {
         for (int l = 0; l < touching; l++) K_C[k][l] = -K_C[k][l];
         mode.F[C[k]] = row_plus(zero, touching, K_C[k], to_wall);
@@ -102,12 +104,8 @@ static inline const Mode *mode_of(Modes *modes, Contact contact) {
     return mode;
 }
 
-#define ROUNDING 1e-13  /* how far a force or deflection of order one may lie beyond its bound by rounding alone */
-#define MOST_PIVOTS 243 /* there are no more modes: three contacts at each of five stabilizers */
-#define LOOSER 8.0      /* how much farther it may lie there in the next search */
-
 /* 1 if `value` is above its bounds by more than `slack`, −1 if below, else 0. */
-static inline int left(double value, double lower, double upper, double slack) {
+static inline int side_beyond(double value, double lower, double upper, double slack) {
     return value > upper + slack ? 1 : value < lower - slack ? -1 : 0;
 }
 
@@ -117,15 +115,10 @@ static inline signed char change(int contact, int side) { return (signed char)(c
 /* The wall that bears a stabilizer with the force F: 1 the lower, −1 the upper, 0 none. */
 static inline int wall(double F) { return F > 0 ? 1 : F < 0 ? -1 : 0; }
 
-/* ψ = clip(F_0/(ηΠ), −ψ*, ψ*), eqs. (10) and (11). */
-static inline double bit_tilt(double F_0, double eta_pi, double psi_star) {
-    return smaller(larger(F_0 / eta_pi, -psi_star), psi_star);
-}
-
 /* What must lie between two bounds for stabilizer `i` to stay as it is in `mode`: F_i in contact, else δ_i.
 
    Without clearance the stabilizer is held on both sides and nothing can change. */
-static inline const Row *mode_bounds(const Modes *modes, const Mode *mode, int i, double *lower, double *upper) {
+static inline const Row *contact_bounds(const Modes *modes, const Mode *mode, int i, double *lower, double *upper) {
     int contact = mode->contact.of[i];
     if (modes->y_star[i] == 0.0) {
         *lower = -INFINITY, *upper = INFINITY;
@@ -138,6 +131,10 @@ static inline const Row *mode_bounds(const Modes *modes, const Mode *mode, int i
     *lower = -modes->y_star[i], *upper = modes->y_star[i];
     return &mode->delta[i];
 }
+
+/* Pivots after which contacts must have come back: three contacts at each of five stabilizers are all there are. */
+#define MOST_PIVOTS 243
+#define LOOSER 8.0 /* how much farther conditions may fail in the next search: nine digits in ten searches */
 
 /* The mode that satisfies (7) under `loads`, starting the search from `contact`.
 
@@ -155,13 +152,39 @@ static inline const Mode *settle(Modes *modes, const Loads *loads, Contact conta
         const Mode *mode = mode_of(modes, contact);
         for (int i = 0; i < n - 1 && !side; i++) {
             double lower, upper;
-            const Row *row = mode_bounds(modes, mode, i, &lower, &upper);
-            side = left(row_value(row, loads, n), lower, upper, slack);
+            const Row *row = contact_bounds(modes, mode, i, &lower, &upper);
+            side = side_beyond(row_value(row, loads, n), lower, upper, slack);
             if (side) contact.of[i] = change(contact.of[i], side);
         }
         if (!side) return mode;
         if (pivots % MOST_PIVOTS == 0) slack *= LOOSER;
     }
+}
+
+/* ψ = clip(F_0/(ηΠ), −ψ*, ψ*), eqs. (10) and (11). */
+static inline double bit_tilt(double F_0, double eta_pi, double psi_star) {
+    return smaller(larger(F_0 / eta_pi, -psi_star), psi_star);
+}
+
+/* Within a regime the law is one and the same: which stabilizers touch which wall, and whether the bit tilt is saturated:
+   1 at ψ*, −1 at −ψ*, else 0. A change of regime is a change of one part: of stabilizer 0 … n−2, or of the tilt, part
+   n−1. */
+typedef struct {
+    Contact contact;
+    int saturation;
+} Regime;
+
+/* The bounds of F_0/(ηΠ) within which the saturation stays as it is. */
+static inline void saturation_bounds(int saturation, double psi_star, double *lower, double *upper) {
+    *lower = saturation > 0 ? psi_star : saturation < 0 ? -INFINITY : -psi_star;
+    *upper = saturation > 0 ? INFINITY : saturation < 0 ? -psi_star : psi_star;
+}
+
+/* The regime on the other side of a bound: `part` has left its bounds on `side`. */
+static inline Regime switch_over(Regime regime, int n, int part, int side) {
+    if (part < n - 1) regime.contact.of[part] = change(regime.contact.of[part], side);
+    else regime.saturation = regime.saturation ? 0 : side;
+    return regime;
 }
 
 #endif

@@ -1,14 +1,15 @@
 /* Surveys from CSV files: columns measured_depth (m) and inclination_deg, by name; others are ignored. */
-#ifndef BOREPROP_SURVEY_H
-#define BOREPROP_SURVEY_H
+#ifndef BOREPROP_SURVEY_FILE_H
+#define BOREPROP_SURVEY_FILE_H
 
-#include "hole.h"
+#include "survey.h"
 #include "text.h"
 #include <errno.h>
 
 enum { COLUMNS = 2, LARGEST = 1 << 26 }; /* bytes of a file */
 
 static const char *const COLUMN[COLUMNS] = {"measured_depth", "inclination_deg"};
+static const double UNIT[COLUMNS] = {1.0, 3.141592653589793 / 180.0}; /* m, rad */
 
 static FILE *open_file(const char *path) {
 #ifdef _WIN32
@@ -25,28 +26,33 @@ static FILE *open_file(const char *path) {
 #endif
 }
 
-/* The whole content of a file, to be freed; NULL with `why` if it cannot be read or is no text. */
+/* The whole content of a file, to be freed, and its `size`; NULL if it is too large for the memory or for us. */
+static char *read_all(FILE *file, size_t *size) {
+    size_t room = 1 << 14;
+    char *text = malloc(room);
+    *size = 0;
+    while (text) {
+        *size += fread(text + *size, 1, room - *size - 1, file);
+        text[*size] = '\0';
+        if (*size + 1 < room) return text;
+        char *more = room < LARGEST ? realloc(text, room *= 2) : NULL;
+        if (!more) free(text);
+        text = more;
+    }
+    return NULL;
+}
+
+/* The text of a file, to be freed; NULL with `why` if it cannot be read or is no text. */
 static char *read_text(const char *path, char why[LINE]) {
-    char *text = NULL;
     const char *fault = NULL;
-    size_t size = 0, room = 0;
+    size_t size = 0;
     errno = 0;
     FILE *file = open_file(path);
-    while (file && !fault && !feof(file) && !ferror(file)) {
-        if (size + 1 >= room) {
-            char *larger_text = realloc(text, room = room ? 2 * room : 1 << 14);
-            if (!larger_text) fault = "out of memory";
-            else text = larger_text;
-        }
-        if (!fault) size += fread(text + size, 1, room - size - 1, file);
-        if (size >= LARGEST) fault = "more than 64 MB";
-    }
+    char *text = file ? read_all(file, &size) : NULL;
     if (!file || ferror(file)) fault = strerror(errno);
+    else if (!text) fault = "more than fits into the memory, or than 64 MB";
+    else if (strlen(text) != size || !is_utf8(text)) fault = "bytes that are no UTF-8 text";
     if (file) fclose(file);
-    if (!fault) {
-        text[size] = '\0';
-        if (strlen(text) != size || !is_utf8(text)) fault = "bytes that are no UTF-8 text";
-    }
     if (!fault) return text;
     free(text);
     explain(why, "%s: must be a readable CSV file, got: %s", path, fault);
@@ -74,18 +80,18 @@ static char next_field(char **from, char **field) {
 
 /* Positions of the columns in the header row, and how many values it has: 0 with `why` if a column is missing. */
 static int read_header(const char *path, char **from, int position[COLUMNS], char why[LINE]) {
-    char got[LINE / 4] = "", shown[SHOWN], *field, end;
-    int count = 0;
+    char got[LINE / 4] = "", shown[SHOWN], *field;
+    int count = 0, more = **from != '\0';
     for (int i = 0; i < COLUMNS; i++) position[i] = -1;
-    if (**from) do {
-        end = next_field(from, &field);
+    while (more) {
+        more = next_field(from, &field) == ',';
         field += strspn(field, " \t");
         for (size_t length = strlen(field); length && strchr(" \t", field[length - 1]);) field[--length] = '\0';
         for (int i = 0; i < COLUMNS; i++)
             if (position[i] < 0 && !strcmp(field, COLUMN[i])) position[i] = count;
         if (strlen(got) + SHOWN < sizeof got) strcat(strcat(got, count ? ", " : ""), quoted(field, shown));
         count++;
-    } while (end == ',');
+    }
     for (int i = 0; i < COLUMNS; i++)
         if (position[i] < 0) return explain(why, "%s: must have a column '%s', got [%s]", path, COLUMN[i], got);
     return count;
@@ -110,12 +116,17 @@ static long read_rows(
                 if (count == position[i]) text[i] = field;
             count++;
         } while (end == ',');
-        if (count != width)
-            return explain(why, "%s:%ld: must have %d values like the header, got %d", path, line, width, count) - 1;
-        for (int i = 0; i < COLUMNS; i++)
-            if (!parse_number(text[i], &columns[i][rows]) || !isfinite(columns[i][rows]))
-                return explain(why, "%s:%ld: %s: must be a finite number, got %s", path, line, COLUMN[i],
-                               quoted(text[i], shown)) - 1;
+        if (count != width) {
+            explain(why, "%s:%ld: must have %d values like the header, got %d", path, line, width, count);
+            return -1;
+        }
+        for (int i = 0; i < COLUMNS; i++) {
+            if (parse_number(text[i], &columns[i][rows]) && isfinite(columns[i][rows])) continue;
+            quoted(text[i], shown);
+            explain(why, "%s:%ld: %s: must be a finite number, got %s", path, line, COLUMN[i], shown);
+            return -1;
+        }
+        for (int i = 0; i < COLUMNS; i++) columns[i][rows] *= UNIT[i];
         rows++;
     }
     return rows;
@@ -133,15 +144,17 @@ static double *read_survey(const char *path, Survey *survey, char why[LINE]) {
     for (const char *at = from; *at; at++) lines += *at == '\n' || *at == '\r';
     width = read_header(path, &from, position, why);
     if (width) {
-        numbers = malloc((size_t)lines * COLUMNS * sizeof *numbers);
+        numbers = calloc((size_t)lines * COLUMNS, sizeof *numbers);
         for (int i = 0; numbers && i < COLUMNS; i++) columns[i] = numbers + i * lines;
         if (numbers) rows = read_rows(path, from, line, width, position, columns, why);
         else explain(why, "%s: must fit into the memory, got %ld lines", path, lines);
     }
     if (rows >= 0) {
-        for (long k = 0; k < rows; k++) columns[1][k] *= 3.141592653589793 / 180.0;
         survey->count = rows, survey->measured_depth = columns[0], survey->inclination = columns[1];
-        if (!check_survey(survey, fault)) rows = explain(why, "%s: %s", path, fault) - 1;
+        if (!check_survey(survey, fault)) {
+            explain(why, "%s: %s", path, fault);
+            rows = -1;
+        }
     }
     free(text);
     if (rows >= 0) return numbers;

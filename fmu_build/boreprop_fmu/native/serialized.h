@@ -1,11 +1,11 @@
 /* The serialized state of an instance: a line "FORMAT GUID SIZE CHECKSUM", then the body: doubles, each as eight bytes,
    least significant first, whatever the machine, and text at its end. */
-#ifndef BOREPROP_STATE_H
-#define BOREPROP_STATE_H
+#ifndef BOREPROP_SERIALIZED_H
+#define BOREPROP_SERIALIZED_H
 
 #include "text.h"
 
-#define STATE_FORMAT "boreprop-native-fmu-state-2"
+#define STATE_FORMAT "boreprop-native-fmu-state-3"
 enum { SEAL = sizeof STATE_FORMAT + 71 }; /* bytes of the line: all but the format are of fixed width */
 
 /* A body. */
@@ -40,8 +40,10 @@ static uint64_t checksum(const unsigned char *bytes, size_t size) {
 static int seal(const char *guid, const unsigned char *body, size_t size, char line[SEAL + 1]) {
     uint64_t sum = checksum(body, size);
     char text[2 * SEAL];
-    int length = snprintf(text, sizeof text, "%s %36s %16lu %08lx%08lx\n", STATE_FORMAT, guid, (unsigned long)size,
-                          (unsigned long)(sum >> 32), (unsigned long)(sum & 0xFFFFFFFFu));
+    int length = snprintf(
+        text, sizeof text, "%s %36s %16lu %08lx%08lx\n", STATE_FORMAT, guid, (unsigned long)size,
+        (unsigned long)(sum >> 32), (unsigned long)(sum & 0xFFFFFFFFu)
+    );
     memcpy(line, text, SEAL + 1);
     return length;
 }

@@ -1,10 +1,11 @@
 /* A drilling run that owns its memory, and takes more where inputs change so often that the hole has many pieces. */
-#ifndef BOREPROP_GROWING_H
-#define BOREPROP_GROWING_H
+#ifndef BOREPROP_RUN_H
+#define BOREPROP_RUN_H
 
 #include "drilling.h"
+#include "state.h"
 
-enum { MOST_PIECES = 1 << 19, MOST_STEPS = MOST_PIECES / 2 }; /* of hole; in one step of a host */
+enum { MOST_STEPS = MOST_PIECES / 2 }; /* in one step of a host */
 
 typedef struct {
     Drilling drilling;
@@ -52,7 +53,7 @@ static inline Status run_advance(Run *run, double drilled_length, Inputs inputs,
     double way = (drilled_length - drilling_length(&run->drilling)) / length_scale(&run->drilling.system);
     if (isfinite(drilled_length) && way > (double)MOST_STEPS * LARGEST_STEP) return too_long(why);
     while ((status = drilling_advance(&run->drilling, drilled_length, inputs, why)) == FULL)
-        if (grow(run, 2 * run->drilling.propagation.hole.capacity, why) != DONE) {
+        if (grow(run, 2 * run->drilling.integrator.now.hole.capacity, why) != DONE) {
             drilling_cancel(&run->drilling);
             return too_long(why);
         }
@@ -60,10 +61,11 @@ static inline Status run_advance(Run *run, double drilled_length, Inputs inputs,
 }
 
 static inline Status run_restore(Run *run, const double *state, Count count, char why[MESSAGE]) {
-    Status status = drilling_restore(&run->drilling, state, count, why);
+    Count wanted;
+    Status status = drilling_restore(&run->drilling, state, count, &wanted, why);
     if (status != FULL) return status;
-    if (grow(run, drilling_state_capacity(state, count), why) != DONE) return FAILED;
-    return drilling_restore(&run->drilling, state, count, why);
+    if (grow(run, wanted, why) != DONE) return FAILED;
+    return drilling_restore(&run->drilling, state, count, &wanted, why);
 }
 
 #endif

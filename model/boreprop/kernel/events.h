@@ -1,0 +1,119 @@
+/* Events: where a trial step first meets a bound of its regime. */
+#ifndef BOREPROP_EVENTS_H
+#define BOREPROP_EVENTS_H
+
+#include "hole.h"
+#include "law.h"
+
+/* How far beyond its values at the points of a step a value may lie between them, over their range. Ample: where the
+   bounds are farther away nothing is looked at more closely. */
+#define NEAR 0.3
+#define CLOSE_ENOUGH (ROUNDING / 10) /* to a bound, at a crossing: no closer than values can be told apart */
+#define SMALLEST_STEP 1e-12          /* ℓ₁, and relative to ξ: a few digits above the rounding of ξ */
+#define MOST_TRIALS 60               /* of a crossing: halving a step forty times makes it the smallest */
+
+/* A bound that is watched along a trial step. */
+typedef struct {
+    const Scaled *scaled;
+    const Hole *hole;
+    const Law *law;
+    const Step *step;
+    const Bound *bound;
+} Watch;
+
+/* Value of what is bounded at `xi`. */
+static inline double watched_value(const Watch *watch, double xi) {
+    double x[COMPONENTS], delayed[MAX_STABILIZERS][DIRECTIONS];
+    step_state(watch->step, xi, x);
+    hole_at_stabilizers(watch->hole, watch->scaled, xi, delayed);
+    return law_at(watch->law, watch->bound, xi, x, delayed);
+}
+
+/* Where the bound is passed on `side` in [a, b], its value at `b` being f_b beyond: by regula falsi with the weights of
+   Anderson and Björck. */
+static inline double crossing(const Watch *watch, int side, double a, double b, double f_b) {
+    double limit = side > 0 ? watch->bound->upper : watch->bound->lower;
+    double f_a = side * (watched_value(watch, a) - limit), c = b;
+    if (f_a >= 0) return a;
+    for (int k = 0; k < MOST_TRIALS; k++) {
+        c = (a * f_b - b * f_a) / (f_b - f_a);
+        double f_c = side * (watched_value(watch, c) - limit);
+        if (fabs(f_c) < CLOSE_ENOUGH || fabs(b - a) < SMALLEST_STEP) break;
+        if ((f_c > 0) == (f_b > 0)) {
+            double weight = 1 - f_c / f_b;
+            f_a *= weight > 0 ? weight : 0.5;
+        } else a = b, f_a = f_b;
+        b = c, f_b = f_c;
+    }
+    return c;
+}
+
+typedef struct {
+    double xi, value;
+} Sample;
+
+/* Where a smooth function through samples in order has extremes, by a parabola through each three; returns how many. */
+static inline int extremes(const Sample *samples, int count, double *found) {
+    int number = 0;
+    for (int k = 0; k + 2 < count; k++) {
+        Sample a = samples[k], b = samples[k + 1], c = samples[k + 2];
+        double slope = (b.value - a.value) / (b.xi - a.xi), later = (c.value - b.value) / (c.xi - b.xi);
+        if (slope * later <= 0 && slope != later)
+            found[number++] = (a.xi + b.xi) / 2 - slope * (c.xi - a.xi) / 2 / (later - slope);
+    }
+    return number;
+}
+
+/* Add a sample, in order. */
+static inline void insert(Sample *samples, int *count, Sample added) {
+    int place = (*count)++;
+    for (; samples[place - 1].xi > added.xi; place--) samples[place] = samples[place - 1];
+    samples[place] = added;
+}
+
+/* Where the step first meets the bound, given its values at the points; on which side, 0 if it does not. */
+static inline int meet(const Watch *watch, double slack, const double values[POINTS], double *where) {
+    const Step *step = watch->step;
+    const Bound *bound = watch->bound;
+    Sample samples[2 * POINTS] = {{step->xi, watched_value(watch, step->xi)}};
+    double found[POINTS];
+    int count = 1;
+    for (int k = 0; k < POINTS; k++) {
+        Sample at_point = {step->xi + POINT[k] * step->h, values[k]};
+        samples[count++] = at_point;
+    }
+    int number = extremes(samples, count, found);
+    double first_point = samples[1].xi;
+    for (int k = 0; k < number; k++) { /* it may leave and come back between two points */
+        Sample between = {found[k], 0.0};
+        if (!(found[k] > first_point)) continue;
+        between.value = watched_value(watch, found[k]);
+        insert(samples, &count, between);
+    }
+    for (int k = 1; k < count; k++) { /* by rounding the start may lie beyond the bound that it has just come from */
+        int side = side_beyond(samples[k].value, bound->lower, bound->upper, slack);
+        double limit = side > 0 ? bound->upper : bound->lower;
+        if (!side) continue;
+        *where = crossing(watch, side, samples[k - 1].xi, samples[k].xi, side * (samples[k].value - limit));
+        return side;
+    }
+    return 0;
+}
+
+/* End a trial step where it first meets a bound of its regime, if it lies beyond one by more than `slack` somewhere. */
+static inline void cut_at_event(const Scaled *scaled, const Hole *hole, const Law *law, double slack, Trial *trial) {
+    Step *step = &trial->step;
+    for (int b = 0; b < law->bound_count; b++) {
+        Watch watch = {scaled, hole, law, step, &law->bounds[b]};
+        double values[POINTS], where = 0.0;
+        law_along(law, watch.bound, trial, values);
+        double low = values[0], high = values[0];
+        for (int k = 1; k < POINTS; k++) low = smaller(low, values[k]), high = larger(high, values[k]);
+        double near = NEAR * (high - low);
+        if (low - near >= watch.bound->lower && high + near <= watch.bound->upper) continue;
+        int side = meet(&watch, slack, values, &where);
+        if (side && where < step->end) step->end = where, step->event = watch.bound->part, step->side = side;
+    }
+}
+
+#endif

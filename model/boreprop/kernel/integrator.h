@@ -1,0 +1,286 @@
+/* The integrator: it advances the state of a law, step by step, and does not know what is drilled.
+
+   A step ends where the solution is not smooth: on a change of input, on an event (contact or saturation comes or goes),
+   and where a stabilizer passes the kink that either left in the hole. The steps are the integrator's own: the bit may
+   stop anywhere. */
+#ifndef BOREPROP_INTEGRATOR_H
+#define BOREPROP_INTEGRATOR_H
+
+#include "events.h"
+
+#define LARGEST_STEP 1.0   /* ℓ₁: the shortest delay, so a step never needs a hole that is not yet drilled */
+#define LOOK_BACK 1.0      /* ℓ₁: how far behind the bit Θ may be asked for */
+#define LARGEST_GROWTH 8.0 /* of the length from step to step: an error that happens to vanish foretells nothing */
+#define LEAST_GROWTH 0.1   /* after an error above the tolerance: far enough, and the next trial tells more */
+#define LEAST_ERROR 1e-12  /* over the tolerance: its growth is beyond the largest, and it is not zero */
+#define SAFETY 0.85        /* of the length at which the error would meet the tolerance: few steps are then rejected */
+#define LAYERS 16.0        /* first step after a kink, in relaxation lengths of θ: the layer has died out by its end */
+#define STRETCH 1.3        /* how much longer than planned a step may be if it then ends on the next kink */
+#define CLOSER 8.0       /* how much shorter a step is tried where each regime meets a bound before its first point, */
+#define MOST_SLACK 1e-6  /* while a value may lie so much farther beyond its bound at the points, at last by this */
+#define ORIGIN_LIMIT 8.0 /* |Y| beyond which the origin of Y is moved to the bit, to keep the digits of differences */
+#define LARGEST_INCLINATION 6.283185307179586
+#define TURNS_OVER                                                                                                     \
+    "its inclination grows beyond a full turn; use a smaller or shorter rss_force, a larger active_weight_on_bit, "    \
+    "or check the parameters"
+
+/* Everything that evolves, but for what the rings of the hole and its kinks hold: a copy of it is the way back. */
+typedef struct {
+    double xi;
+    ScaledInputs inputs;
+    double inputs_xi; /* where they were taken over */
+    Regime regime;
+    double path[2];            /* ∫ sin Θ dξ, ∫ cos Θ dξ up to the start of the present step */
+    double origin[DIRECTIONS]; /* of the lateral coordinates */
+    Step step;
+    Hole hole;
+    Kinks kinks;
+    double accepted, rejected, events; /* steps, steps, bounds met */
+} State;
+
+/* The bit at the front of its hole, dimensionless. */
+typedef struct {
+    Scaled scaled;
+    Modes modes;
+    double length_scale, tolerance;
+    State now;
+    Law law;       /* of the present regime and inputs, */
+    int law_known; /* once it has been asked for */
+    int under_way; /* from `before`, and what the way back there needs: */
+    State before;
+    Kink last_kink;
+} Integrator;
+
+/* The line that says what the integrator has met at `xi`, and what helps. */
+static inline Status failed(const Integrator *p, const char *what, double xi, const char *helps, char why[MESSAGE]) {
+    char at[32];
+    snprintf(why, MESSAGE, "%s at %s m: %s", what, decimal(xi * p->length_scale, 9, at), helps);
+    return FAILED;
+}
+
+/* The same where another tolerance helps. */
+static inline Status failed_at_tolerance(
+    const Integrator *p, const char *what, double xi, const char *helps, char why[MESSAGE]
+) {
+    char now[32], line[128];
+    snprintf(line, sizeof line, "%s relative_tolerance (--tolerance), now %s", helps, decimal(p->tolerance, 6, now));
+    return failed(p, what, xi, line, why);
+}
+
+/* The line that says that numbers have run away. */
+static inline Status not_finite(const Integrator *p, double xi, char why[MESSAGE]) {
+    return failed(p, "the state is not finite", xi, "check inputs and parameters", why);
+}
+
+/* The shortest step at `xi`: the next position must differ. */
+static inline double shortest_step(double xi) { return SMALLEST_STEP * larger(1.0, xi); }
+
+static inline const Law *present_law(Integrator *p) {
+    if (!p->law_known) p->law = make_law(&p->scaled, &p->modes, p->now.regime, p->now.inputs, p->now.inputs_xi);
+    p->law_known = 1;
+    return &p->law;
+}
+
+static inline void change_regime(Integrator *p, Regime regime) {
+    p->now.regime = regime;
+    p->law_known = 0;
+}
+
+/* Go to the regime on the other side of the bound that a step has met. */
+static inline void pass_event(Integrator *p, const Step *step) {
+    change_regime(p, switch_over(p->now.regime, p->scaled.n, step->event, step->side));
+}
+
+/* Go on along the path to `xi` in the present step. */
+static inline void move_path(State *now, double xi) {
+    double x, z;
+    displacement(&now->step, xi, &x, &z);
+    now->path[0] += x, now->path[1] += z;
+}
+
+/* Move the origin of the lateral coordinates to the bit, where the state is `x`, if it is far. */
+static inline void keep_origin_near(State *now, double x[COMPONENTS]) {
+    int far = 0;
+    for (int c = LATERAL; c < COMPONENTS; c++) far |= fabs(x[c]) > ORIGIN_LIMIT;
+    if (!far) return;
+    shift_origin(&now->hole, x);
+    for (int c = LATERAL; c < COMPONENTS; c++) now->origin[c - LATERAL] += x[c], x[c] = 0.0;
+}
+
+/* Draw the consequences of how the last step ended: the state `x` there, and the order of a kink of the hole. */
+static inline int leave(Integrator *p, const Step *last, double x[COMPONENTS]) {
+    State *now = &p->now;
+    double xi = last->end;
+    move_path(now, xi);
+    step_state(last, xi, x);
+    keep_origin_near(now, x);
+    forget(&now->hole, xi - LOOK_BACK - p->scaled.s[p->scaled.n - 1]);
+    move_cursors(&now->hole, &p->scaled, xi);
+    /* half the way to a kink is no shorter than a step may be */
+    int kink = kink_here(&now->kinks, &p->scaled, xi, larger(MERGE, 2 * shortest_step(xi)));
+    if (last->event == NONE) return kink;
+    pass_event(p, last);
+    now->events++;
+    return 2; /* Y' is continuous over a bound, Y'' is not */
+}
+
+/* Whether the rings have room for one step more, besides what the way back needs. */
+static inline int has_room(const Integrator *p) {
+    const State *now = &p->now, *oldest = p->under_way ? &p->before : now;
+    Count live = now->hole.end - now->hole.first; /* a shift of the origin writes them anew */
+    return now->hole.end - oldest->hole.first + live + 1 <= now->hole.capacity &&
+           now->kinks.end - first_kink(&oldest->kinks, p->scaled.n) + 2 <= now->kinks.capacity;
+}
+
+/* What the next trial of a step goes by. */
+typedef struct {
+    double planned; /* its length, but for kinks */
+    double resumed; /* the length to come back to after a step that a kink has made shorter */
+    double stretch; /* how much longer it may be than planned, to end on a kink */
+    double slack;   /* by how much a value may lie beyond its bound */
+    int switches;   /* of regime at the start of the step */
+    double h;       /* the length of the trial */
+} Plan;
+
+/* The plan of the step after `last`, which ended on a kink of some order. */
+static inline Plan first_plan(const Step *last, int kink, const Law *law) {
+    Plan plan = {last->next_h, last->next_h, STRETCH, ROUNDING, 0, 0.0};
+    if (kink <= SMOOTHEST_KINK || last->end == last->xi) {
+        plan.planned = smaller(plan.planned, LAYERS * law->relaxation);
+        if (last->event != NONE) plan.resumed = plan.planned;
+    }
+    return plan;
+}
+
+/* Choose the length of the trial: to the next kink if that is near, half the way there if that is not much farther. */
+static inline void choose_length(const Integrator *p, const Law *law, double xi, Plan *plan) {
+    double h = smaller(plan->planned, LARGEST_STEP);
+    double way = next_kink(&p->now.kinks, &p->scaled, law->gains, p->tolerance, xi, 2 * h) - xi;
+    if (way < 2 * h) h = way <= smaller(plan->stretch * h, LARGEST_STEP) ? way : way / 2;
+    plan->h = h;
+}
+
+/* A step over the planned length from the state `x` at `xi`, before events cut it. */
+static inline void try_step(
+    const Integrator *p, const Law *law, double xi, double h, const double x[COMPONENTS], Trial *trial
+) {
+    Step step = {xi, h, {{0}}, xi + h, NONE, 0, INFINITY};
+    trial->step = step;
+    look_up(&p->now.hole, &p->scaled, trial);
+    law_try(law, p->tolerance, x, trial);
+}
+
+/* Whether numbers have run away in a trial step. */
+static inline int is_finite(const Trial *trial) {
+    for (int c = 0; c < COMPONENTS; c++)
+        if (!isfinite(trial->step.x[c][S])) return 0;
+    return isfinite(trial->error);
+}
+
+/* How much longer than a step with this error the next one may be: the error grows as h^(S+1). */
+static inline double growth(double error) { return SAFETY * pow(larger(error, LEAST_ERROR), -1.0 / (S + 1)); }
+
+/* Find the step from the state `x` at `xi` on; `why` says what failed and what helps.
+
+   A bound that is met where the step starts switches the regime there. By the rates exactly one regime holds, but
+   perhaps for a touch that is over before the first point of the step: then each regime finds itself beyond a bound
+   there, and the step is tried shorter. At h → 0 the regime that holds shows. Where rounding hides it, a value may lie
+   beyond its bound by a slack that grows as h falls; their product, what a wrong regime adds to the state, is the same
+   each time. */
+static inline Status find_step(
+    Integrator *p, double xi, const double x[COMPONENTS], Plan *plan, Trial *trial, char why[MESSAGE]
+) {
+    const Step *step = &trial->step;
+    double shortest = shortest_step(xi);
+    for (;;) {
+        const Law *law = present_law(p);
+        choose_length(p, law, xi, plan);
+        if (plan->h < shortest)
+            return failed_at_tolerance(p, "the steps of the integrator become too short", xi, "raise", why);
+        try_step(p, law, xi, plan->h, x, trial);
+        if (!is_finite(trial)) return not_finite(p, xi, why);
+        if (trial->error > 1.0) {
+            plan->planned = plan->resumed = plan->h * larger(growth(trial->error), LEAST_GROWTH);
+            plan->stretch = 1.0;
+            p->now.rejected++;
+            continue;
+        }
+        cut_at_event(&p->scaled, &p->now.hole, law, plan->slack, trial);
+        if (step->event == NONE || step->end - xi >= shortest) return DONE;
+        if (plan->switches < 2 * law->bound_count) {
+            pass_event(p, step);
+            plan->switches++;
+            continue;
+        }
+        plan->planned = larger(plan->h / CLOSER, shortest);
+        plan->stretch = 1.0, plan->switches = 0, plan->slack *= CLOSER;
+        if (plan->slack >= MOST_SLACK) return failed_at_tolerance(p, "no contact mode holds", xi, "change", why);
+    }
+}
+
+/* Append one step at the end of the last one; `why` says what failed and what helps. */
+static inline Status take_step(Integrator *p, char why[MESSAGE]) {
+    State *now = &p->now;
+    const Step last = now->step;
+    double x[COMPONENTS], end[COMPONENTS];
+    Trial trial;
+    if (!has_room(p)) return FULL;
+    int kink = leave(p, &last, x);
+    Plan plan = first_plan(&last, kink, present_law(p));
+    Status status = find_step(p, last.end, x, &plan, &trial, why);
+    if (status != DONE) return status;
+    Step *step = &now->step;
+    *step = trial.step;
+    step->next_h =
+        larger(plan.h < plan.resumed ? plan.resumed : 0.0, plan.h * smaller(growth(trial.error), LARGEST_GROWTH));
+    step_state(step, step->end, end);
+    for (int c = ANGLE; c < LATERAL; c++)
+        if (!(fabs(end[c]) <= LARGEST_INCLINATION)) return failed(p, "the bit turns over", step->end, TURNS_OVER, why);
+    ScaledInputs inputs = now->inputs;
+    inputs.F_rss += now->inputs.F_rss_slope * (last.end - now->inputs_xi);
+    append(&now->hole, step, inputs);
+    if (kink <= SMOOTHEST_KINK)
+        add_kink(&now->kinks, p->scaled.n, last.end, kink, step_jump(&last, step, kink, last.end));
+    now->accepted++;
+    return DONE;
+}
+
+/* Go back to where the way began that is not yet at its end. */
+static inline void go_back(Integrator *p) {
+    if (!p->under_way) return;
+    p->now = p->before;
+    *kink(&p->now.kinks, p->now.kinks.end - 1) = p->last_kink;
+    p->law_known = p->under_way = 0;
+}
+
+/* Remember where a way begins; 0 if the rings have no room. */
+static inline int set_out(Integrator *p) {
+    if (p->under_way) return 1;
+    if (!has_room(p)) return 0;
+    p->before = p->now;
+    p->last_kink = *kink(&p->now.kinks, p->now.kinks.end - 1);
+    p->under_way = 1;
+    return 1;
+}
+
+/* Take steps until `xi` lies within one. */
+static inline Status integrate(Integrator *p, double xi, char why[MESSAGE]) {
+    Status status = DONE;
+    while (status == DONE && xi > p->now.step.end) status = take_step(p, why);
+    return status;
+}
+
+/* Go on in larger rings; the old ones may be freed then. */
+static inline void move_rings(Integrator *p, Piece *pieces, Kink *kinks, Count capacity) {
+    State *now = &p->now;
+    const State *oldest = p->under_way ? &p->before : now;
+    Hole hole = {pieces, capacity, 0, 0, {0}};
+    Kinks ahead = {kinks, capacity, 0, {0}};
+    for (Count k = oldest->hole.first; k < now->hole.end; k++) *piece(&hole, k) = *piece(&now->hole, k);
+    for (Count k = first_kink(&oldest->kinks, p->scaled.n); k < now->kinks.end; k++)
+        *kink(&ahead, k) = *kink(&now->kinks, k);
+    now->hole.ring = p->before.hole.ring = pieces, now->kinks.ring = p->before.kinks.ring = kinks;
+    now->hole.capacity = p->before.hole.capacity = now->kinks.capacity = p->before.kinks.capacity = capacity;
+}
+
+#endif

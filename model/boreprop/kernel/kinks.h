@@ -1,0 +1,70 @@
+/* The kinks of the hole, where a derivative of its lateral coordinate jumps: the stabilizers will pass them, and no step
+   may pass over one that matters. */
+#ifndef BOREPROP_KINKS_H
+#define BOREPROP_KINKS_H
+
+#include "system.h"
+
+#define MERGE 1e-9 /* ℓ₁: kinks closer than this are one; far above the rounding of their sums ξ + s_i */
+/* The highest derivative of the hole in which a jump is followed: for jumps in smoother ones the error estimate, which
+   sees order S, shortens the steps enough. */
+#define SMOOTHEST_KINK 3
+enum { SMOOTH = 100 }; /* no kink: of an order higher than any */
+
+/* A jump in derivative `order` of the lateral coordinate at `xi`. */
+typedef struct {
+    double xi, jump, order;
+} Kink;
+
+/* The kinks that are kept, up to the one before `end`: number k lies at k modulo the capacity of the ring, a power of
+   two. The next that stabilizer i will pass is number ahead[i]. */
+typedef struct {
+    Kink *ring;
+    Count capacity, end, ahead[MAX_STABILIZERS];
+} Kinks;
+
+static inline Kink *kink(const Kinks *kinks, Count k) { return &kinks->ring[k & (kinks->capacity - 1)]; }
+
+/* Number of the oldest kink that is kept: the next one of the last stabilizer. */
+static inline Count first_kink(const Kinks *kinks, int n) { return kinks->ahead[n - 1]; }
+
+/* Mark a jump, which the stabilizers will pass; jumps at one place in one derivative add up. */
+static inline void add_kink(Kinks *kinks, int n, double xi, int order, double jump) {
+    Kink added = {xi, jump, order}, *last = kink(kinks, kinks->end - 1);
+    if (order > SMOOTHEST_KINK) return;
+    if (kinks->end > first_kink(kinks, n) && last->xi == xi && last->order == order) last->jump += jump;
+    else *kink(kinks, kinks->end++) = added;
+}
+
+/* Take the kinks up to `xi` off the lists; the lowest derivative of the hole, as it is drilled on, that those within
+   `near` of `xi` make jump. */
+static inline int kink_here(Kinks *kinks, const Scaled *scaled, double xi, double near) {
+    int lowest = SMOOTH;
+    for (int i = 0; i < scaled->n; i++)
+        for (Count *k = &kinks->ahead[i]; *k < kinks->end; ++*k) {
+            const Kink *next = kink(kinks, *k);
+            double at = next->xi + scaled->s[i];
+            if (at - xi > near) break;
+            if (xi - at <= near && next->order + 1 < lowest) lowest = (int)next->order + 1;
+        }
+    return lowest;
+}
+
+/* Where the next kink lies over which a step of length `h` from `xi` must not pass, if there is one; it may pass over
+   those that change the state by less than the tolerance. `gains` are the law's. */
+static inline double next_kink(
+    const Kinks *kinks, const Scaled *scaled, const double *gains, double tolerance, double xi, double h
+) {
+    double first = INFINITY, factorial[] = {1, 1, 2, 6, 24}, power[] = {1, h, h * h, h * h * h, h * h * h * h};
+    for (int i = 0; i < scaled->n; i++)
+        for (Count k = kinks->ahead[i]; k < kinks->end; k++) {
+            const Kink *next = kink(kinks, k);
+            double at = next->xi + scaled->s[i];
+            int order = (int)next->order + 1;
+            if (at >= xi + h || at >= first) break;
+            if (gains[i] * next->jump * power[order] > tolerance * factorial[order]) first = at;
+        }
+    return first;
+}
+
+#endif

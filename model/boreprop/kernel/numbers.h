@@ -1,0 +1,37 @@
+/* Counts, the larger and smaller of two numbers, and numbers as text. */
+#ifndef BOREPROP_NUMBERS_H
+#define BOREPROP_NUMBERS_H
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef long long Count; /* of stations, and of pieces of hole: 32 bits are not enough for a long life */
+
+static inline double larger(double a, double b) { return b > a ? b : a; }
+static inline double smaller(double a, double b) { return b < a ? b : a; }
+
+/* The number with so many digits, with a decimal point in every locale. */
+static inline const char *decimal(double value, int digits, char text[32]) {
+    char *end = text;
+    snprintf(text, 32, "%.*g", digits, value);
+    if (!isfinite(value)) return strcpy(text, isnan(value) ? "nan" : value > 0 ? "inf" : "-inf");
+    for (const char *from = text; *from; from++)
+        if (strchr("0123456789+-e", *from)) *end++ = *from;
+        else if (end == text || end[-1] != '.') *end++ = '.';
+    *end = '\0';
+    return text;
+}
+
+/* A short decimal that reads back as the same number. */
+static inline const char *represent(double value, char text[32]) {
+    int digits = 15;
+    char local[32];
+    do snprintf(local, sizeof local, "%.*g", digits, value);
+    while (strtod(local, NULL) != value && ++digits < 17);
+    decimal(value, digits, text);
+    return isfinite(value) && !strpbrk(text, ".e") ? strcat(text, ".0") : text;
+}
+
+#endif

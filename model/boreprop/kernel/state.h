@@ -1,0 +1,205 @@
+/* The state of a drilling run as numbers: saving it, and restoring it with suspicion, for it may come from anywhere.
+
+   First come the numbers of which there is a fixed count, then the pieces of the hole and the kinks. */
+#ifndef BOREPROP_STATE_H
+#define BOREPROP_STATE_H
+
+#include "drilling.h"
+
+/* Numbers are written `to` it or read `from` it; if it is neither, they are only counted. */
+typedef struct {
+    double *to;
+    const double *from;
+    Count passed;
+    int sound; /* what was to be whole and between limits was */
+} Tape;
+
+enum { NUMBERS_OF_PIECE = sizeof(Piece) / sizeof(double), NUMBERS_OF_KINK = sizeof(Kink) / sizeof(double) };
+
+/* Everything that evolves, with counts in place of the rings. */
+typedef struct {
+    double drilled_length;
+    State now;
+    Count pieces, kinks, passed[MAX_STABILIZERS]; /* of the kinks so many have been passed by each stabilizer */
+} Snapshot;
+
+static inline void pass(Tape *tape, int count, double *values) {
+    size_t size = (size_t)count * sizeof *values;
+    if (tape->to) memcpy(tape->to + tape->passed, values, size);
+    if (tape->from) memcpy(values, tape->from + tape->passed, size);
+    tape->passed += count;
+}
+
+/* A whole number; if the one that is read is none or beyond its limits, the lower limit, and the tape is not sound. */
+static inline Count pass_whole(Tape *tape, Count value, Count least, Count most) {
+    double number = (double)value;
+    pass(tape, 1, &number);
+    if (number >= (double)least && number <= (double)most && number == floor(number)) return (Count)number;
+    tape->sound = 0;
+    return least;
+}
+
+static inline void pass_piece(Tape *tape, Piece *piece) { pass(tape, NUMBERS_OF_PIECE, (double *)piece); }
+
+static inline void pass_kink(Tape *tape, Kink *kink) { pass(tape, NUMBERS_OF_KINK, (double *)kink); }
+
+/* All but pieces and kinks, of a system of n stabilizers. Only the first number may be infinite. */
+static inline void pass_snapshot(Tape *tape, int n, Snapshot *snapshot) {
+    State *now = &snapshot->now;
+    Step *step = &now->step;
+    pass(tape, 1, &step->next_h);
+    snapshot->pieces = pass_whole(tape, snapshot->pieces, 1, MOST_PIECES);
+    snapshot->kinks = pass_whole(tape, snapshot->kinks, 0, MOST_PIECES);
+    for (int i = 0; i < MAX_STABILIZERS; i++) {
+        signed char *contact = &now->regime.contact.of[i];
+        snapshot->passed[i] = pass_whole(tape, snapshot->passed[i], 0, snapshot->kinks);
+        *contact = (signed char)pass_whole(tape, *contact, -1, 1);
+    }
+    now->regime.saturation = (int)pass_whole(tape, now->regime.saturation, -1, 1);
+    step->event = (int)pass_whole(tape, step->event, NONE, n - 1);
+    step->side = (int)pass_whole(tape, step->side, -1, 1);
+    pass(tape, 1, &snapshot->drilled_length);
+    pass(tape, 1, &now->xi);
+    pass(tape, 1, &now->inputs.F_rss);
+    pass(tape, 1, &now->inputs.F_rss_slope);
+    pass(tape, 1, &now->inputs.eta_pi);
+    pass(tape, 1, &now->inputs_xi);
+    pass(tape, 2, now->path);
+    pass(tape, DIRECTIONS, now->origin);
+    pass(tape, 1, &step->xi);
+    pass(tape, 1, &step->h);
+    for (int c = 0; c < COMPONENTS; c++) pass(tape, S + 1, step->x[c]);
+    pass(tape, 1, &step->end);
+    pass(tape, 1, &now->accepted);
+    pass(tape, 1, &now->rejected);
+    pass(tape, 1, &now->events);
+}
+
+static inline Snapshot snapshot_of(const Drilling *d) {
+    const State *now = &d->integrator.now;
+    int n = d->system.n;
+    Count oldest = first_kink(&now->kinks, n);
+    Snapshot snapshot = {d->drilled_length, *now, now->hole.end - now->hole.first, now->kinks.end - oldest, {0}};
+    for (int i = 0; i < n; i++) snapshot.passed[i] = now->kinks.ahead[i] - oldest;
+    return snapshot;
+}
+
+/* How many numbers a state with so many pieces and kinks has. */
+static inline Count state_size(Count pieces, Count kinks) {
+    Tape count = {NULL, NULL, 0, 1};
+    Snapshot any = {0};
+    pass_snapshot(&count, 1, &any);
+    return count.passed + NUMBERS_OF_PIECE * pieces + NUMBERS_OF_KINK * kinks;
+}
+
+/* How many numbers `drilling_save` writes. */
+static inline Count drilling_state_size(const Drilling *d) {
+    Snapshot snapshot = snapshot_of(d);
+    return state_size(snapshot.pieces, snapshot.kinks);
+}
+
+/* Write everything that evolves. */
+static inline void drilling_save(const Drilling *d, double *state) {
+    const State *now = &d->integrator.now;
+    Snapshot snapshot = snapshot_of(d);
+    Tape tape = {state, NULL, 0, 1};
+    pass_snapshot(&tape, d->system.n, &snapshot);
+    for (Count k = now->hole.first; k < now->hole.end; k++) pass_piece(&tape, piece(&now->hole, k));
+    for (Count k = first_kink(&now->kinks, d->system.n); k < now->kinks.end; k++)
+        pass_kink(&tape, kink(&now->kinks, k));
+}
+
+/* Whether the numbers other than pieces and kinks agree with each other. */
+static inline int is_consistent(const Drilling *d, const Snapshot *snapshot) {
+    const State *now = &snapshot->now;
+    const Step *step = &now->step;
+    double xi = now->xi, eta_pi = now->inputs.eta_pi;
+    if (snapshot->drilled_length < 0 || snapshot->drilled_length / length_scale(&d->system) != xi) return 0;
+    if (!(eta_pi > 0) || !isfinite(1 / eta_pi) || now->inputs_xi > xi) return 0;
+    if (step->xi > xi || xi > step->end || !(step->h > 0) || !(step->next_h > 0)) return 0;
+    return snapshot->passed[d->system.n - 1] == 0; /* the last stabilizer is the last to pass a kink */
+}
+
+/* Whether the state at the end of a piece, at `end`, is where the next piece begins with `x`. */
+static inline int is_joined(const Piece *piece, double end, double x[COMPONENTS][S + 1]) {
+    if (!(piece->rate > 0) || end < piece->start) return 0;
+    for (int c = LATERAL; c < COMPONENTS; c++)
+        if (!(fabs(polynomial(piece->x[c], (end - piece->start) * piece->rate) - x[c][0]) <= MERGE)) return 0;
+    return 1;
+}
+
+/* Whether the pieces are a hole in one piece, of which the last is that of the present step unless that has no length,
+   and the kinks are of some order. */
+static inline int is_hole(Snapshot *snapshot, Tape tape) {
+    Step *step = &snapshot->now.step;
+    Piece own = {0}, next = {0};
+    Kink kink = {0};
+    pass_piece(&tape, &own);
+    for (Count left = snapshot->pieces - 1; left > 0; left--, own = next) {
+        pass_piece(&tape, &next);
+        if (!(own.inputs.eta_pi >= 0) || !is_joined(&own, next.start, next.x)) return 0;
+    }
+    if (!(own.inputs.eta_pi >= 0) || !is_joined(&own, step->xi, step->x)) return 0;
+    int stands = step->end == step->xi;
+    if (!stands && (own.start != step->xi || own.rate != 1 / step->h)) return 0;
+    if (!stands && memcmp(own.x, step->x, sizeof own.x)) return 0;
+    for (Count left = snapshot->kinks; left > 0; left--) {
+        pass_kink(&tape, &kink);
+        if (kink.order != floor(kink.order) || kink.order < 1 || kink.order > SMOOTHEST_KINK) return 0;
+    }
+    return 1;
+}
+
+/* Read a state, all but its pieces and kinks, before which the tape then stands: 0 if these numbers cannot be one. */
+static inline int read_state(const Drilling *d, Count count, Tape *tape, Snapshot *snapshot) {
+    if (count < state_size(1, 0)) return 0;
+    pass_snapshot(tape, d->system.n, snapshot);
+    if (!tape->sound || state_size(snapshot->pieces, snapshot->kinks) != count) return 0;
+    for (Count k = 1; k < count; k++)
+        if (!isfinite(tape->from[k])) return 0;
+    return is_consistent(d, snapshot) && is_hole(snapshot, *tape);
+}
+
+/* Capacity that a state needs. */
+static inline Count snapshot_capacity(const Snapshot *snapshot) {
+    Count most = snapshot->pieces > snapshot->kinks ? snapshot->pieces : snapshot->kinks, capacity = LEAST_CAPACITY;
+    while (capacity < 2 * most + 2) capacity *= 2;
+    return capacity;
+}
+
+/* Become what a snapshot says, with the pieces and kinks on the tape; the rings must have room for them. */
+static inline void become(Drilling *d, const Snapshot *snapshot, Tape tape) {
+    Integrator *p = &d->integrator;
+    Hole hole = {p->now.hole.ring, p->now.hole.capacity, 0, snapshot->pieces, {0}};
+    Kinks kinks = {p->now.kinks.ring, p->now.kinks.capacity, snapshot->kinks, {0}};
+    memcpy(kinks.ahead, snapshot->passed, sizeof kinks.ahead);
+    for (Count k = 0; k < snapshot->pieces; k++) pass_piece(&tape, piece(&hole, k));
+    for (Count k = 0; k < snapshot->kinks; k++) pass_kink(&tape, kink(&kinks, k));
+    d->drilled_length = snapshot->drilled_length;
+    p->now = snapshot->now, p->now.hole = hole, p->now.kinks = kinks;
+    p->law_known = p->under_way = 0;
+}
+
+/* Go back to a state that this run has saved itself. */
+static inline void drilling_return(Drilling *d, const double *state) {
+    Tape tape = {NULL, state, 0, 1};
+    Snapshot snapshot = {0};
+    pass_snapshot(&tape, d->system.n, &snapshot);
+    become(d, &snapshot, tape);
+}
+
+/* Go to a state of a run with the same system, if it can be one; FULL if that needs the capacity `wanted`. */
+static inline Status drilling_restore(Drilling *d, const double *state, Count count, Count *wanted, char why[MESSAGE]) {
+    Tape tape = {NULL, state, 0, 1};
+    Snapshot snapshot = {0};
+    if (!read_state(d, count, &tape, &snapshot)) {
+        snprintf(why, MESSAGE, "state: must be one of this system, got %lld numbers that are none", count);
+        return FAILED;
+    }
+    *wanted = snapshot_capacity(&snapshot);
+    if (d->integrator.now.hole.capacity < *wanted) return FULL;
+    become(d, &snapshot, tape);
+    return DONE;
+}
+
+#endif

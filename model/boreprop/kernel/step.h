@@ -1,0 +1,74 @@
+/* One step of the integrator: a stretch of the run on which the state is a polynomial. */
+#ifndef BOREPROP_STEP_H
+#define BOREPROP_STEP_H
+
+#include "radau.h"
+#include "system.h"
+
+/* How many numbers evolve: first the angles of the bit, then as many lateral coordinates of the hole; in the plane θ and
+   Y. The integrator is compiled for one count. */
+#ifndef COMPONENTS
+#define COMPONENTS 2
+#endif
+enum { DIRECTIONS = COMPONENTS / 2, ANGLE = 0, LATERAL = DIRECTIONS }; /* the first of either kind */
+
+enum { NONE = -1 }; /* no event */
+
+/* A stretch [xi, end] of the run: the state as polynomials in t = (ξ − xi)/h, and why it ends. */
+typedef struct {
+    double xi, h, x[COMPONENTS][S + 1], end;
+    int event, side; /* the part whose bound is met at the end, and on which side */
+    double next_h;
+} Step;
+
+/* A step as the collocation gives it, before events cut it, with values at the points. */
+typedef struct {
+    Step step;
+    double delayed[MAX_STABILIZERS][DIRECTIONS][POINTS]; /* the hole's lateral coordinate at ξ − s_i */
+    double x[COMPONENTS][POINTS];
+    double sines[POINTS], ahead[POINTS]; /* sin⟨Θ⟩_1; distance from where the inputs were taken over */
+    double error;                        /* estimated, over the tolerance */
+} Trial;
+
+static inline double polynomial(const double c[S + 1], double t) {
+    return c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * c[5]))));
+}
+
+static inline double polynomial_slope(const double c[S + 1], double t) {
+    return c[1] + t * (2 * c[2] + t * (3 * c[3] + t * (4 * c[4] + t * 5 * c[5])));
+}
+
+/* A step of no length at `xi`, where a run starts or its inputs change. */
+static inline Step standstill(double xi, const double x[COMPONENTS]) {
+    Step step = {xi, 1.0, {{0}}, xi, NONE, 0, INFINITY};
+    for (int c = 0; c < COMPONENTS; c++) step.x[c][0] = x[c];
+    return step;
+}
+
+/* The state at `xi`. */
+static inline void step_state(const Step *step, double xi, double x[COMPONENTS]) {
+    double t = (xi - step->xi) / step->h;
+    for (int c = 0; c < COMPONENTS; c++) x[c] = polynomial(step->x[c], t);
+}
+
+/* A derivative of one component at `xi`. */
+static inline double step_derivative(const Step *step, int component, int order, double xi) {
+    double t = (xi - step->xi) / step->h, value = 0.0, power = 1.0;
+    for (int m = S; m >= order; m--) {
+        double factor = 1.0;
+        for (int k = 0; k < order; k++) factor *= m - k;
+        value = value * t + factor * step->x[component][m];
+    }
+    for (int k = 0; k < order; k++) power *= step->h;
+    return value / power;
+}
+
+/* The largest jump at `xi` in a derivative of the hole's lateral coordinates, from one step to the next. */
+static inline double step_jump(const Step *before, const Step *after, int order, double xi) {
+    double jump = 0.0;
+    for (int c = LATERAL; c < COMPONENTS; c++)
+        jump = larger(jump, fabs(step_derivative(after, c, order, xi) - step_derivative(before, c, order, xi)));
+    return jump;
+}
+
+#endif
