@@ -14,14 +14,15 @@ from pathlib import Path
 from distributed import Client, LocalCluster
 
 import study_functions
-from boreprop.analysis.study.run import Row, run
+from boreprop.analysis.study.run import study
+from boreprop.analysis.study.table import Line
 
 
 def main() -> None:
     """Run the study."""
     folder, killed = Path(sys.argv[1]), list[int]()
 
-    def kill_a_worker(_: Row) -> None:
+    def kill_a_worker(_: Line) -> None:
         if not killed:
             killed.append(next(iter(client.run(os.getpid).values())))
             os.kill(killed[0], signal.SIGKILL)
@@ -30,7 +31,7 @@ def main() -> None:
         LocalCluster(2, threads_per_worker=1, host="127.0.0.1", dashboard_address=None) as cluster,  # type: ignore[no-untyped-call]
         Client(cluster) as client,  # type: ignore[no-untyped-call]
     ):
-        run(
+        study(
             study_functions.numbered(40),
             partial(study_functions.counted, folder, 0.1),
             executor=client.get_executor(),

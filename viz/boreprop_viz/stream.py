@@ -12,7 +12,7 @@ import numpy as np
 import rerun as rr
 
 from boreprop.analysis.axis import AXIS_REACH, axis_ripple
-from boreprop.analysis.rippling import examine_rippling
+from boreprop.analysis.rippling import find_rippling
 from boreprop.case.case import Case
 from boreprop.core.quantities import BY_NAME
 from boreprop.run.trajectory import Trajectory
@@ -128,7 +128,7 @@ class RunStream:
 
     def verdict(self) -> str:
         """Whether the hole ripples where the bit is."""
-        return in_words(examine_rippling(self.recent)) if self.recent else ""
+        return in_words(find_rippling(self.recent)) if self.recent else ""
 
 
 def _latest(before: Trajectory | None, new: Trajectory, length: float) -> Trajectory:

@@ -7,7 +7,7 @@ from math import degrees, floor, log10, pi
 
 import numpy as np
 
-from boreprop.analysis.rippling import examine_rippling
+from boreprop.analysis.rippling import find_rippling
 from boreprop.case.case import Case
 from boreprop.core.quantities import BY_NAME
 from boreprop.run.completion import case_of
@@ -204,7 +204,7 @@ def look(runs: Sequence[Trajectory], *, whole: bool, section: Array) -> Look:
 
 def likely_wavelength(runs: Sequence[Trajectory], cases: Sequence[Case], whole: bool) -> float:
     """The longest wave with which one of the runs, if they are whole, ripples; else that which one may come to, m."""
-    waves = [examine_rippling(run) for run in runs] if whole else []
+    waves = [find_rippling(run) for run in runs] if whole else []
     found = [wave.wavelength for wave in waves if wave.ripples]
     return max(found or [USUAL_WAVELENGTH * case.bha.half_length for case in cases])
 

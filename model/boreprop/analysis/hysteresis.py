@@ -13,7 +13,7 @@ from ..errors import Stopped
 from ..run.trajectory import Trajectory
 from .rippling import Rippling
 from .study.design import vary
-from .tipping import LARGEST_DOGLEG, SCAN, drill_until_settled, with_dogleg
+from .tipping import LARGEST_DOGLEG, SCAN, drill_until_steady, with_dogleg
 
 END = 0.01  # to which part of the parameter the ends of a loop are found
 
@@ -133,7 +133,7 @@ class _Ramp:
         case = self.at(value)
         case = replace(case, survey=hole) if hole else with_dogleg(case, self.dogleg)
         try:
-            run, wave = drill_until_settled(case, relative_tolerance=self.relative_tolerance)
+            run, wave = drill_until_steady(case, relative_tolerance=self.relative_tolerance)
         except Stopped:
             return _End(None, None)
         return _End(wave, _left_behind(run, case) if wave.ripples else None)

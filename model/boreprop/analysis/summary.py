@@ -11,7 +11,7 @@ from ..core.system import BottomHoleAssembly
 from ..run.completion import case_of
 from ..run.trajectory import Trajectory
 from ..units import BUILD_LENGTH
-from .rippling import Rippling, State, examine_rippling, visible_waves
+from .rippling import Rippling, State, find_rippling, visible_waves
 
 SHORT_WAVE, LONG_WAVE = 0.25, 1.8  # half BHAs: what ripples are between
 CHORD_POINTS = 200  # of the existing hole under a chord
@@ -71,10 +71,22 @@ def summarize(trajectory: Trajectory) -> Summary:
     ------
     InputError
         If the run lacks its case or a column.
+
+    Examples
+    --------
+    >>> from boreprop import paper_case, simulate, summarize
+    >>> summary = summarize(simulate(paper_case(), sample_interval=0.25))
+    >>> summary.rippling.ripples, round(summary.saturation_share, 2)
+    (True, 0.93)
     """
+    case_of(trajectory)
+    return sum_up(trajectory, find_rippling(trajectory))
+
+
+def sum_up(trajectory: Trajectory, rippling: Rippling) -> Summary:
+    """`summarize` a run whose rippling is known."""
     case = case_of(trajectory)
     length = trajectory["drilled_length"]
-    rippling = examine_rippling(trajectory)
     over = averaging_length(case.bha, rippling)
     inclination = mean_inclination(trajectory, case.survey, over)
     weights = np.gradient(length)

@@ -205,7 +205,8 @@ def study(
     else:
         cases = sample(case, parse_each(parse_distribution, uncertain or []), draws, seed)
         quantiles = {"10 %": 0.1, "50 %": 0.5, "90 %": 0.9}
-    from ..analysis.study.run import key_figures, run
+    from ..analysis.study.figures import key_figures
+    from ..analysis.study.run import study as run
     from ..report.tables.study import lines, verdict
 
     figures = key_figures if tolerance is None else partial(key_figures, relative_tolerance=tolerance)
