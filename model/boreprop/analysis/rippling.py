@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import groupby
 from math import exp, inf, log, nan
+from statistics import median
 from typing import NamedTuple
 
 import numpy as np
@@ -134,9 +135,9 @@ class _Rows:
     inclination: Floats
     modes: NDArray[np.int_] | None
 
-    def after(self, first: int) -> "_Rows":
-        """Those from `first` on."""
-        return _Rows(self.length[first:], self.inclination[first:], None if self.modes is None else self.modes[first:])
+    def where(self, kept: NDArray[np.bool_] | slice) -> "_Rows":
+        """Some of them."""
+        return _Rows(self.length[kept], self.inclination[kept], None if self.modes is None else self.modes[kept])
 
 
 class _Found(NamedTuple):
@@ -258,11 +259,11 @@ def _find(
     """The wave at the end of a run, see `find_rippling`."""
     changed = np.zeros(max(len(length) - 1, 0), dtype=bool)
     for values in inputs:
-        changed |= np.diff(values) != 0
-    moved = np.append(np.diff(length) > 0, True)[: len(length)]  # while the bit stands still, the last row counts
+        changed |= values[1:] != values[:-1]
+    moved = np.append(length[1:] > length[:-1], True)[: len(length)]  # while the bit stands still, the last row counts
     steady = int(np.count_nonzero(moved[: int(np.flatnonzero(changed)[-1]) + 1])) if changed.any() else 0
-    rows = _Rows(length[moved], inclination[moved], None if modes is None else modes[moved])
-    found = _search(rows.after(steady), longest)
+    rows = _Rows(length, inclination, modes) if moved.all() else _Rows(length, inclination, modes).where(moved)
+    found = _search(rows.where(slice(steady, None)), longest)
     if found.waves or not steady:
         return found
     found = _search(rows, longest)
@@ -341,7 +342,7 @@ def _switching(rows: _Rows, waves: LastWaves) -> bool | None:
     first = int(np.searchsorted(rows.length, waves.x[late]))
     modes = rows.modes[first : first + len(waves.x) - late]
     changes = np.bincount(waves.wave[late + 1 :], (modes[1:] != modes[:-1]).any(axis=1), waves.count)
-    return bool(np.median(changes[-AT_THE_END:]) >= 1)
+    return median(changes[-AT_THE_END:].tolist()) >= 1
 
 
 def _still_there(waves: LastWaves, period: float) -> bool:

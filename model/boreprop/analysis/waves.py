@@ -98,9 +98,9 @@ def wavelength_in_rows(signal: Floats) -> tuple[float, float]:
     rows = len(signal)
     longest = int(rows / FEWEST_WAVES)
     alike = autocorrelation(signal, min(int((LAST_LAG + DRIFT) * rows) + 3, rows))
-    lags = np.arange(FEWEST_ROWS - 1, longest + 1)
-    peaks = lags[(alike[lags] > 0) & (alike[lags] >= alike[lags - 1]) & (alike[lags] > alike[lags + 1])]
-    peaks = peaks[np.minimum.accumulate(alike)[peaks] < SHALLOW * alike[peaks]]
+    before, here, after = (alike[FEWEST_ROWS - 1 + k : longest + 1 + k] for k in (-1, 0, 1))
+    peaks = FEWEST_ROWS - 1 + np.flatnonzero((here > 0) & (here >= before) & (here > after))
+    peaks = peaks[np.minimum.accumulate(alike[: longest + 1])[peaks] < SHALLOW * alike[peaks]]
     if not len(peaks):
         return np.nan, 0.0
     first = int(peaks[alike[peaks] >= AS_HIGH * alike[peaks].max()][0])
@@ -120,9 +120,9 @@ def wavelength_in_rows(signal: Floats) -> tuple[float, float]:
 
 def _summit(values: Floats, top: int) -> float:
     """Where the parabola through the highest of some values and its neighbours is highest."""
-    before, here, after = values[top - 1 : top + 2]
+    before, here, after = values[top - 1 : top + 2].tolist()
     bend = before - 2 * here + after
-    return top + (float(np.clip((before - after) / (2 * bend), -0.5, 0.5)) if bend < 0 else 0.0)
+    return top + min(max((before - after) / (2 * bend), -0.5), 0.5) if bend < 0 else top
 
 
 def mean_over(x: Floats, y: NDArray[Any], width: float) -> tuple[slice, NDArray[Any]]:
@@ -206,8 +206,8 @@ class LastWaves:
         square = float(middle @ middle)
         logarithm = np.log(np.maximum(self.sizes, 1e-6 * self.sizes.max()))
         rate = float(middle @ logarithm) / square
-        residual = float(np.std(logarithm - rate * middle))
-        return rate, 2 * residual / (square * (1 - 2 / self.count)) ** 0.5
+        residual = logarithm - logarithm.mean() - rate * middle
+        return rate, 2 * float(residual @ residual / self.count / (square * (1 - 2 / self.count))) ** 0.5
 
     def height(self, deviation: Floats | None = None) -> float:
         """Between the highest and the lowest of the mean wave, of the deviation or of other values at the same rows.
@@ -219,7 +219,8 @@ class LastWaves:
         folded = values[np.argsort(self.place % 1.0, kind="stable")]
         neighbours = max(self.count // 2, 1)
         total = np.concatenate(([0.0], np.cumsum(np.concatenate((folded, folded[:neighbours])))))
-        return float(np.ptp(total[neighbours:] - total[:-neighbours])) / neighbours
+        means = total[neighbours:] - total[:-neighbours]
+        return float(means.max() - means.min()) / neighbours
 
     def starts(self) -> Floats:
         """Where the waves rise through zero without their harmonics, in the unit of x: one more than there are lengths.
