@@ -429,16 +429,18 @@ def test_workers_that_never_give_a_result_end_the_study() -> None:
 
 @posix
 @pytest.mark.slow
-def test_a_study_on_a_dask_cluster_ends_complete_though_a_worker_is_killed(tmp_path: Path) -> None:
+def test_the_command_on_a_dask_cluster_ends_complete_though_a_worker_is_killed(tmp_path: Path, paper_case: Path) -> None:
     pytest.importorskip("distributed")
-    script = TESTS / "study_on_dask.py"
-    done = subprocess.run([sys.executable, script, tmp_path], capture_output=True, text=True, timeout=120)
+    output, cases = tmp_path / "study.parquet", 300
+    command = [sys.executable, TESTS / "study_on_dask.py", paper_case, output, str(cases)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
-    assert not psutil.pid_exists(int(done.stdout))
-    table = parquet.read_table(tmp_path / "study.parquet").to_pydict()
-    assert table["weight"] == list(range(1, 41))
-    assert table["error"] == [None] * 40
-    assert set(calls(tmp_path)) == set(range(1, 41))
+    before, killed = map(int, done.stdout.split()[-2:])
+    assert before < cases
+    assert not psutil.pid_exists(killed)
+    table = parquet.read_table(output).to_pydict()
+    assert table["case"] == list(range(cases))
+    assert table["error"] == [None] * cases
 
 
 @posix
@@ -538,6 +540,8 @@ def test_the_command_of_uncertain_parameters(command: Command, tmp_path: Path, p
         (["--uncertain", "eta_pi=triangular(1,1,1)"], ("--uncertain", "triangular(", "'eta_pi=triangular(1,1,1)'")),
         (["--uncertain", "eta_pi=normal(1,2)", "--sample", "0"], ("--sample", "0")),
         (["--vary", "eta_pi=1", "--workers", "0"], ("--workers", "0")),
+        (["--vary", "eta_pi=1", "--workers", "1", "--dask", "tcp://a:1"], ("--workers", "--dask", "1")),
+        (["--vary", "eta_pi=1", "--dask", "nobody://a:1"], ("--dask", "Dask scheduler", "'nobody://a:1'")),
     ],
 )
 def test_wrong_arguments_of_the_command(

@@ -178,6 +178,9 @@ def study(
     workers: Annotated[
         int | None, typer.Option(metavar="K", help="Number of processes, if not one for each core.")
     ] = None,
+    dask: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Compute on the workers of a Dask scheduler, tcp://HOST:PORT.")
+    ] = None,
     tolerance: console.Tolerance = None,
 ) -> None:
     """Simulate many cases on all cores: over a grid, or of uncertain parameters.
@@ -197,6 +200,8 @@ def study(
     check_number("--seed", seed, at_least=0)
     if workers is not None:
         check_number("--workers", workers, at_least=1)
+    if dask is not None and workers is not None:
+        raise InputError(f"--workers: must not be given with --dask, whose workers compute, got {workers}")
     if bool(vary) == bool(uncertain):
         raise InputError(f"must be given either --vary or --uncertain, got {'both' if vary else 'neither'}")
     case = load_case(case_file)
@@ -205,14 +210,15 @@ def study(
     else:
         cases = sample(case, parse_each(parse_distribution, uncertain or []), draws, seed)
         quantiles = {"10 %": 0.1, "50 %": 0.5, "90 %": 0.9}
+    from ..analysis.study.cluster import on_cluster
     from ..analysis.study.figures import key_figures
     from ..analysis.study.run import study as run
     from ..report.tables.study import lines, verdict
 
     figures = key_figures if tolerance is None else partial(key_figures, relative_tolerance=tolerance)
     try:
-        with console.progress("cases", len(cases)) as done:
-            results = run(cases, figures, output=output, workers=workers, progress=done)
+        with on_cluster(dask) as executor, console.progress("cases", len(cases)) as done:
+            results = run(cases, figures, output=output, executor=executor, workers=workers, progress=done)
     except KeyboardInterrupt:
         if output.exists():
             console.warn(f"{output}: keeps the cases that are done; the same command goes on from there")
