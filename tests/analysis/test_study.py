@@ -429,10 +429,10 @@ def test_workers_that_never_give_a_result_end_the_study() -> None:
 
 @posix
 @pytest.mark.slow
-def test_the_command_on_a_dask_cluster_ends_complete_though_a_worker_is_killed(tmp_path: Path, paper_case: Path) -> None:
+def test_a_study_on_a_dask_cluster_ends_complete_though_a_worker_is_killed(tmp_path: Path, paper_case: Path) -> None:
     pytest.importorskip("distributed")
     output, cases = tmp_path / "study.parquet", 300
-    command = [sys.executable, TESTS / "study_on_dask.py", paper_case, output, str(cases)]
+    command = [sys.executable, *map(str, (TESTS / "study_on_dask.py", paper_case, output, cases))]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
     before, killed = map(int, done.stdout.split()[-2:])

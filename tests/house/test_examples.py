@@ -130,19 +130,19 @@ def test_a_jump_of_the_force_turns_the_hole_by_what_the_readme_says(case: Case) 
 
 def test_the_stability_of_the_build_section_is_what_the_readme_says(case: Case) -> None:
     def found(at: float, inclination: float) -> Roots:
-        return find_roots(case.bha, case.bit, at, contact=(1, 2), inclination=inclination)
+        return find_roots(case, at, contact=(1, 2), inclination=inclination)
 
     start, end = case.survey.inclination[-1], radians(53.43)
     own = eta_pi(case.bha, case.bit, case.active_weight_on_bit)
     weight = case.active_weight_on_bit / own
     assert (found(0.1289, start).verdict, found(0.129, start).verdict) == ("oscillatory", "stable")
-    critical = critical_eta_pi(case.bha, case.bit, contact=(1, 2), inclination=start)
+    critical = critical_eta_pi(case, contact=(1, 2), inclination=start)
     assert critical is not None
     told = f"ηΠ = 0.1289 ({critical.eta_pi * weight / 1e3:.1f} kN; wavelength {critical.wavelength:.1f} m)"
     assert told in " ".join(README.split())
     for contact in ((), (1,), (2,)):
         for saturated in (False, True):
-            other = critical_eta_pi(case.bha, case.bit, contact=contact, saturated=saturated, inclination=end)
+            other = critical_eta_pi(case, contact=contact, saturated=saturated, inclination=end)
             assert other is None or other.eta_pi < 0.037
     assert f"below 0.037 ({0.037 * weight / 1e3:.1f} kN)" in README
     slow = [found(own, inclination).roots[0].real for inclination in (start, end)]

@@ -342,7 +342,7 @@ def _switching(rows: _Rows, waves: LastWaves) -> bool | None:
     first = int(np.searchsorted(rows.length, waves.x[late]))
     modes = rows.modes[first : first + len(waves.x) - late]
     changes = np.bincount(waves.wave[late + 1 :], (modes[1:] != modes[:-1]).any(axis=1), waves.count)
-    return median(changes[-AT_THE_END:].tolist()) >= 1
+    return bool(median(changes[-AT_THE_END:].tolist()) >= 1)
 
 
 def _still_there(waves: LastWaves, period: float) -> bool:

@@ -150,5 +150,5 @@ def mean_inclination(run: Trajectory, survey: Survey, over: float) -> Floats:
     axis = np.concatenate(([0.0], existing, existing[-1] + drilled))
     chord = axis[-len(length) :] - np.interp(length - over, at, axis)
     inclination: Floats = np.arctan2(chord.imag, chord.real)
-    turned = np.abs(inclination[1:] - inclination[:-1]).max(initial=0.0) > pi  # past straight up: seldom, and slow to mend
-    return np.unwrap(inclination) if turned else inclination
+    turns = np.abs(inclination[1:] - inclination[:-1])
+    return np.unwrap(inclination) if turns.max(initial=0.0) > pi else inclination  # seldom: a hole past straight up

@@ -268,7 +268,7 @@ def usual_map(case: Case) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     own = eta_pi(case.bha, case.bit, case.active_weight_on_bit)
     inclination = case.survey.inclination[-1]
     contact = can_touch(case.bha, case.bit, inclination, case.schedule.rss_force)
-    critical = critical_eta_pi(case.bha, case.bit, contact=contact, inclination=inclination)
+    critical = critical_eta_pi(case, contact=contact, inclination=inclination)
     highest = max(1.1 * critical.eta_pi if critical else 0.0, 1.5 * own)
     clearance = (*case.bha.stabilizer_clearances, 0.0)[first_that_touches(case) - 1]
     return (

@@ -83,9 +83,13 @@ def likeness(signal: Floats, lag: float) -> float:
     near = round(lag)
     if len(signal) <= near + 2:
         return 0.0
-    pairs = [(signal[rows:], signal[:-rows]) for rows in (near - 1, near, near + 1)]
-    scales = [float((late @ late) * (early @ early)) ** 0.5 for late, early in pairs]
-    return max(float(late @ early) / scale if scale else 0.0 for (late, early), scale in zip(pairs, scales, strict=True))
+    return max(_correlation(signal[rows:], signal[:-rows]) for rows in (near - 1, near, near + 1))
+
+
+def _correlation(late: Floats, early: Floats) -> float:
+    """Of two signals about zero, shape (rows,) each; 0 if one is nothing but zero."""
+    scale = float((late @ late) * (early @ early)) ** 0.5
+    return float(late @ early) / scale if scale else 0.0
 
 
 def wavelength_in_rows(signal: Floats) -> tuple[float, float]:

@@ -399,7 +399,7 @@ def roots(
     weight_on_bit = at * bha.force_scale / bit.lateral_steering_resistance
     if every or (contact is None and not as_json):
         found = [
-            find_roots(bha, bit, at, contact=numbers, saturated=tilt, inclination=inclination)
+            find_roots(case, at, contact=numbers, saturated=tilt, inclination=inclination)
             for numbers in all_contacts(bha)
             for tilt in ((True,) if saturated else (False, True))
         ]
@@ -413,7 +413,7 @@ def roots(
             table.add_row(*mode_row(roots, bha.length_scale, here, met))
         Console(width=WIDE).print(table)
         return
-    one = find_roots(bha, bit, at, contact=touching, saturated=saturated, inclination=inclination)
+    one = find_roots(case, at, contact=touching, saturated=saturated, inclination=inclination)
     if as_json:
         print(json.dumps(as_plain(one)))
         return
@@ -452,7 +452,7 @@ def stability(
     own = assembly.eta_pi(bha, bit, case.active_weight_on_bit)
     here, _ = held(bha, bit, case.active_weight_on_bit, forces[0], inclination)
     contacts = charted(bha, bit, inclination, forces, here)
-    limits = {contact: critical_eta_pi(bha, bit, contact=contact, inclination=inclination) for contact in contacts}
+    limits = {contact: critical_eta_pi(case, contact=contact, inclination=inclination) for contact in contacts}
     usual_across, usual_up = usual_grid(bha, own, max(limit.eta_pi if limit else 0.0 for limit in limits.values()))
     across, up = usual_across if across is None else across, usual_up if up is None else up
     from ..report.figures.drawing import save
@@ -460,7 +460,7 @@ def stability(
     from ..report.tables.stability import stability_limit, weight
 
     with console.progress("chart", 1.0) as done:
-        chart = stability_chart(bha, bit, across, up, inclination, done, contacts)
+        chart = stability_chart(case, across, up, contacts=contacts, progress=done)
     save(draw(chart, case), output)
     print(
         f"{output}: {len(across)} × {len(up)} points; {stability_limit(contacts[0], limits[contacts[0]])}; "

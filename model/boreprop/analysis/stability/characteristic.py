@@ -271,7 +271,7 @@ class Characteristic:
 
 
 def even_waves(turn: Floats, number: int) -> tuple[Floats, Floats]:
-    """sin kx and 1 − cos kx for k = 1 … number and x in `turn`, shape (m, 1): cheap, as e^{ikx} is a product."""
+    """Values of sin kx and 1 − cos kx for k = 1 … number, x in `turn`, shape (m, 1): cheap, as e^{ikx} is a product."""
     short = int(number**0.5) + 1
     fine, coarse = np.exp(1j * turn * np.arange(1, short + 1)), np.exp(1j * turn * short * np.arange(short))
     product = (coarse[:, :, None] * fine[:, None, :]).reshape(len(turn), -1)[:, :number]

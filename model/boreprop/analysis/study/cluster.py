@@ -32,4 +32,4 @@ def on_cluster(address: str | None) -> Generator[Executor | None]:
     except (OSError, TypeError, ValueError) as error:
         raise InputError(f"--dask: must be the address of a running Dask scheduler, got {address!r}") from error
     with client:
-        yield client.get_executor()
+        yield client.get_executor()  # type: ignore[no-untyped-call]

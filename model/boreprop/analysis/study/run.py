@@ -77,8 +77,8 @@ def study(
     progress
         Called with the number of cases that are done.
     on_result
-        Called with each new line of the table, in order of completion: "case" (its number), the varied parameters, the results,
-        "error".
+        Called with each new line of the table, in order of completion: "case" (its number), the varied parameters, the
+        results, "error".
 
     Returns
     -------
@@ -104,12 +104,12 @@ def study(
     done = len(cases) - len(todo)
     if progress:
         progress(done)
-    compute = partial(_outcome, function, cases.case, cases.names)
+    compute = partial(outcome, function, cases.case, cases.names)
     try:
         with closing(work(compute, todo, executor, workers)) as finished:
             for batch in finished:
-                for case, outcome in batch:
-                    line = table.add(case, outcome)
+                for case, result in batch:
+                    line = table.add(case, result)
                     if on_result:
                         on_result(line)
                 done += len(batch)
@@ -150,7 +150,7 @@ def probability(happened: "DataArray", confidence: float = 0.95) -> Probability:
     return Probability(float(known.mean()), float(interval.low), float(interval.high))
 
 
-def _outcome(
+def outcome(
     function: Function, case: Case, names: tuple[str, ...], values: tuple[float, ...]
 ) -> dict[str, float] | str:
     """In the worker: the results of one case, or why there are none. What numbers cannot cause is a bug and raised."""
