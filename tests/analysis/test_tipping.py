@@ -84,7 +84,7 @@ def test_an_early_verdict_is_that_of_a_long_run(eta_pi: float, turn_deg: float, 
     assert ripples_for_long(case) is ripples
 
 
-def test_the_settled_wave_is_that_of_a_long_run() -> None:
+def test_the_steady_wave_is_that_of_a_long_run() -> None:
     _, early = drill_until_steady(paper_case(tilt_limit=radians(1.0)))
     run = simulate(paper_case(tilt_limit=radians(1.0)), sample_interval=0.05)
     late = find_rippling(run)

@@ -60,7 +60,7 @@ def hysteresis(
     """How a system ripples while a parameter goes up and down again, slowly.
 
     Going up starts from a ripple: from a dogleg that makes the case with the first value ripple, if any does. Each case
-    then drills on in the hole that the one before it left, until it settles. A straight hole would stay straight for
+    then drills on in the hole that the one before it left, until it is steady. A straight hole would stay straight for
     ever, though the next survey, connection or formation makes it turn: so each case that no ripple goes before starts
     in the hole of `with_dogleg`, straight at the inclination of the case, with the dogleg. So do all cases going down,
     until one ripples.

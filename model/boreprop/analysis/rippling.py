@@ -58,7 +58,7 @@ class Stretch(NamedTuple):
     """A part of a wave in one mode: contact of each non-ideal stabilizer, saturation of the tilt, share of the wave."""
 
     contact: tuple[int, ...]
-    tilt: int
+    saturation: int
     share: float
 
 

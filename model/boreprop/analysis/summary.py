@@ -78,7 +78,7 @@ def summarize(trajectory: Trajectory) -> Summary:
     >>> from boreprop import paper_case, simulate, summarize
     >>> summary = summarize(simulate(paper_case(), sample_interval=0.25))
     >>> summary.rippling.ripples, round(summary.saturation_share, 2)
-    (True, 0.93)
+    (True, 0.81)
     """
     case_of(trajectory)
     return sum_up(trajectory, find_rippling(trajectory))

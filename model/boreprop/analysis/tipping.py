@@ -82,10 +82,10 @@ def drill_until_steady(case: Case, *, relative_tolerance: float = RELATIVE_TOLER
     Stopped
         If the integrator cannot go on.
     """
-    half, stretch = case.bha.half_length, _Stretch.of(case, relative_tolerance)
+    half, drilled = case.bha.half_length, _OpenEndedRun.of(case, relative_tolerance)
     target = FIRST_CHECK * half
     while True:
-        run = stretch.drill_to(target)
+        run = drilled.drill_to(target)
         wave = last_wave(run)
         if _is_steady(run, wave, half):
             return run, find_rippling(run)
@@ -96,7 +96,7 @@ def drill_until_steady(case: Case, *, relative_tolerance: float = RELATIVE_TOLER
 
 
 @dataclass
-class _Stretch:
+class _OpenEndedRun:
     """A case that is drilled further and further, with its rows so far."""
 
     case: Case
@@ -106,7 +106,7 @@ class _Stretch:
     rows: Floats
 
     @classmethod
-    def of(cls, case: Case, relative_tolerance: float) -> "_Stretch":
+    def of(cls, case: Case, relative_tolerance: float) -> "_OpenEndedRun":
         names = scalar_names(OUTPUTS, len(case.bha.stabilizer_positions))
         interval = min(case.bha.half_length / ROWS, LARGEST_INTERVAL)
         return cls(case, start(case, engine(), relative_tolerance), interval, names, np.empty((0, len(names))))
@@ -182,7 +182,7 @@ def critical_dogleg(
 
     The straight hole and turns of `limit`, a half of it, … to 1/32 are tried first, and down to 1/1024 where the
     straight hole ripples by itself; the interval below the smallest that tips is then halved (in proportion). In an
-    inclined hole gravity disturbs even the straight one, and the inclination changes while it settles; the answer is
+    inclined hole gravity disturbs even the straight one, and the inclination changes on the way; the answer is
     for where it starts.
 
     Parameters

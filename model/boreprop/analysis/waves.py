@@ -195,7 +195,7 @@ class LastWaves:
     @cached_property
     def wave(self) -> Integers:
         """The wave that each row is of, from 0."""
-        return np.clip(self.place.astype(np.intp), 0, self.count - 1)
+        return np.minimum(self.place.astype(np.intp), self.count - 1)
 
     @cached_property
     def sizes(self) -> Floats:
@@ -219,7 +219,7 @@ class LastWaves:
         steps, whose edges a mean over more of it would round.
         """
         values = self.deviation if deviation is None else deviation
-        folded = values[np.argsort(self.place % 1.0, kind="stable")]
+        folded = values[np.argsort(self.place - self.wave, kind="stable")]
         neighbours = max(self.count // 2, 1)
         total = np.concatenate(([0.0], np.cumsum(np.concatenate((folded, folded[:neighbours])))))
         means = total[neighbours:] - total[:-neighbours]
