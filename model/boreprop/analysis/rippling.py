@@ -260,7 +260,8 @@ def _find(
     changed = np.zeros(max(len(length) - 1, 0), dtype=bool)
     for values in inputs:
         changed |= values[1:] != values[:-1]
-    moved = np.append(length[1:] > length[:-1], True)[: len(length)]  # while the bit stands still, the last row counts
+    moved = np.ones(len(length), dtype=bool)  # while the bit stands still, the last row counts
+    np.greater(length[1:], length[:-1], out=moved[:-1])
     steady = int(np.count_nonzero(moved[: int(np.flatnonzero(changed)[-1]) + 1])) if changed.any() else 0
     rows = _Rows(length, inclination, modes) if moved.all() else _Rows(length, inclination, modes).where(moved)
     found = _search(rows.where(slice(steady, None)), longest)

@@ -96,8 +96,9 @@ def sum_up(trajectory: Trajectory, rippling: Rippling) -> Summary:
     def share(happens: NDArray[np.bool_]) -> float:
         return float(weights[happens].sum() / weights.sum())
 
-    later = np.interp(length + BUILD_LENGTH, length, inclination, right=np.nan)
-    rates = (later - inclination)[~np.isnan(later)] / BUILD_LENGTH
+    later = length + BUILD_LENGTH
+    drilled_by_then = slice(int(np.searchsorted(later, length[-1], side="right")))
+    rates = (np.interp(later[drilled_by_then], length, inclination) - inclination[drilled_by_then]) / BUILD_LENGTH
     drilled = float(length[-1] - length[0])
     return Summary(
         drilled_length=drilled,
