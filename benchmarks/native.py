@@ -21,7 +21,9 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from boreprop.analysis.study.run import grid, key_figures, run
+from boreprop.analysis.study.design import grid
+from boreprop.analysis.study.figures import key_figures
+from boreprop.analysis.study.run import study
 from boreprop.case.case import Case
 from boreprop.case.paper import LENGTH_SCALE, paper_case
 from boreprop.core.drilling import Drilling
@@ -133,14 +135,14 @@ def timed_figures(case: Case) -> dict[str, float]:
     return figures | {"cpu": process_time() - begin}
 
 
-def study(count: int) -> str:
+def large_study(count: int) -> str:
     """A study of `count` paper cases of 60 ℓ₁ on two processes, their start and the Parquet file included."""
     cases = grid(paper_case(), {"eta_pi": np.linspace(0.0095, 0.0105, count)})
     arrivals: list[float] = []
     begin = perf_counter()
     with TemporaryDirectory() as folder:
         output = Path(folder, "study.parquet")
-        results = run(
+        results = study(
             cases, timed_figures, output=output, workers=WORKERS, on_result=lambda _: arrivals.append(perf_counter())
         )
     wall, first = perf_counter() - begin, arrivals[0] - begin
@@ -157,7 +159,7 @@ def main() -> None:
     console = Console(width=110)
     console.print(engines())
     console.print(host())
-    console.print(study(FULL_STUDY if "--full" in sys.argv[1:] else PART_OF_STUDY))
+    console.print(large_study(FULL_STUDY if "--full" in sys.argv[1:] else PART_OF_STUDY))
 
 
 if __name__ == "__main__":

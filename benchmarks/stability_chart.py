@@ -63,7 +63,7 @@ def unstable(roots: np.ndarray) -> int:
 def chart() -> Chart:
     """Ours."""
     bha, bit = CASE.bha, CASE.bit
-    return stability_chart(bha, bit, *usual_grid(bha, eta_pi(bha, bit, CASE.active_weight_on_bit)))
+    return stability_chart(CASE, *usual_grid(bha, eta_pi(bha, bit, CASE.active_weight_on_bit)), inclination=0.0)
 
 
 def eigenvalues(made: Chart, panel: Panel, point: Point, nodes: int) -> np.ndarray:

@@ -1,78 +1,89 @@
-"""What a study costs beside a bare loop of simulations, and what a second process gains; side by side in one run.
+"""What a case costs in a study beside its simulation alone, and what a second process gains; side by side in one run.
 
     python benchmarks/study.py [CASES]
 
-Times of everything, the start of the processes and the Parquet file included; medians of pairs taken in turn. On a
-machine that is busy with other things these pairs say little. So every simulation of a study is timed where it runs,
-too: what the whole study takes beyond that is its cost, and how many simulations are under way on average is the gain
-that idle cores would give.
+First the bar: CPU time of a case in a study (native engine, one worker: parameters varied, simulated, summed up, kept)
+over that of its simulation alone, the median of interleaved pairs. CPU time says this on a busy machine, too. Then wall
+times of whole studies, the start of the processes and the Parquet file included, on one process, on two, and on two
+threads: only where cores are idle do they say what a second one gains.
 """
 
 import os
 import sys
-from dataclasses import replace
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from resource import RUSAGE_CHILDREN, RUSAGE_SELF, getrusage
 from statistics import median
 from tempfile import TemporaryDirectory
-from time import perf_counter, process_time
+from time import perf_counter, thread_time
 
 import numpy as np
 
-from boreprop.analysis.study.run import Study, grid, run, vary
+from boreprop.analysis.study.design import Study, grid, vary
+from boreprop.analysis.study.figures import key_figures
+from boreprop.analysis.study.run import outcome, study
+from boreprop.analysis.study.table import Table
 from boreprop.case.case import Case
-from boreprop.case.paper import LENGTH_SCALE, paper_case
+from boreprop.case.paper import paper_case
 from boreprop.run.simulate import simulate
 
-CASES, PAIRS = 200, 5
-LENGTH = 25 * LENGTH_SCALE  # m: some tenth of a second
+CASES, PAIRS, ROUNDS = 1000, 300, 3
+BAR = 1.5
 
 
-def timed(case: Case) -> dict[str, float]:
-    """Wall and CPU seconds of a simulation."""
-    begin, cpu = perf_counter(), process_time()
-    simulate(case)
-    return {"wall": perf_counter() - begin, "cpu": process_time() - cpu}
+def cases(count: int) -> Study:
+    """Paper cases, as they come."""
+    return grid(paper_case(), {"eta_pi": np.linspace(0.0095, 0.0105, count)})
 
 
-def bare(study: Study) -> float:
-    """Wall seconds of the simulations of a study and nothing else."""
+def cpu(function: Callable[[], object]) -> float:
+    """CPU seconds of a call."""
+    begin = thread_time()
+    function()
+    return thread_time() - begin
+
+
+def cost_of_a_case() -> tuple[float, float]:
+    """CPU time of a case in a study over its simulation alone, and of that alone, s: medians."""
+    all_of_them = cases(PAIRS)
+    table = Table(all_of_them, key_figures, None)
+    pairs = []
+    for number, values in enumerate(all_of_them.values.tolist()):
+        case: Case = vary(all_of_them.case, dict(zip(all_of_them.names, values, strict=True)))
+        alone = cpu(lambda case=case: simulate(case, engine="native"))  # type: ignore[misc]
+
+        def in_a_study(number: int = number, values: tuple[float, ...] = tuple(values)) -> None:
+            table.add(number, outcome(key_figures, all_of_them.case, all_of_them.names, values))
+
+        pairs.append((cpu(in_a_study) / alone, alone))
+    ratios, times = zip(*pairs, strict=True)
+    return median(ratios), median(times)
+
+
+def whole(count: int, workers: int, threads: bool = False) -> float:
+    """Wall seconds of a study with its file."""
     begin = perf_counter()
-    for values in study.values.tolist():
-        simulate(vary(study.case, dict(zip(study.names, values, strict=True))))
+    with TemporaryDirectory() as folder:
+        output = Path(folder, "study.parquet")
+        if threads:
+            with ThreadPoolExecutor(workers) as executor:
+                study(cases(count), output=output, executor=executor)
+        else:
+            study(cases(count), output=output, workers=workers)
     return perf_counter() - begin
 
 
-def whole(study: Study, workers: int) -> tuple[float, float, float]:
-    """Wall seconds of a study with its file; its CPU seconds over those of its simulations; simulations under way."""
-    begin, cpu = perf_counter(), cpu_time()
-    with TemporaryDirectory() as folder:
-        results = run(study, timed, output=Path(folder, "study.parquet"), workers=workers)
-    wall, cpu = perf_counter() - begin, cpu_time() - cpu
-    return wall, cpu / float(results["cpu"].sum()), float(results["wall"].sum()) / wall
-
-
-def cpu_time() -> float:
-    """Seconds that this process and those it started, which have ended, have computed."""
-    usages = getrusage(RUSAGE_SELF), getrusage(RUSAGE_CHILDREN)
-    return sum(usage.ru_utime + usage.ru_stime for usage in usages)
-
-
 def main() -> None:
-    """Print each pair, and the medians."""
-    cases = int(sys.argv[1]) if len(sys.argv) > 1 else CASES
-    study = grid(replace(paper_case(), length=LENGTH), {"eta_pi": np.linspace(0.0095, 0.0105, cases)})
-    pairs: list[tuple[float, ...]] = []
-    for _ in range(PAIRS):
-        loop, (one, cost, _), (two, _, under_way) = bare(study), whole(study, 1), whole(study, 2)
-        pairs.append((one / loop, cost, one / two, under_way))
+    """Print the cost, and the rounds."""
+    ratio, alone = cost_of_a_case()
+    print(f"a case in a study over its simulation alone ({1e3 * alone:.2f} ms): × {ratio:.2f} (bar {BAR})")
+    count = int(sys.argv[1]) if len(sys.argv) > 1 else CASES
+    for _ in range(ROUNDS):
+        one, two, threads = whole(count, 1), whole(count, 2), whole(count, 2, threads=True)
         print(
-            f"{cases} cases: bare {1e3 * loop / cases:.0f} ms a case, study on one process {1e3 * one / cases:.0f},"
-            f" on two {1e3 * two / cases:.0f}; load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores"
+            f"{count} cases: one process {1e3 * one / count:.1f} ms a case, two {1e3 * two / count:.1f}, two threads "
+            f"{1e3 * threads / count:.1f}; load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores"
         )
-    wall, cost, gain, under_way = (median(column) for column in zip(*pairs, strict=True))
-    print(f"cost of a case, study over bare: × {wall:.3f}; CPU, study over its simulations: × {cost:.3f} (bar 1.10)")
-    print(f"gain of a second process: × {gain:.2f}; simulations under way: {under_way:.2f} (bar 1.8)")
 
 
 if __name__ == "__main__":

@@ -6,7 +6,8 @@ import sys
 import time
 from pathlib import Path
 
-from boreprop.analysis.study.run import Study, grid, run
+from boreprop.analysis.study.design import Study, grid
+from boreprop.analysis.study.run import study
 from boreprop.case.case import Case
 from boreprop.case.paper import paper_case
 
@@ -84,4 +85,4 @@ if __name__ == "__main__":  # a study in a process of its own, to be killed
     import study_functions  # not __main__: so the function is the same one as in the tests
 
     where = Path(sys.argv[1])
-    run(numbered(60), partial(study_functions.counted, where, 0.1), output=where / "study.parquet", workers=2)
+    study(numbered(60), partial(study_functions.counted, where, 0.1), output=where / "study.parquet", workers=2)

@@ -1,43 +1,45 @@
-"""A study on a cluster of two Dask workers, one of which is killed on the way; prints its process number.
+"""`boreprop study --dask` on a cluster of two workers, one of which is killed on the way; prints how many cases were
+done by then, and the worker's process number.
 
-    python study_on_dask.py FOLDER
+    python study_on_dask.py CASE.toml STUDY.parquet CASES
 
 In a process of its own, as what Dask leaves behind is not for the tests to clean up.
 """
 
 import os
 import signal
+import subprocess
 import sys
-from functools import partial
+import time
 from pathlib import Path
 
+import pyarrow.parquet
 from distributed import Client, LocalCluster
 
-import study_functions
-from boreprop.analysis.study.run import Row, run
+
+def rows_in(path: Path) -> int:
+    """How many cases a study's file holds."""
+    return pyarrow.parquet.ParquetFile(path).metadata.num_rows if path.exists() else 0
 
 
 def main() -> None:
     """Run the study."""
-    folder, killed = Path(sys.argv[1]), list[int]()
-
-    def kill_a_worker(_: Row) -> None:
-        if not killed:
-            killed.append(next(iter(client.run(os.getpid).values())))
-            os.kill(killed[0], signal.SIGKILL)
-
+    case, output, cases = sys.argv[1:]
     with (
         LocalCluster(2, threads_per_worker=1, host="127.0.0.1", dashboard_address=None) as cluster,  # type: ignore[no-untyped-call]
         Client(cluster) as client,  # type: ignore[no-untyped-call]
     ):
-        run(
-            study_functions.numbered(40),
-            partial(study_functions.counted, folder, 0.1),
-            executor=client.get_executor(),
-            output=folder / "study.parquet",
-            on_result=kill_a_worker,
-        )
-    print(*killed)
+        victim = next(iter(client.run(os.getpid).values()))
+        command = [sys.executable, "-m", "boreprop.cli.app", "study", case, "--output", output]
+        command += ["--vary", f"eta_pi=0.005:0.02:{cases}", "--dask", cluster.scheduler_address]
+        study = subprocess.Popen(command)
+        while study.poll() is None and not rows_in(Path(output)):
+            time.sleep(0.01)
+        done = rows_in(Path(output))
+        os.kill(victim, signal.SIGKILL)
+        status = study.wait()
+    print(done, victim)
+    sys.exit(status)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .analysis.hysteresis import hysteresis as hysteresis
-    from .analysis.rippling import examine_rippling as examine_rippling
     from .analysis.rippling import find_rippling as find_rippling
     from .analysis.stability.chart import stability_chart as stability_chart
     from .analysis.stability.roots import critical_eta_pi as critical_eta_pi
@@ -23,7 +22,9 @@ if TYPE_CHECKING:
     from .analysis.study.design import grid as grid
     from .analysis.study.design import sample as sample
     from .analysis.study.design import vary as vary
-    from .analysis.study.run import run as study
+    from .analysis.study.run import probability as probability
+    from .analysis.study.run import quantiles as quantiles
+    from .analysis.study.run import study as study
     from .analysis.summary import summarize as summarize
     from .analysis.tipping import critical_dogleg as critical_dogleg
     from .case.case import Case as Case
@@ -41,7 +42,7 @@ if TYPE_CHECKING:
     from .run.trajectory import Stopped as Stopped
     from .run.trajectory import Trajectory as Trajectory
 
-_HOMES = {  # public name → module, and the name there where it is another
+_HOMES = {  # public name → module
     "BitRock": "core.system",
     "BorepropError": "core.errors",
     "BottomHoleAssembly": "core.system",
@@ -53,19 +54,20 @@ _HOMES = {  # public name → module, and the name there where it is another
     "critical_dogleg": "analysis.tipping",
     "critical_eta_pi": "analysis.stability.roots",
     "engine": "run.engines",
-    "examine_rippling": "analysis.rippling",
     "find_rippling": "analysis.rippling",
     "find_roots": "analysis.stability.roots",
     "grid": "analysis.study.design",
     "hysteresis": "analysis.hysteresis",
     "load_case": "case.file",
     "paper_case": "case.paper",
+    "probability": "analysis.study.run",
+    "quantiles": "analysis.study.run",
     "read_trajectory": "run.results",
     "sample": "analysis.study.design",
     "simulate": "run.simulate",
     "stability_chart": "analysis.stability.chart",
     "steady_response": "analysis.steering",
-    "study": "analysis.study.run.run",
+    "study": "analysis.study.run",
     "summarize": "analysis.summary",
     "vary": "analysis.study.design",
     "write_trajectory": "run.results",
@@ -83,12 +85,7 @@ def __getattr__(name: str) -> Any:
         return version("boreprop")
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    home = _HOMES[name]
-    try:
-        value = getattr(import_module(f"{__name__}.{home}"), name)
-    except ModuleNotFoundError:
-        module, _, other = home.rpartition(".")
-        value = getattr(import_module(f"{__name__}.{module}"), other)
+    value = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
     globals()[name] = value
     return value
 

@@ -4,8 +4,8 @@ from collections import Counter
 
 import pytest
 
-from boreprop.analysis.rippling import examine_rippling
-from boreprop.analysis.tipping import drill_until_settled
+from boreprop.analysis.rippling import find_rippling
+from boreprop.analysis.tipping import drill_until_steady
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
 from near_bit import NEAR_BIT, near_bit_case
@@ -23,7 +23,7 @@ def rippling_at(fate: str, lengths: tuple[float, ...]) -> Counter[float]:
     said: Counter[float] = Counter()
     for entry in NEAR_BIT[fate]:
         run = simulate(near_bit_case(entry), engine="native")
-        said.update(length for length in lengths if examine_rippling(up_to(run, length)).ripples)
+        said.update(length for length in lengths if find_rippling(up_to(run, length)).ripples)
     return said
 
 
@@ -48,4 +48,4 @@ def test_an_early_verdict_on_those_in_a_vertical_hole_is_that_of_the_long_run(fa
     vertical = [entry for entry in NEAR_BIT[fate] if entry["inc"] == 0.0][::2]
     assert len(vertical) > 25
     for entry in vertical:
-        assert drill_until_settled(near_bit_case(entry))[1].ripples is (fate == "ripples"), entry
+        assert drill_until_steady(near_bit_case(entry))[1].ripples is (fate == "ripples"), entry

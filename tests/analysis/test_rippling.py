@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from boreprop.analysis.axis import AXIS_REACH, axis_ripple
-from boreprop.analysis.rippling import State, examine_rippling, find_rippling
+from boreprop.analysis.rippling import State, find_rippling
 from boreprop.case.paper import LENGTH_SCALE, paper_case
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
@@ -225,7 +225,7 @@ def test_waves_are_found_from_half_a_metre_to_forty(made: Waves) -> None:
 def test_the_spread_is_that_of_the_last_wavelengths() -> None:
     lengths = np.where(np.arange(60) % 2, 1.35, 1.45)
     phase = np.interp(XI, np.concatenate(([0.0], np.cumsum(lengths))), np.arange(61))
-    found = examine_rippling(upright_run(3.66 * XI, np.sin(2 * np.pi * phase) * radians(1.0)), 3.66 * LONGEST)
+    found = find_rippling(upright_run(3.66 * XI, np.sin(2 * np.pi * phase) * radians(1.0)), longest=3.66 * LONGEST)
     assert found.wavelength == pytest.approx(3.66 * 1.4, rel=0.01)
     assert found.spread == pytest.approx(3.66 * 0.05, rel=0.3)
 
@@ -250,7 +250,7 @@ def paper_run() -> Trajectory:
 
 
 def test_the_ripple_of_the_axis_is_the_wave_that_the_inclination_makes(paper_run: Trajectory) -> None:
-    found = examine_rippling(paper_run)
+    found = find_rippling(paper_run)
     xi, Theta = reference("fig7_psi_2deg")["xi"], reference("fig7_psi_2deg")["Theta"]
     Y = np.concatenate(([0.0], np.cumsum((Theta[1:] + Theta[:-1]) / 2 * np.diff(xi))))
     late = Y[(xi > 40.0) & (xi < 40.0 + 10 * 1.386)]
@@ -260,14 +260,14 @@ def test_the_ripple_of_the_axis_is_the_wave_that_the_inclination_makes(paper_run
 
 @pytest.mark.parametrize("rows_a_wave", [10, 20, 70])
 def test_stabilizer_and_tilt_go_from_limit_to_limit_in_a_wave_of_the_paper(rows_a_wave: int) -> None:
-    found = examine_rippling(simulate(paper_case(), sample_interval=1.386 * LENGTH_SCALE / rows_a_wave))
+    found = find_rippling(simulate(paper_case(), sample_interval=1.386 * LENGTH_SCALE / rows_a_wave))
     held = [stretch[:2] for stretch in found.modes if stretch.share > 0.2]
     assert held == [((1,), -1), ((-1,), 1)]
     assert sum(stretch.share for stretch in found.modes) == pytest.approx(1.0)
 
 
 def test_the_modes_of_a_wave_are_those_of_its_rows(paper_run: Trajectory) -> None:
-    found = examine_rippling(paper_run)
+    found = find_rippling(paper_run)
     late = paper_run["drilled_length"] > 40.0 * LENGTH_SCALE
     for wall in (-1, 0, 1):
         share = sum(stretch.share for stretch in found.modes if stretch.contact == (wall,))
@@ -275,7 +275,7 @@ def test_the_modes_of_a_wave_are_those_of_its_rows(paper_run: Trajectory) -> Non
 
 
 def test_a_run_that_does_not_ripple_has_no_wave_to_examine() -> None:
-    found = examine_rippling(simulate(paper_case(clearance=2e-3), sample_interval=0.1))
+    found = find_rippling(simulate(paper_case(clearance=2e-3), sample_interval=0.1))
     assert (found.ripples, found.modes, np.isnan(found.axis_amplitude)) == (False, (), True)
 
 

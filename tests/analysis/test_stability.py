@@ -37,13 +37,21 @@ from boreprop.case.paper import paper_case
 from boreprop.core.errors import ParameterError
 from boreprop.core.modes import Regime
 from boreprop.core.survey import Survey
-from boreprop.core.system import BitRock, BottomHoleAssembly, Scaled, eta_pi, scale
+from boreprop.core.system import BitRock, BottomHoleAssembly, Scaled, scale
 from boreprop.report.figures.stability import SHADES, boundaries, draw
 from conftest import Command, assert_refused
 from pseudospectral import LinearMode
 from systems import begin, scaled_systems
 
 PAPER = paper_case()
+
+
+def drilling(bha: BottomHoleAssembly, bit: BitRock) -> Case:
+    """A drilling system in a vertical hole."""
+    return replace(PAPER, bha=bha, bit=bit, survey=Survey((0.0, 1.0), (0.0, 0.0)))
+
+
+VERTICAL = drilling(PAPER.bha, PAPER.bit)
 
 contacts = st.lists(st.integers(0, 1), min_size=5, max_size=5)
 inclinations = st.one_of(st.sampled_from([0.0, pi / 2, pi]), st.floats(0.0, 3.0))
@@ -62,13 +70,13 @@ inclinations = st.one_of(st.sampled_from([0.0, pi / 2, pi]), st.floats(0.0, 3.0)
 def test_the_rightmost_roots_of_the_paper_s_case(
     eta_pi: float, contact: tuple[int, ...], saturated: bool, expected: list[complex], meaning: str
 ) -> None:
-    found = find_roots(PAPER.bha, PAPER.bit, eta_pi, contact=contact, saturated=saturated)
+    found = find_roots(VERTICAL, eta_pi, contact=contact, saturated=saturated)
     assert found.roots[: len(expected)] == pytest.approx(expected, abs=1e-6)
     assert found.verdict == meaning
 
 
 def test_the_critical_eta_pi_of_the_paper_s_case() -> None:
-    critical = critical_eta_pi(PAPER.bha, PAPER.bit)
+    critical = critical_eta_pi(VERTICAL)
     assert critical is not None
     assert critical.eta_pi == pytest.approx(0.146757, abs=1e-6)
     assert critical.frequency == pytest.approx(4.715348, abs=1e-6)
@@ -77,15 +85,15 @@ def test_the_critical_eta_pi_of_the_paper_s_case() -> None:
 
 def test_the_critical_frequency_without_weight_and_angular_resistance_solves_tan_w_equals_w() -> None:
     bha = replace(PAPER.bha, distributed_weight=0.0)
-    critical = critical_eta_pi(bha, replace(PAPER.bit, angular_steering_resistance=1e-9))
+    critical = critical_eta_pi(drilling(bha, replace(PAPER.bit, angular_steering_resistance=1e-9)))
     assert critical is not None
     assert critical.eta_pi == pytest.approx(0.19595014747, abs=1e-8)
     assert critical.frequency == pytest.approx(brentq(lambda w: np.tan(w) - w, 4.4, 4.6), abs=1e-7)
 
 
 def test_without_contact_the_paper_s_case_never_oscillates() -> None:
-    assert critical_eta_pi(PAPER.bha, PAPER.bit, contact=()) is None
-    assert critical_eta_pi(PAPER.bha, PAPER.bit, saturated=True) is None
+    assert critical_eta_pi(VERTICAL, contact=()) is None
+    assert critical_eta_pi(VERTICAL, saturated=True) is None
 
 
 @settings(deadline=None, max_examples=40)
@@ -125,7 +133,7 @@ def test_roots_are_polished(
 
 
 def test_many_roots_of_a_stiff_system_are_all_found() -> None:
-    found = np.array(find_roots(PAPER.bha, PAPER.bit, 2e-3, contact=[1]).roots)
+    found = np.array(find_roots(VERTICAL, 2e-3, contact=[1]).roots)
     line = -0.5 + 1j * np.arange(-15000.0, 15000.0, 0.01)
     phase = np.unwrap(np.angle(LinearMode.of(scale(PAPER.bha, PAPER.bit), (1,), False, 0.0).determinant(line, 2e-3)))
     # far out P ~ ν: half a turn on the way back round the right half plane
@@ -270,13 +278,13 @@ def test_the_roots_counted_for_the_chart_are_those_that_are_found(
 def test_a_system_in_contact_oscillates_below_its_critical_eta_pi_and_not_above(scaled: Scaled) -> None:
     bha = BottomHoleAssembly(scaled.s, scaled.y_star, scaled.Delta, 3 * scaled.w, 1.0)  # ℓ₁ = 1, F* = 3
     bit = BitRock(1.0, scaled.epsilon, scaled.psi_star)
-    critical = critical_eta_pi(bha, bit)
+    critical = critical_eta_pi(drilling(bha, bit))
     assert critical is not None
     every = range(1, len(scaled.s))
     for factor, oscillates in ((0.999, True), (1.001, False), (1.5, False), (5.0, False)):
-        found = find_roots(bha, bit, factor * critical.eta_pi, contact=every)
+        found = find_roots(drilling(bha, bit), factor * critical.eta_pi, contact=every)
         assert (found.verdict is Verdict.OSCILLATORY) == oscillates
-    nearest = min(find_roots(bha, bit, critical.eta_pi, contact=every).roots, key=lambda root: abs(root.real))
+    nearest = min(find_roots(drilling(bha, bit), critical.eta_pi, contact=every).roots, key=lambda root: abs(root.real))
     if nearest.imag:  # else it is the weight's
         assert nearest == pytest.approx(critical.frequency * 1j, abs=1e-8)
 
@@ -304,11 +312,11 @@ def assemblies(draw: st.DrawFn) -> BottomHoleAssembly:
 @pytest.mark.parametrize("second", [5.10859, 5.1054, 5.1351, 7.0378])
 def test_where_the_equation_for_the_crossings_is_nearly_zero_there_is_no_crossing_for_that(second: float) -> None:
     bha = replace(NEAR_BIT, stabilizer_positions=(1.2, second, second + 9.5))
-    critical = critical_eta_pi(bha, BIT, inclination=radians(30.0))
+    critical = critical_eta_pi(drilling(bha, BIT), inclination=radians(30.0))
     assert critical is not None
     assert critical.wavelength < 5.0  # not some hundred metres
     for factor, expected in ((0.999, True), (1.001, False), (2.0, False), (9.0, False)):
-        found = find_roots(bha, BIT, factor * critical.eta_pi, contact=(1, 2), inclination=radians(30.0))
+        found = find_roots(drilling(bha, BIT), factor * critical.eta_pi, contact=(1, 2), inclination=radians(30.0))
         assert (found.verdict is Verdict.OSCILLATORY) == expected
 
 
@@ -321,7 +329,7 @@ def test_at_a_critical_eta_pi_a_pair_of_roots_leaves_the_right_half_plane_for_go
     scaled, touching = scale(bha, bit), tuple(contact[: len(bha.stabilizer_clearances)])
     mode = LinearMode.of(scaled, touching, saturated, inclination)
     numbers = [i for i, touches in enumerate(touching, 1) if touches]
-    critical = critical_eta_pi(bha, bit, contact=numbers, saturated=saturated, inclination=inclination)
+    critical = critical_eta_pi(drilling(bha, bit), contact=numbers, saturated=saturated, inclination=inclination)
     least = critical.eta_pi if critical else 0.02
     assume(mode.top(least) * scaled.s[-1] < 3e4)
     characteristic = Characteristic.of(scaled, touching, saturated, inclination)
@@ -371,11 +379,13 @@ def test_a_long_assembly_takes_little_memory() -> None:
     resource = pytest.importorskip("resource")  # not on Windows
     program = f"""
 import resource
+from dataclasses import replace
 resource.setrlimit(resource.RLIMIT_AS, ({2**30}, {2**30}))
-from boreprop import find_roots
+from boreprop import find_roots, paper_case
 from boreprop.core.system import BitRock, BottomHoleAssembly
+case = replace(paper_case(), bha={LONG!r}, bit={BIT!r})
 for contact in ((), (2, 3), (1, 2, 3)):
-    print(len(find_roots({LONG!r}, {BIT!r}, 0.0146, contact=contact, inclination=0.5).roots))
+    print(len(find_roots(case, 0.0146, contact=contact, inclination=0.5).roots))
 """
     assert resource
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}  # each thread claims memory that it does not use
@@ -386,7 +396,7 @@ for contact in ((), (2, 3), (1, 2, 3)):
 
 @pytest.mark.parametrize("contact", [(), (2, 3), (1, 2, 3)])
 def test_the_roots_of_a_long_assembly_are_all_there(contact: tuple[int, ...]) -> None:
-    found = np.array(find_roots(LONG, BIT, 0.0146, contact=contact, inclination=0.5).roots)
+    found = np.array(find_roots(drilling(LONG, BIT), 0.0146, contact=contact, inclination=0.5).roots)
     touching = tuple(int(i in contact) for i in (1, 2, 3))
     mode = LinearMode.of(scale(LONG, BIT), touching, False, 0.5)
     for abscissa in (1e-7, -0.05):
@@ -396,7 +406,7 @@ def test_the_roots_of_a_long_assembly_are_all_there(contact: tuple[int, ...]) ->
 
 @pytest.fixture(scope="module")
 def chart() -> Chart:
-    return stability_chart(PAPER.bha, PAPER.bit, np.linspace(0.005, 0.6, 60), np.linspace(0.5, 2.4, 39))
+    return stability_chart(VERTICAL, np.linspace(0.005, 0.6, 60), np.linspace(0.5, 2.4, 39))
 
 
 def test_the_panels_of_the_chart_are_the_four_modes_with_the_verdicts_of_their_roots(chart: Chart) -> None:
@@ -412,8 +422,8 @@ def test_the_panels_of_the_chart_are_the_four_modes_with_the_verdicts_of_their_r
         for _ in range(25):
             i, j = rng.integers(39), rng.integers(60)
             first, second = PAPER.bha.stabilizer_positions[0], PAPER.bha.stabilizer_positions[0] * chart.lambda2[i]
-            bha = replace(PAPER.bha, stabilizer_positions=(first, first + second))
-            found = find_roots(bha, PAPER.bit, float(chart.eta_pi[j]), contact=panel.contact, saturated=panel.saturated)
+            moved = drilling(replace(PAPER.bha, stabilizer_positions=(first, first + second)), PAPER.bit)
+            found = find_roots(moved, float(chart.eta_pi[j]), contact=panel.contact, saturated=panel.saturated)
             assert VERDICTS[panel.verdicts[i, j]] is found.verdict
 
 
@@ -447,7 +457,7 @@ def test_a_drift_of_the_chart_doubles_as_fast_as_its_root_says(chart: Chart) -> 
     for i, j in ((0, 0), (20, 3), (38, 59)):
         first = PAPER.bha.length_scale
         bha = replace(PAPER.bha, stabilizer_positions=(first, first * (1 + chart.lambda2[i])))
-        [root, *_] = find_roots(bha, PAPER.bit, float(chart.eta_pi[j]), saturated=True).roots
+        [root, *_] = find_roots(drilling(bha, PAPER.bit), float(chart.eta_pi[j]), saturated=True).roots
         assert free_saturated.doubling[i, j] == pytest.approx(log(2) / root.real * first, rel=0.2)
     for panel in chart.panels:
         assert (np.isnan(panel.doubling) == (panel.verdicts != DRIFT)).all()
@@ -457,7 +467,7 @@ THREE = BottomHoleAssembly((4.3, 12.5, 21.5), (1.6e-3, 3.2e-3), 0.75, 1964.0, 1.
 
 
 def test_the_chart_of_three_stabilizers_has_all_their_modes() -> None:
-    made = stability_chart(THREE, BIT, np.linspace(0.02, 0.4, 4), np.linspace(1.0, 2.0, 3), 0.46)
+    made = stability_chart(drilling(THREE, BIT), np.linspace(0.02, 0.4, 4), np.linspace(1.0, 2.0, 3), inclination=0.46)
     contacts = ((1, 2), (1,), (2,), ())
     assert [(panel.contact, panel.saturated) for panel in made.panels] == [
         (contact, saturated) for contact in contacts for saturated in (False, True)
@@ -544,23 +554,23 @@ def test_the_usual_grid_has_the_case_inside() -> None:
 def test_a_chart_over_lambda2_needs_two_stabilizers() -> None:
     single = BottomHoleAssembly((3.66,), (), 0.6, 1080.0, 7.2e6)
     with pytest.raises(ParameterError, match="must hold at least 2"):
-        stability_chart(single, PAPER.bit, np.linspace(0.1, 1, 3), np.linspace(0.1, 1, 3))
+        stability_chart(drilling(single, PAPER.bit), np.linspace(0.1, 1, 3), np.linspace(0.1, 1, 3))
 
 
 def test_a_stabilizer_without_clearance_touches_in_every_mode() -> None:
     tight = replace(PAPER.bha, stabilizer_clearances=(0.0,))
-    assert find_roots(tight, PAPER.bit, 0.1) == find_roots(PAPER.bha, PAPER.bit, 0.1, contact=[1])
+    assert find_roots(drilling(tight, PAPER.bit), 0.1) == find_roots(VERTICAL, 0.1, contact=[1])
 
 
 def test_more_roots_than_anybody_could_list_are_refused() -> None:
     with pytest.raises(ParameterError, match="abscissa: must be nearer to 0"):
-        find_roots(LONG, BIT, 0.0146, contact=(1, 2, 3), abscissa=-1.0)
+        find_roots(drilling(LONG, BIT), 0.0146, contact=(1, 2, 3), abscissa=-1.0)
 
 
 @pytest.mark.parametrize("wrong", [{"eta_pi": 0.0}, {"contact": [2]}, {"contact": [0]}, {"abscissa": 0.1}])
 def test_values_out_of_range_are_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(ParameterError, match=next(iter(wrong))):
-        find_roots(PAPER.bha, PAPER.bit, **{"eta_pi": 0.1, **wrong})  # type: ignore[arg-type]
+        find_roots(VERTICAL, **{"eta_pi": 0.1, **wrong})  # type: ignore[arg-type]
 
 
 def test_roots_prints_json_rightmost_first(command: Command, paper_case: Path) -> None:
@@ -580,8 +590,7 @@ def test_roots_takes_eta_pi_and_the_inclination_from_the_case_and_no_contact(
     command: Command, paper_case: Path, case: Case
 ) -> None:
     printed = json.loads(command("boreprop", "roots", paper_case, "--saturated", "--json").stdout)
-    own = eta_pi(case.bha, case.bit, case.active_weight_on_bit)
-    found = find_roots(case.bha, case.bit, own, saturated=True, inclination=radians(0.5))
+    found = find_roots(case, saturated=True)
     assert printed["roots"] == [[root.real, root.imag] for root in found.roots]
     assert printed["mode"] == {"contact": [], "saturated": True}
 

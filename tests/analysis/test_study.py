@@ -23,18 +23,10 @@ import scipy.stats
 import xarray
 
 import study_functions
-from boreprop.analysis.study.run import (
-    FIGURES,
-    Row,
-    Study,
-    grid,
-    key_figures,
-    probability,
-    quantiles,
-    run,
-    sample,
-    vary,
-)
+from boreprop.analysis.study.design import Study, grid, sample, vary
+from boreprop.analysis.study.figures import FIGURES, key_figures
+from boreprop.analysis.study.run import probability, quantiles, study
+from boreprop.analysis.study.table import Line
 from boreprop.analysis.summary import summarize
 from boreprop.case.paper import paper_case
 from boreprop.case.parameters import parameters
@@ -164,8 +156,8 @@ def test_a_distribution_as_text(text: str, mean: float, deviation: float) -> Non
 
 def test_a_grid_is_labelled_by_its_axes() -> None:
     eta_pis, clearances = [0.05, 0.01, 0.02], [2e-3, 1e-3]
-    study = grid(paper_case(), {"eta_pi": eta_pis, "stabilizer_clearance[1]": clearances})
-    results = run(study, weight)
+    cases = grid(paper_case(), {"eta_pi": eta_pis, "stabilizer_clearance[1]": clearances})
+    results = study(cases, weight)
     assert dict(results.sizes) == {"eta_pi": 3, "stabilizer_clearance[1]": 2}
     assert list(results["eta_pi"]) == eta_pis
     assert results["stabilizer_clearance[1]"].attrs["units"] == "m"
@@ -176,20 +168,20 @@ def test_a_grid_is_labelled_by_its_axes() -> None:
 
 
 def test_a_grid_puts_each_result_at_its_values(thread: Executor) -> None:
-    study = grid(paper_case(), {"rss_position": [0.5, 0.6], "active_weight_on_bit": [1.0, 2.0, 3.0]})
-    results = run(study, lambda case: {"sum": case.bha.rss_position + case.active_weight_on_bit}, executor=thread)
+    cases = grid(paper_case(), {"rss_position": [0.5, 0.6], "active_weight_on_bit": [1.0, 2.0, 3.0]})
+    results = study(cases, lambda case: {"sum": case.bha.rss_position + case.active_weight_on_bit}, executor=thread)
     np.testing.assert_array_equal(results["sum"], results["rss_position"] + results["active_weight_on_bit"])
 
 
 def test_results_are_the_same_wherever_they_are_computed(tmp_path: Path, thread: Executor) -> None:
-    study = sample(replace(paper_case(), length=30.0), UNCERTAIN, 12, seed=3)
-    two = run(study, workers=2)
+    cases = sample(replace(paper_case(), length=30.0), UNCERTAIN, 12, seed=3)
+    two = study(cases, workers=2)
     assert two["build_rate"].to_series().nunique() == 12
     for other in (
-        run(study, workers=1),
-        run(study, executor=thread),
-        run(study, output=tmp_path / "study.parquet", workers=2),
-        run(study, output=tmp_path / "study.parquet"),  # read
+        study(cases, workers=1),
+        study(cases, executor=thread),
+        study(cases, output=tmp_path / "study.parquet", workers=2),
+        study(cases, output=tmp_path / "study.parquet"),  # read
     ):
         xarray.testing.assert_identical(two, other)
 
@@ -205,7 +197,7 @@ def test_key_figures_are_the_summary_of_a_run() -> None:
 
 
 def test_cases_that_fail_are_rows_with_the_message(tmp_path: Path) -> None:
-    results = run(numbered(5), study_functions.divided, output=tmp_path / "study.parquet", workers=1)
+    results = study(numbered(5), study_functions.divided, output=tmp_path / "study.parquet", workers=1)
     assert list(results["error"]) == ["", "", "float division by zero", "", ""]
     np.testing.assert_array_equal(results["inverse"], [-0.5, -1.0, np.nan, 1.0, 0.5])
     table = parquet.read_table(tmp_path / "study.parquet").to_pydict()
@@ -214,11 +206,11 @@ def test_cases_that_fail_are_rows_with_the_message(tmp_path: Path) -> None:
 
 
 def test_a_study_of_which_every_case_fails_says_so() -> None:
-    for study in (
+    for cases in (
         grid(paper_case(), {"stabilizer_clearance[1]": [-1e-3, -2e-3]}),
         sample(paper_case(), {"stabilizer_clearance[1]": scipy.stats.uniform(-2e-3, 1e-3)}, n=2, seed=1),
     ):
-        results = run(study, workers=1)
+        results = study(cases, workers=1)
         assert lines(results, [0.5]) == []
         assert sentence(results).startswith(
             "2 cases, 2 failed (the first: stabilizer_clearance[1]: must be >= 0, got -0.00"
@@ -226,7 +218,7 @@ def test_a_study_of_which_every_case_fails_says_so() -> None:
 
 
 def test_cases_out_of_range_are_rows_with_the_message() -> None:
-    results = run(grid(paper_case(), {"stabilizer_clearance[1]": [-1e-3, 1e-3]}), weight, workers=1)
+    results = study(grid(paper_case(), {"stabilizer_clearance[1]": [-1e-3, 1e-3]}), weight, workers=1)
     assert "must be >= 0, got -0.001" in results["error"].item(0)
     assert np.isnan(results["weight"].item(0))
     assert results["weight"].item(1) > 0.0
@@ -234,23 +226,23 @@ def test_cases_out_of_range_are_rows_with_the_message() -> None:
 
 def test_a_bug_is_raised() -> None:
     with pytest.raises(TypeError, match="unsupported operand"):
-        run(numbered(3), study_functions.buggy, workers=1)
+        study(numbered(3), study_functions.buggy, workers=1)
 
 
 def test_a_function_that_no_worker_could_import_is_refused() -> None:
     with pytest.raises((AttributeError, PicklingError), match="pickle"):
-        run(numbered(3), lambda case: {}, workers=1)
+        study(numbered(3), lambda case: {}, workers=1)
 
 
 def test_a_result_must_not_be_called_like_a_parameter(thread: Executor) -> None:
     with pytest.raises(InputError, match="must call no result 'active_weight_on_bit'"):
-        run(numbered(3), study_functions.named_like_a_parameter, executor=thread)
+        study(numbered(3), study_functions.named_like_a_parameter, executor=thread)
 
 
 def test_rows_are_told_of_in_order_of_completion() -> None:
-    rows: list[Row] = []
+    rows: list[Line] = []
     done: list[float] = []
-    run(numbered(6), study_functions.first_slow, workers=2, on_result=rows.append, progress=done.append)
+    study(numbered(6), study_functions.first_slow, workers=2, on_result=rows.append, progress=done.append)
     assert sorted(row["case"] for row in rows) == [0, 1, 2, 3, 4, 5]
     assert rows[-1] == {"case": 0, "active_weight_on_bit": 1.0, "weight": 1.0, "square": 1.0, "error": None}
     assert (done[0], done[-1]) == (0, 6)
@@ -258,7 +250,7 @@ def test_rows_are_told_of_in_order_of_completion() -> None:
 
 
 def test_quantiles_leave_failed_cases_out() -> None:
-    results = run(numbered(5), study_functions.divided, workers=1)
+    results = study(numbered(5), study_functions.divided, workers=1)
     found = quantiles(results, (0.5, 1.0))
     assert list(found["inverse"]) == [0.0, 1.0]
 
@@ -283,7 +275,7 @@ def test_nothing_known_is_no_probability() -> None:
 
 def test_the_file_is_a_table_of_the_cases_in_order(tmp_path: Path) -> None:
     path = tmp_path / "study.parquet"
-    results = run(numbered(6), study_functions.first_slow, output=path, workers=2)
+    results = study(numbered(6), study_functions.first_slow, output=path, workers=2)
     table = parquet.read_table(path).to_pydict()
     assert list(table) == ["case", "active_weight_on_bit", "weight", "square", "error"]
     assert table["case"] == list(range(6))
@@ -294,13 +286,13 @@ def test_the_file_is_a_table_of_the_cases_in_order(tmp_path: Path) -> None:
 
 def test_a_study_that_grows_computes_what_is_new(tmp_path: Path) -> None:
     path, function = tmp_path / "study.parquet", partial(counted, tmp_path, 0.0)
-    run(numbered(4), function, output=path, workers=1)
+    study(numbered(4), function, output=path, workers=1)
     seen: list[float] = []
-    results = run(numbered(6), function, output=path, workers=1, progress=seen.append)
+    results = study(numbered(6), function, output=path, workers=1, progress=seen.append)
     assert list(results["square"]) == [1.0, 4.0, 9.0, 16.0, 25.0, 36.0]
     assert sorted(calls(tmp_path)) == [1, 2, 3, 4, 5, 6]
     assert seen[0] == 4
-    assert list(run(numbered(3), function, output=path)["weight"]) == [1.0, 2.0, 3.0]
+    assert list(study(numbered(3), function, output=path)["weight"]) == [1.0, 2.0, 3.0]
     assert parquet.read_table(path).num_rows == 6
 
 
@@ -322,18 +314,18 @@ def test_another_study_in_the_file_is_refused_with_what_differs(
     tmp_path: Path, thread: Executor, other: Callable[[], Study], function: Any, named: str
 ) -> None:
     path = tmp_path / "study.parquet"
-    run(numbered(3), weight, output=path, executor=thread)
+    study(numbered(3), weight, output=path, executor=thread)
     before = path.read_bytes()
     with pytest.raises(InputError, match=f"study.parquet: .*{named}"):
-        run(other(), function, output=path, executor=thread)
+        study(other(), function, output=path, executor=thread)
     assert path.read_bytes() == before
 
 
 def test_arguments_of_a_function_are_part_of_the_study(tmp_path: Path, thread: Executor) -> None:
     path = tmp_path / "study.parquet"
-    run(numbered(2), partial(counted, tmp_path, 0.0), output=path, executor=thread)
+    study(numbered(2), partial(counted, tmp_path, 0.0), output=path, executor=thread)
     with pytest.raises(InputError, match=r"function: .*0\.0\).*0\.001\)"):
-        run(numbered(2), partial(counted, tmp_path, 0.001), output=path, executor=thread)
+        study(numbered(2), partial(counted, tmp_path, 0.001), output=path, executor=thread)
 
 
 def test_a_file_of_something_else_is_refused(tmp_path: Path) -> None:
@@ -341,7 +333,7 @@ def test_a_file_of_something_else_is_refused(tmp_path: Path) -> None:
     (tmp_path / "text.parquet").write_text("text")
     for name, message in (("run.parquet", "of a study"), ("text.parquet", "readable"), ("study.csv", "end in .parq")):
         with pytest.raises(InputError, match=f"{name}: must .*{message}"):
-            run(numbered(2), weight, output=tmp_path / name)
+            study(numbered(2), weight, output=tmp_path / name)
 
 
 @pytest.mark.parametrize(
@@ -398,7 +390,7 @@ def test_a_killed_study_resumes_where_it_stopped(tmp_path: Path) -> None:
     assert 6 <= len(done) < 60
     assert len(called) - len(done) <= 8  # in flight: two chunks a worker, and what had come in since the last writing
 
-    results = run(numbered(60), partial(counted, tmp_path, 0.1), output=path, workers=2)
+    results = study(numbered(60), partial(counted, tmp_path, 0.1), output=path, workers=2)
     assert list(results["weight"]) == list(range(1, 61))
     later = calls(tmp_path)[len(called) :]
     assert sorted(later) == [case + 1 for case in range(60) if case not in done]
@@ -406,7 +398,7 @@ def test_a_killed_study_resumes_where_it_stopped(tmp_path: Path) -> None:
 
 @posix
 def test_a_study_ends_complete_though_a_worker_is_killed(tmp_path: Path) -> None:
-    results = run(numbered(40), partial(study_functions.die_once, tmp_path), workers=2)
+    results = study(numbered(40), partial(study_functions.die_once, tmp_path), workers=2)
     assert (tmp_path / "died").exists()
     assert list(results["weight"]) == list(range(1, 41))
     assert (results["error"] == "").all()
@@ -416,7 +408,7 @@ def test_a_study_ends_complete_though_a_worker_is_killed(tmp_path: Path) -> None
 
 @posix
 def test_a_case_that_kills_every_worker_is_the_only_one_to_fail() -> None:
-    results = run(numbered(20), study_functions.die_at_5, workers=2)
+    results = study(numbered(20), study_functions.die_at_5, workers=2)
     assert list(np.flatnonzero(results["error"] != "")) == [4]
     assert "terminated" in results["error"].item(4)
     assert list(results["weight"].dropna("active_weight_on_bit")) == [*range(1, 5), *range(6, 21)]
@@ -425,27 +417,29 @@ def test_a_case_that_kills_every_worker_is_the_only_one_to_fail() -> None:
 @posix
 def test_workers_that_never_give_a_result_end_the_study() -> None:
     with pytest.raises(BrokenProcessPool):
-        run(numbered(2), study_functions.die, workers=1)
+        study(numbered(2), study_functions.die, workers=1)
 
 
 @posix
 @pytest.mark.slow
-def test_a_study_on_a_dask_cluster_ends_complete_though_a_worker_is_killed(tmp_path: Path) -> None:
+def test_a_study_on_a_dask_cluster_ends_complete_though_a_worker_is_killed(tmp_path: Path, paper_case: Path) -> None:
     pytest.importorskip("distributed")
-    script = TESTS / "study_on_dask.py"
-    done = subprocess.run([sys.executable, script, tmp_path], capture_output=True, text=True, timeout=120)
+    output, cases = tmp_path / "study.parquet", 300
+    command = [sys.executable, *map(str, (TESTS / "study_on_dask.py", paper_case, output, cases))]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
-    assert not psutil.pid_exists(int(done.stdout))
-    table = parquet.read_table(tmp_path / "study.parquet").to_pydict()
-    assert table["weight"] == list(range(1, 41))
-    assert table["error"] == [None] * 40
-    assert set(calls(tmp_path)) == set(range(1, 41))
+    before, killed = map(int, done.stdout.split()[-2:])
+    assert before < cases
+    assert not psutil.pid_exists(killed)
+    table = parquet.read_table(output).to_pydict()
+    assert table["case"] == list(range(cases))
+    assert table["error"] == [None] * cases
 
 
 @posix
 def test_ctrl_c_keeps_what_is_done_and_leaves_no_process(tmp_path: Path, paper_case: Path) -> None:
     command = [sys.executable, "-m", "boreprop.cli.app", "study", str(paper_case), "--output", "study.parquet"]
-    study = subprocess.Popen(
+    child = subprocess.Popen(
         [*command, "--vary", "eta_pi=0.005:0.02:500", "--workers", "2"],
         cwd=tmp_path,
         stderr=subprocess.PIPE,
@@ -454,10 +448,10 @@ def test_ctrl_c_keeps_what_is_done_and_leaves_no_process(tmp_path: Path, paper_c
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )
     wait_for(lambda: len(rows_in(tmp_path / "study.parquet")) >= 2)
-    processes = psutil.Process(study.pid).children(recursive=True)
-    os.killpg(study.pid, signal.SIGINT)  # as a terminal does
-    _, stderr = study.communicate(timeout=60)
-    assert study.returncode == 130
+    processes = psutil.Process(child.pid).children(recursive=True)
+    os.killpg(child.pid, signal.SIGINT)  # as a terminal does
+    _, stderr = child.communicate(timeout=60)
+    assert child.returncode == 130
     assert stderr.count("\n") == 1
     assert "study.parquet: keeps" in stderr
     assert 2 <= len(rows_in(tmp_path / "study.parquet")) < 500
@@ -539,6 +533,8 @@ def test_the_command_of_uncertain_parameters(command: Command, tmp_path: Path, p
         (["--uncertain", "eta_pi=triangular(1,1,1)"], ("--uncertain", "triangular(", "'eta_pi=triangular(1,1,1)'")),
         (["--uncertain", "eta_pi=normal(1,2)", "--sample", "0"], ("--sample", "0")),
         (["--vary", "eta_pi=1", "--workers", "0"], ("--workers", "0")),
+        (["--vary", "eta_pi=1", "--workers", "1", "--dask", "tcp://a:1"], ("--workers", "--dask", "1")),
+        (["--vary", "eta_pi=1", "--dask", "nobody://a:1"], ("--dask", "Dask scheduler", "'nobody://a:1'")),
     ],
 )
 def test_wrong_arguments_of_the_command(

@@ -10,14 +10,14 @@ from matplotlib.image import imread
 
 from boreprop.analysis import tipping
 from boreprop.analysis.hysteresis import Hysteresis, hysteresis
-from boreprop.analysis.rippling import Rippling, State, examine_rippling
+from boreprop.analysis.rippling import Rippling, State, find_rippling
 from boreprop.analysis.study.design import vary
 from boreprop.analysis.tipping import (
     CriticalDogleg,
     DoglegMap,
     critical_dogleg,
     dogleg_map,
-    drill_until_settled,
+    drill_until_steady,
     usual_map,
     with_dogleg,
 )
@@ -43,7 +43,7 @@ def ripples_for_long(case: Case, relative_tolerance: float = 1e-7) -> bool:
     run = simulate(
         case, length=100 * LENGTH_SCALE, sample_interval=LENGTH_SCALE / 20, relative_tolerance=relative_tolerance
     )
-    return examine_rippling(run).ripples
+    return find_rippling(run).ripples
 
 
 # one run
@@ -61,7 +61,7 @@ def ripples_for_long(case: Case, relative_tolerance: float = 1e-7) -> bool:
     ],
 )
 def test_the_cases_of_the_paper_settle_as_in_the_paper(case: Case, ripples: bool) -> None:
-    assert drill_until_settled(case)[1].ripples is ripples
+    assert drill_until_steady(case)[1].ripples is ripples
 
 
 @pytest.mark.parametrize(
@@ -79,14 +79,14 @@ def test_the_cases_of_the_paper_settle_as_in_the_paper(case: Case, ripples: bool
 )
 def test_an_early_verdict_is_that_of_a_long_run(eta_pi: float, turn_deg: float, ripples: bool) -> None:
     case = with_dogleg(at(eta_pi), radians(turn_deg))
-    assert drill_until_settled(case)[1].ripples is ripples
+    assert drill_until_steady(case)[1].ripples is ripples
     assert ripples_for_long(case) is ripples
 
 
-def test_the_settled_wave_is_that_of_a_long_run() -> None:
-    _, early = drill_until_settled(paper_case(tilt_limit=radians(1.0)))
+def test_the_steady_wave_is_that_of_a_long_run() -> None:
+    _, early = drill_until_steady(paper_case(tilt_limit=radians(1.0)))
     run = simulate(paper_case(tilt_limit=radians(1.0)), sample_interval=0.05)
-    late = examine_rippling(run)
+    late = find_rippling(run)
     assert early.wavelength == pytest.approx(late.wavelength, rel=0.01)
     assert early.amplitude == pytest.approx(late.amplitude, rel=0.03)
 
@@ -94,7 +94,7 @@ def test_the_settled_wave_is_that_of_a_long_run() -> None:
 def test_an_unstable_straight_hole_ripples_however_small_the_wave_is_at_first() -> None:
     # so little clearance that the weight of the BHA keeps the stabilizer on the lower wall
     case = replace(at(0.1, clearance=1e-4), survey=Survey((0.0,), (radians(5.0),)))
-    run, found = drill_until_settled(case)
+    run, found = drill_until_steady(case)
     assert found.ripples
     first = run["borehole_inclination"][run["drilled_length"] < 3 * LENGTH_SCALE]
     assert np.ptp(first) / 2 < found.amplitude / 20
@@ -102,7 +102,7 @@ def test_an_unstable_straight_hole_ripples_however_small_the_wave_is_at_first() 
 
 def test_a_wave_that_takes_for_ever_to_die_out_does_not_ripple() -> None:
     case = replace(at(0.12, clearance=5e-5), survey=Survey((0.0,), (radians(2.0),)))
-    run, found = drill_until_settled(case)
+    run, found = drill_until_steady(case)
     assert np.ptp(run["borehole_inclination"][-100:]) > radians(0.01)
     assert found.state is State.DYING
     assert run["drilled_length"][-1] == pytest.approx(120 * LENGTH_SCALE, rel=0.01)
@@ -111,7 +111,7 @@ def test_a_wave_that_takes_for_ever_to_die_out_does_not_ripple() -> None:
 def test_a_failing_run_says_where() -> None:
     pushed = replace(paper_case(), schedule=Schedule((0.0,), (1e9,)))
     with pytest.raises(Stopped, match="after 0 m: the bit turns over"):
-        drill_until_settled(pushed)
+        drill_until_steady(pushed)
 
 
 # the critical dogleg
@@ -170,7 +170,7 @@ def tipping_where(monkeypatch: pytest.MonkeyPatch, tips: "list[tuple[float, floa
         turn = degrees(case.survey.inclination[1] - case.survey.inclination[0])
         return None, YES if any(low <= turn <= high for low, high in tips) else NO
 
-    monkeypatch.setattr(tipping, "drill_until_settled", settle)
+    monkeypatch.setattr(tipping, "drill_until_steady", settle)
 
 
 def test_where_the_straight_hole_ripples_the_critical_dogleg_is_zero(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -288,7 +288,7 @@ def test_a_ripple_dies_at_the_weight_where_it_dies_in_one_run_and_comes_back_at_
             drilling.advance(length, 0.0, case.active_weight_on_bit)
             rows.append(drilling.outputs())
         columns = {name: np.array([row[name] for row in rows], dtype=float) for name in rows[0]}
-        in_one_run = examine_rippling(Trajectory(columns, case))
+        in_one_run = find_rippling(Trajectory(columns, case))
         assert wave is not None
         assert wave.ripples is in_one_run.ripples
         if wave.ripples:

@@ -6,7 +6,7 @@ from math import degrees, pi, radians
 import numpy as np
 import pytest
 
-from boreprop.analysis.rippling import examine_rippling
+from boreprop.analysis.rippling import find_rippling
 from boreprop.analysis.stability.roots import Roots, critical_eta_pi, find_roots
 from boreprop.case.case import Case
 from boreprop.case.file import load_case
@@ -75,7 +75,7 @@ def test_the_assembly_is_the_collar_that_the_case_file_names(case: Case) -> None
 
 def test_the_build_section_does_not_ripple(case: Case, run: Trajectory) -> None:
     assert ripple(run, case) < 0.05
-    assert not examine_rippling(run).ripples
+    assert not find_rippling(run).ripples
 
 
 @pytest.mark.parametrize("dogleg_deg", [-1.0, 1.0])
@@ -84,13 +84,13 @@ def test_a_dogleg_in_its_existing_hole_does_not_start_a_ripple(case: Case, dogle
     bent = Survey((*above, end - case.bha.length_scale, end), (start, start, start + radians(dogleg_deg)))
     run = simulate(replace(case, survey=bent), sample_interval=0.1)
     assert ripple(run, case) < 0.05
-    assert not examine_rippling(run).ripples
+    assert not find_rippling(run).ripples
 
 
 def test_a_quarter_of_the_weight_makes_it_ripple(case: Case) -> None:
     run = simulate(replace(case, active_weight_on_bit=case.active_weight_on_bit / 4), sample_interval=0.1)
     assert ripple(run, case) > 0.5
-    assert examine_rippling(run).ripples
+    assert find_rippling(run).ripples
 
 
 def miss(case: Case) -> np.ndarray:
@@ -130,19 +130,19 @@ def test_a_jump_of_the_force_turns_the_hole_by_what_the_readme_says(case: Case) 
 
 def test_the_stability_of_the_build_section_is_what_the_readme_says(case: Case) -> None:
     def found(at: float, inclination: float) -> Roots:
-        return find_roots(case.bha, case.bit, at, contact=(1, 2), inclination=inclination)
+        return find_roots(case, at, contact=(1, 2), inclination=inclination)
 
     start, end = case.survey.inclination[-1], radians(53.43)
     own = eta_pi(case.bha, case.bit, case.active_weight_on_bit)
     weight = case.active_weight_on_bit / own
     assert (found(0.1289, start).verdict, found(0.129, start).verdict) == ("oscillatory", "stable")
-    critical = critical_eta_pi(case.bha, case.bit, contact=(1, 2), inclination=start)
+    critical = critical_eta_pi(case, contact=(1, 2), inclination=start)
     assert critical is not None
     told = f"ηΠ = 0.1289 ({critical.eta_pi * weight / 1e3:.1f} kN; wavelength {critical.wavelength:.1f} m)"
     assert told in " ".join(README.split())
     for contact in ((), (1,), (2,)):
         for saturated in (False, True):
-            other = critical_eta_pi(case.bha, case.bit, contact=contact, saturated=saturated, inclination=end)
+            other = critical_eta_pi(case, contact=contact, saturated=saturated, inclination=end)
             assert other is None or other.eta_pi < 0.037
     assert f"below 0.037 ({0.037 * weight / 1e3:.1f} kN)" in README
     slow = [found(own, inclination).roots[0].real for inclination in (start, end)]
@@ -152,5 +152,5 @@ def test_the_stability_of_the_build_section_is_what_the_readme_says(case: Case) 
 def test_the_case_of_the_paper_ripples() -> None:
     paper = load_case(EXAMPLES / "paper_case.toml")
     run = simulate(paper)
-    found = examine_rippling(run)
+    found = find_rippling(run)
     assert found.wavelength == pytest.approx(1.386 * paper.bha.length_scale, rel=0.01)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from boreprop.analysis.axis import AXIS_REACH
-from boreprop.analysis.rippling import examine_rippling
+from boreprop.analysis.rippling import find_rippling
 from boreprop.case.case import Case, Schedule
 from boreprop.case.file import load_case
 from boreprop.core.survey import Survey
@@ -227,7 +227,7 @@ def test_in_the_vertical_section_the_bha_starts_at_the_bit_and_ends_in_the_hole(
 def test_ripple_and_lanes_show_the_last_waves_of_a_run_whatever_their_length(fate: str, number: int) -> None:
     case = near_bit_case(NEAR_BIT[fate][number], 400.0)
     run = simulate(case, engine="native")
-    wave, scales = examine_rippling(run), choose_scales([run], whole=True, section=bit_positions(run))
+    wave, scales = find_rippling(run), choose_scales([run], whole=True, section=bit_positions(run))
     if wave.ripples:
         assert wave.wavelength < case.bha.half_length / 4
         assert scales.window == pytest.approx(11 * wave.wavelength)

@@ -31,7 +31,7 @@ def case_facts(case: Case) -> dict[str, str]:
     bha, bit = case.bha, case.bit
     inclination = case.survey.inclination[-1]
     contact = can_touch(bha, bit, inclination, case.schedule.rss_force)
-    critical = critical_eta_pi(bha, bit, contact=contact, inclination=inclination)
+    critical = critical_eta_pi(case, contact=contact)
     clearances = [f"{1000 * clearance:.3g}" for clearance in bha.stabilizer_clearances]
     return {
         "stabilizers": f"{', '.join(f'{s:.4g}' for s in bha.stabilizer_positions)} m",

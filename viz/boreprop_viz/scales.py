@@ -6,7 +6,7 @@ from math import floor, log10
 
 import numpy as np
 
-from boreprop.analysis.rippling import examine_rippling
+from boreprop.analysis.rippling import find_rippling
 from boreprop.case.case import Case
 from boreprop.core.quantities import BY_NAME
 from boreprop.run.completion import case_of
@@ -82,7 +82,7 @@ def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) ->
 
 def likely_wavelength(runs: Sequence[Trajectory], cases: Sequence[Case], whole: bool) -> float:
     """The longest wave with which one of the runs, if they are whole, ripples; else that which one may come to, m."""
-    waves = [examine_rippling(run) for run in runs] if whole else []
+    waves = [find_rippling(run) for run in runs] if whole else []
     found = [wave.wavelength for wave in waves if wave.ripples]
     return max(found or [USUAL_WAVELENGTH * case.bha.half_length for case in cases])
 

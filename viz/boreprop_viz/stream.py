@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from boreprop.analysis.rippling import examine_rippling
+from boreprop.analysis.rippling import find_rippling
 from boreprop.run.trajectory import Trajectory
 
 from .card import in_words
@@ -69,7 +69,7 @@ class RunStream:
 
     def finding(self) -> str:
         """Whether the hole ripples where the bit is."""
-        return in_words(examine_rippling(self.recent)) if self.recent else ""
+        return in_words(find_rippling(self.recent)) if self.recent else ""
 
 
 def _latest(before: Trajectory | None, new: Trajectory, length: float) -> Trajectory:

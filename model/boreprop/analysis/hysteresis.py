@@ -12,7 +12,7 @@ from ..core.survey import Survey
 from ..run.trajectory import Stopped, Trajectory
 from .rippling import Rippling
 from .study.design import vary
-from .tipping import LARGEST_DOGLEG, SCAN, drill_until_settled, with_dogleg
+from .tipping import LARGEST_DOGLEG, SCAN, drill_until_steady, with_dogleg
 
 END = 0.01  # to which part of the parameter the ends of a loop are found
 
@@ -59,7 +59,7 @@ def hysteresis(
     """How a system ripples while a parameter goes up and down again, slowly.
 
     Going up starts from a ripple: from a dogleg that makes the case with the first value ripple, if any does. Each case
-    then drills on in the hole that the one before it left, until it settles. A straight hole would stay straight for
+    then drills on in the hole that the one before it left, until it is steady. A straight hole would stay straight for
     ever, though the next survey, connection or formation makes it turn: so each case that no ripple goes before starts
     in the hole of `with_dogleg`, straight at the inclination of the case, with the dogleg. So do all cases going down,
     until one ripples.
@@ -132,7 +132,7 @@ class _Ramp:
         case = self.at(value)
         case = replace(case, survey=hole) if hole else with_dogleg(case, self.dogleg)
         try:
-            run, wave = drill_until_settled(case, relative_tolerance=self.relative_tolerance)
+            run, wave = drill_until_steady(case, relative_tolerance=self.relative_tolerance)
         except Stopped:
             return _End(None, None)
         return _End(wave, _left_behind(run, case) if wave.ripples else None)

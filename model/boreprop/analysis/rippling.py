@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import groupby
 from math import exp, inf, log, nan
+from statistics import median
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +23,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Floats
 from ..core.system import BottomHoleAssembly
+from ..errors import InputError
 from ..run.trajectory import Trajectory
 from .waves import (
     FEWEST_ROWS,
@@ -30,8 +32,9 @@ from .waves import (
     large_since,
     likeness,
     mean_over,
+    slope,
     wavelength_in_rows,
-    without_trend,
+    without_even_trend,
 )
 
 LONGEST = 6.0  # half lengths of the BHA: the longest wave that is looked for
@@ -55,7 +58,7 @@ class Stretch(NamedTuple):
     """A part of a wave in one mode: contact of each non-ideal stabilizer, saturation of the tilt, share of the wave."""
 
     contact: tuple[int, ...]
-    tilt: int
+    saturation: int
     share: float
 
 
@@ -132,13 +135,20 @@ class _Rows:
     inclination: Floats
     modes: NDArray[np.int_] | None
 
-    def after(self, first: int) -> "_Rows":
-        """Those from `first` on."""
-        return _Rows(self.length[first:], self.inclination[first:], None if self.modes is None else self.modes[first:])
+    def where(self, kept: NDArray[np.bool_] | slice) -> "_Rows":
+        """Some of them."""
+        return _Rows(self.length[kept], self.inclination[kept], None if self.modes is None else self.modes[kept])
 
 
-_Found = tuple[Rippling, LastWaves | None]
-_NOTHING: _Found = Rippling(), None
+class _Found(NamedTuple):
+    """What is said of a wave, the last of its waves, and the rows that they are the end of; if there is a wave."""
+
+    rippling: Rippling = Rippling()
+    waves: LastWaves | None = None
+    rows: _Rows | None = None
+
+
+_NOTHING = _Found()
 
 
 def longest_wave(bha: BottomHoleAssembly) -> float:
@@ -154,9 +164,9 @@ def visible_waves(drilled_length: Floats) -> tuple[float, float]:
 
 
 def find_rippling(
-    drilled_length: Floats,
-    inclination: Floats,
-    longest: float = inf,
+    run: Trajectory | Floats,
+    inclination: Floats | None = None,
+    longest: float | None = None,
     *,
     modes: NDArray[np.int_] | None = None,
     inputs: Sequence[Floats] = (),
@@ -167,51 +177,70 @@ def find_rippling(
 
     Parameters
     ----------
-    drilled_length
-        m, not decreasing, shape (rows,).
-    inclination
-        Of the borehole, rad, shape (rows,).
-    longest
-        Longest wave that is looked for, m, see `longest_wave`.
-    modes
-        Contact of each stabilizer and saturation of the tilt, whole numbers, shape (rows, k). Without them a wave that
-        dies out very slowly is called lasting.
-    inputs
-        Steering force and weight on bit, shape (rows,) each. Without them they are taken to be steady.
-    """
-    return _find(drilled_length, inclination, longest, modes, inputs)[0]
-
-
-def examine_rippling(run: Trajectory, longest: float | None = None) -> Rippling:
-    """`find_rippling` of a whole run, with the wave of its axis and the modes of a wave.
-
-    Parameters
-    ----------
     run
-        Its force and weight are taken to be steady where it has no columns of them.
+        A run; its force and weight are taken to be steady where it has no columns of them. Or, of a hole that is
+        known otherwise, the drilled length alone, m, not decreasing, shape (rows,); then `inclination` is needed, and
+        nothing is said of the axis and the modes.
+    inclination
+        Of the borehole, rad, shape (rows,), if `run` is not a run.
     longest
-        Longest wave that is looked for, m; without it, the `longest_wave` of the run's case.
+        Longest wave that is looked for, m; without it, the `longest_wave` of the run's case, or any.
+    modes
+        Contact of each stabilizer and saturation of the tilt, whole numbers, shape (rows, k), if `run` is not a run.
+        Without them a wave that dies out very slowly is called lasting.
+    inputs
+        Steering force and weight on bit, shape (rows,) each, if `run` is not a run. Without them they are taken to be
+        steady.
 
     Raises
     ------
     InputError
         If the run lacks a column of inclination, position, contact or saturation.
+
+    Examples
+    --------
+    >>> from boreprop import find_rippling, paper_case, simulate
+    >>> wave = find_rippling(simulate(paper_case(), sample_interval=0.25))
+    >>> wave.state, round(wave.wavelength, 2)
+    (<State.LASTING: 'lasting'>, 5.07)
     """
+    if isinstance(run, Trajectory):
+        return _with_details(run, _wave_of(run, longest))
+    if inclination is None:
+        raise InputError("inclination: must be given with the drilled length, got None")
+    found = _find(run, inclination, inf if longest is None else longest, modes, inputs)
+    return replace(found.rippling, since=_since(found))
+
+
+def last_wave(run: Trajectory) -> Rippling:
+    """`find_rippling` of a run without what takes longest to tell and studies do not report.
+
+    The fields since, spread, axis_amplitude and modes are left nan and empty.
+    """
+    return _wave_of(run, None).rippling
+
+
+def _wave_of(run: Trajectory, longest: float | None) -> _Found:
+    """The wave that a run ends with."""
     if longest is None:
         longest = longest_wave(run.case.bha) if run.case else inf
-    length = run["drilled_length"]
-    modes = modes_of(run)
-    position = np.column_stack((run["displacement"], run["true_vertical_depth"]))
     inputs = [run[name] for name in INPUTS if name in run.columns]
-    found, waves = _find(length, run["borehole_inclination"], longest, modes, inputs)
-    if waves is None:
-        return found
-    starts = waves.starts()
+    return _find(run["drilled_length"], run["borehole_inclination"], longest, modes_of(run), inputs)
+
+
+def _with_details(run: Trajectory, found: _Found) -> Rippling:
+    """What is said of a wave, with the wave of the axis, the modes of a wave, and where it began."""
+    length = run["drilled_length"]
+    position = np.column_stack((run["displacement"], run["true_vertical_depth"]))
+    if found.waves is None:
+        return found.rippling
+    starts = found.waves.starts()
     return replace(
-        found,
+        found.rippling,
+        since=_since(found),
         spread=float(np.std(np.diff(starts))) if len(starts) > 1 else nan,
-        axis_amplitude=_axis_amplitude(length, position, waves),
-        modes=_modes(length, modes, starts) if len(starts) > 1 else (),
+        axis_amplitude=_axis_amplitude(length, position, found.waves),
+        modes=_modes(length, modes_of(run), starts) if len(starts) > 1 else (),
     )
 
 
@@ -227,18 +256,20 @@ def _find(
     modes: NDArray[np.int_] | None,
     inputs: Sequence[Floats],
 ) -> _Found:
-    """See `find_rippling`; also the waves themselves."""
+    """The wave at the end of a run, see `find_rippling`."""
     changed = np.zeros(max(len(length) - 1, 0), dtype=bool)
     for values in inputs:
-        changed |= np.diff(values) != 0
-    moved = np.append(np.diff(length) > 0, True)[: len(length)]  # while the bit stands still, the last row counts
+        changed |= values[1:] != values[:-1]
+    moved = np.ones(len(length), dtype=bool)  # while the bit stands still, the last row counts
+    np.greater(length[1:], length[:-1], out=moved[:-1])
     steady = int(np.count_nonzero(moved[: int(np.flatnonzero(changed)[-1]) + 1])) if changed.any() else 0
-    rows = _Rows(length[moved], inclination[moved], None if modes is None else modes[moved])
-    found = _search(rows.after(steady), longest)
-    if found[0].state is not State.NONE or not steady:
+    rows = _Rows(length, inclination, modes) if moved.all() else _Rows(length, inclination, modes).where(moved)
+    found = _search(rows.where(slice(steady, None)), longest)
+    if found.waves or not steady:
         return found
-    rippling, waves = _search(rows, longest)
-    return (replace(rippling, state=State.STEERED), waves) if rippling.ripples else _NOTHING
+    found = _search(rows, longest)
+    rippling = replace(found.rippling, state=State.STEERED)
+    return found._replace(rippling=rippling) if found.rippling.ripples else _NOTHING
 
 
 def _search(rows: _Rows, longest: float) -> _Found:
@@ -252,25 +283,28 @@ def _search(rows: _Rows, longest: float) -> _Found:
     while count >= fewest:
         found.append(_wave(rows, spacing, count, followed))
         count = int(count / SHORTER)
-    rippling, waves = max(found, key=_weight)
-    if waves is None:
-        return _NOTHING
-    least = HALF * float(waves.sizes[-AT_THE_END:].min())
-    return replace(rippling, since=large_since(rows.length, rows.inclination, waves.wavelength, least)), waves
+    return max(found, key=_weight)
+
+
+def _since(found: _Found) -> float:
+    """The drilled length from which on a wave has had at least half its present size, m."""
+    if found.waves is None or found.rows is None:
+        return nan
+    least = HALF * float(found.waves.sizes[-AT_THE_END:].min())
+    return large_since(found.rows.length, found.rows.inclination, found.waves.wavelength, least)
 
 
 def _weight(found: _Found) -> tuple[bool, bool, float]:
     """Which wave counts: one that lasts rather than one that dies, a large rather than a small one."""
-    rippling, _ = found
-    there = rippling.state is not State.NONE
-    return rippling.ripples, there, rippling.amplitude if there else 0.0
+    there = found.waves is not None
+    return found.rippling.ripples, there, found.rippling.amplitude if there else 0.0
 
 
 def _wave(rows: _Rows, spacing: float, count: int, followed: float) -> _Found:
     """The wave in the last `count` rows, followed back over `followed` m, or over ten waves if that is more."""
     length, inclination = rows.length, rows.inclination
     grid = length[-1] - spacing * np.arange(count)[::-1]
-    signal = without_trend(grid, np.interp(grid, length, inclination))
+    signal = without_even_trend(np.interp(grid, length, inclination))
     if np.abs(signal).max() < SMALLEST_AMPLITUDE:
         return _NOTHING
     period, alike = wavelength_in_rows(signal)
@@ -295,19 +329,21 @@ def _wave(rows: _Rows, spacing: float, count: int, followed: float) -> _Found:
         wavelength,
         amplitude,
         growth / wavelength,
-        inclination_drift=float(np.polyfit(waves.x - waves.x[-1], waves.trend, 1)[0]),
+        inclination_drift=slope(waves.x, waves.trend),
         switching=switching,
     )
-    return rippling, waves
+    return _Found(rippling, waves, rows)
 
 
 def _switching(rows: _Rows, waves: LastWaves) -> bool | None:
     """Whether contact or saturation change in each of the last waves; None if the modes are not known."""
     if rows.modes is None:
         return None
-    modes = rows.modes[np.searchsorted(rows.length, waves.x)]
-    changes = np.bincount(waves.wave[1:], (np.diff(modes, axis=0) != 0).any(axis=1), waves.count)
-    return bool(np.median(changes[-AT_THE_END:]) >= 1)
+    late = int(np.searchsorted(waves.wave[1:], waves.count - AT_THE_END))
+    first = int(np.searchsorted(rows.length, waves.x[late]))
+    modes = rows.modes[first : first + len(waves.x) - late]
+    changes = np.bincount(waves.wave[late + 1 :], (modes[1:] != modes[:-1]).any(axis=1), waves.count)
+    return bool(median(changes[-AT_THE_END:].tolist()) >= 1)
 
 
 def _still_there(waves: LastWaves, period: float) -> bool:

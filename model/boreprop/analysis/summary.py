@@ -1,20 +1,21 @@
 """A run in a dozen numbers."""
 
 from dataclasses import dataclass
-from math import ceil
+from math import ceil, pi
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..core.survey import Survey
 from ..core.system import BottomHoleAssembly
 from ..run.completion import case_of
 from ..run.trajectory import Trajectory
 from ..units import BUILD_LENGTH
-from .rippling import Rippling, State, examine_rippling, visible_waves
+from .rippling import Rippling, State, find_rippling, visible_waves
 
 SHORT_WAVE, LONG_WAVE = 0.25, 1.8  # half BHAs: what ripples are between
-CHORD_POINTS = 200  # of the existing hole under a chord
+CHORD = np.linspace(-1.0, 0.0, 200)  # points of the existing hole under a chord: millimetres of any bend are not seen
 
 
 @dataclass(frozen=True)
@@ -51,8 +52,8 @@ class Summary:
     end_inclination: float
     build_rate: float
     largest_build_rate: float
-    largest_contact_force: NDArray[np.float64]
-    contact_share: NDArray[np.float64]
+    largest_contact_force: Floats
+    contact_share: Floats
     saturation_share: float
     rippling: Rippling
     hidden_waves: str
@@ -71,16 +72,33 @@ def summarize(trajectory: Trajectory) -> Summary:
     ------
     InputError
         If the run lacks its case or a column.
+
+    Examples
+    --------
+    >>> from boreprop import paper_case, simulate, summarize
+    >>> summary = summarize(simulate(paper_case(), sample_interval=0.25))
+    >>> summary.rippling.ripples, round(summary.saturation_share, 2)
+    (True, 0.81)
     """
+    case_of(trajectory)
+    return sum_up(trajectory, find_rippling(trajectory))
+
+
+def sum_up(trajectory: Trajectory, rippling: Rippling) -> Summary:
+    """`summarize` a run whose rippling is known."""
     case = case_of(trajectory)
     length = trajectory["drilled_length"]
-    rippling = examine_rippling(trajectory)
     over = averaging_length(case.bha, rippling)
     inclination = mean_inclination(trajectory, case.survey, over)
-    weights = np.gradient(length)
-    weights[[0, -1]] /= 2
-    later = np.interp(length + BUILD_LENGTH, length, inclination, right=np.nan)
-    rates = (later - inclination)[~np.isnan(later)] / BUILD_LENGTH
+    steps = np.diff(length)
+    weights = np.append(steps, 0.0) + np.append(0.0, steps)
+
+    def share(happens: NDArray[np.bool_]) -> float:
+        return float(weights[happens].sum() / weights.sum())
+
+    later = length + BUILD_LENGTH
+    drilled_by_then = slice(int(np.searchsorted(later, length[-1], side="right")))
+    rates = (np.interp(later[drilled_by_then], length, inclination) - inclination[drilled_by_then]) / BUILD_LENGTH
     drilled = float(length[-1] - length[0])
     return Summary(
         drilled_length=drilled,
@@ -90,8 +108,8 @@ def summarize(trajectory: Trajectory) -> Summary:
         build_rate=float(inclination[-1] - inclination[0]) / drilled,
         largest_build_rate=float(rates[np.argmax(np.abs(rates))]) if len(rates) else float("nan"),
         largest_contact_force=np.abs(trajectory.stack("stabilizer_force")).max(axis=0),
-        contact_share=np.average(trajectory.stack("stabilizer_contact") != 0, axis=0, weights=weights),
-        saturation_share=float(np.average(trajectory["bit_tilt_saturation"] != 0, weights=weights)),
+        contact_share=np.array([share(contact != 0) for contact in trajectory.stack("stabilizer_contact").T]),
+        saturation_share=share(trajectory["bit_tilt_saturation"] != 0),
         rippling=rippling,
         hidden_waves=hidden_waves(length, case.bha),
         stopped=trajectory.stopped,
@@ -108,25 +126,30 @@ def averaging_length(bha: BottomHoleAssembly, wave: Rippling) -> float:
     return wave.wavelength * ceil(bha.half_length / wave.wavelength)
 
 
-def hidden_waves(length: NDArray[np.float64], bha: BottomHoleAssembly) -> str:
+def hidden_waves(length: Floats, bha: BottomHoleAssembly) -> str:
     """Which waves the rows of a run are too far apart, or the run is too short, to show; "" if none that matter."""
     shortest, longest = visible_waves(length)
-    hidden = [f"under {shortest:.2g} m: take rows closer together"] * (shortest > SHORT_WAVE * bha.half_length)
-    hidden += [f"over {longest:.3g} m: drill further"] * (longest < LONG_WAVE * bha.half_length)
+    hidden = []
+    if shortest > SHORT_WAVE * bha.half_length:
+        hidden.append(f"under {shortest:.2g} m: take rows closer together")
+    if longest < LONG_WAVE * bha.half_length:
+        hidden.append(f"over {longest:.3g} m: drill further")
     return ", ".join(hidden)
 
 
-def mean_inclination(run: Trajectory, survey: Survey, over: float) -> NDArray[np.float64]:
+def mean_inclination(run: Trajectory, survey: Survey, over: float) -> Floats:
     """The inclination of the chord over the last `over`, m, of the hole at each row of a run, rad, shape (rows,).
 
     The run starts at the end of the survey, above which the hole goes on straight.
     """
-    before = np.linspace(-over, 0.0, CHORD_POINTS)
+    before = over * CHORD
     stations = np.array(survey.measured_depth) - survey.measured_depth[-1]
-    direction = np.exp(1j * np.interp((before[1:] + before[:-1]) / 2, stations, survey.inclination))
-    existing = np.cumsum(direction * np.diff(before))  # down + i sideways
+    turns = np.interp(before[1:] + before[-2] / 2, stations, survey.inclination)
+    existing = np.cumsum(np.exp(1j * turns)) * (over / (len(before) - 1))  # down + i sideways
     length, drilled = run["drilled_length"], run["true_vertical_depth"] + 1j * run["displacement"]
     at = np.concatenate((before, length))
     axis = np.concatenate(([0.0], existing, existing[-1] + drilled))
     chord = axis[-len(length) :] - np.interp(length - over, at, axis)
-    return np.unwrap(np.angle(chord))
+    inclination: Floats = np.arctan2(chord.imag, chord.real)
+    turns = np.abs(inclination[1:] - inclination[:-1])
+    return np.unwrap(inclination) if turns.max(initial=0.0) > pi else inclination  # seldom: a hole past straight up

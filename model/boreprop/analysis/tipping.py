@@ -20,6 +20,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Floats
 from ..case.case import Case
 from ..core.checks import check_number
 from ..core.options import RELATIVE_TOLERANCE
@@ -27,33 +28,33 @@ from ..core.quantities import OUTPUTS, scalar_names
 from ..core.survey import Survey
 from ..core.system import eta_pi
 from ..errors import CannotContinue
-from ..run.engines import engine, follow, start
+from ..run.engines import AnyDrilling, engine, follow, start
 from ..run.trajectory import Stopped, Trajectory
 from ..run.workers import WorkerLost, work
-from .rippling import Rippling, State, examine_rippling, find_rippling, longest_wave, modes_of
+from .rippling import Rippling, State, find_rippling, last_wave
 from .stability.contacts import can_touch, first_that_touches
 from .stability.roots import critical_eta_pi
 from .study.design import vary
 from .waves import without_trend
 
-ROWS = 50  # per half BHA, …
+ROWS = 50  # per half BHA: a wave of the paper has 70, …
 LARGEST_INTERVAL = 0.1  # … but no further apart than this, m: a wave of near-bit stabilizers is a metre long
-FIRST_LOOK = 8.0  # half BHAs
-LATER = 1.25  # each look at whether a run has settled comes after so many times the length of the one before
+FIRST_CHECK = 8.0  # half BHAs before a run is looked at: the start itself takes that long to pass the BHA four times
+LATER = 1.25  # each check comes after so many times the length of the one before: a run is a quarter too long at most
 EARLIEST = 30.0  # half BHAs before a ripple is believed: of those at 20, one in ten is an echo of the start
-LONGEST = 120.0  # half BHAs before it is taken for settled
-FALLING = -0.002  # change of the size per wave: a wave that falls faster may yet die out,
-RISING = 0.01  # and one that rises faster is still starting
-STRAIGHT = radians(0.003)  # what a straight hole keeps of the start …
-STRAIGHT_OVER = 4.0  # … over so many half BHAs
-LARGEST_DOGLEG = radians(10.0)
-SCAN = 6  # doglegs tried first, each half of the one before
+LONGEST = 120.0  # half BHAs before it is taken for steady: chaotic ripples may never be
+FALLING = -0.002  # change of the size per wave: a wave that falls faster may yet die out, …
+RISING = 0.01  # … and one that rises faster is still starting
+STRAIGHT = radians(0.003)  # what a straight hole keeps of the start: far below any ripple that lasts, …
+STRAIGHT_OVER = 4.0  # … over so many half BHAs: the two BHAs that the bit feels
+LARGEST_DOGLEG = radians(10.0)  # in half a BHA: no collar passes through a sharper turn
+SCAN = 6  # doglegs tried first, each half of the one before: down to 0.3°, a usual survey's accuracy
 SMALL = 11  # the same where the straight hole ripples by itself: does it after the smallest turns, too?
-TOLERANCE = 0.02
+TOLERANCE = 0.02  # of the critical dogleg: far less than anybody knows the hole
 FINEST = radians(0.001)  # what tips at less is tipped by any dogleg
 
 
-def drill_until_settled(case: Case, *, relative_tolerance: float = RELATIVE_TOLERANCE) -> tuple[Trajectory, Rippling]:
+def drill_until_steady(case: Case, *, relative_tolerance: float = RELATIVE_TOLERANCE) -> tuple[Trajectory, Rippling]:
     """Drill a case under its first steering force until it plainly ripples or plainly does not.
 
     It does not when over two BHAs less than 0.003° is left of the start, or when its wave dies out and changes no
@@ -64,42 +65,67 @@ def drill_until_settled(case: Case, *, relative_tolerance: float = RELATIVE_TOLE
     In an inclined hole gravity changes the inclination on the way: the answer is for where it starts. With several
     stabilizers a ripple may be chaotic, and some of those die out after hundreds of BHAs, when nobody can tell before.
 
+    Parameters
+    ----------
+    case
+        What is drilled; its length does not matter.
+    relative_tolerance
+        Of the integrator.
+
     Returns
     -------
     run, rippling
-        The case's length does not matter.
+        What was drilled, and the wave that it ends with.
 
     Raises
     ------
     Stopped
         If the integrator cannot go on.
     """
-    half = case.bha.half_length
-    interval = min(half / ROWS, LARGEST_INTERVAL)
-    drilling = start(case, engine(), relative_tolerance)
-    names = scalar_names(OUTPUTS, len(case.bha.stabilizer_positions))
-    rows, target = np.empty((0, len(names))), FIRST_LOOK * half
+    half, drilled = case.bha.half_length, _OpenEndedRun.of(case, relative_tolerance)
+    target = FIRST_CHECK * half
     while True:
-        more = np.empty((int(target / interval) + 1 - len(rows), len(names)))
-        lengths = interval * np.arange(len(rows), len(rows) + len(more), dtype=np.float64)
-        force = np.full(len(more), case.schedule.rss_force[0])
-        try:
-            follow(drilling, lengths, force, case.active_weight_on_bit, np.arange(len(more), dtype=np.intc), more)
-        except CannotContinue as error:
-            raise Stopped(f"after {drilling.drilled_length:g} m: {error}") from error
-        rows = np.concatenate((rows, more))
-        run = Trajectory(dict(zip(names, rows.T, strict=True)), case)
-        length, inclination = run["drilled_length"], run["borehole_inclination"]
-        wave = find_rippling(length, inclination, longest_wave(case.bha), modes=modes_of(run))
-        if _has_settled(run, wave, half):
-            return run, examine_rippling(run) if wave.ripples else wave
+        run = drilled.drill_to(target)
+        wave = last_wave(run)
+        if _is_steady(run, wave, half):
+            return run, find_rippling(run)
         if target >= LONGEST * half:
-            falls = wave.growth * wave.wavelength < FALLING
-            return run, replace(wave, state=State.DYING) if falls else examine_rippling(run)
+            found = find_rippling(run)
+            return run, replace(found, state=State.DYING) if wave.growth * wave.wavelength < FALLING else found
         target = min(LATER * target, LONGEST * half)
 
 
-def _has_settled(run: Trajectory, wave: Rippling, half: float) -> bool:
+@dataclass
+class _OpenEndedRun:
+    """A case that is drilled further and further, with its rows so far."""
+
+    case: Case
+    drilling: AnyDrilling
+    interval: float  # m between two rows
+    names: list[str]
+    rows: Floats
+
+    @classmethod
+    def of(cls, case: Case, relative_tolerance: float) -> "_OpenEndedRun":
+        names = scalar_names(OUTPUTS, len(case.bha.stabilizer_positions))
+        interval = min(case.bha.half_length / ROWS, LARGEST_INTERVAL)
+        return cls(case, start(case, engine(), relative_tolerance), interval, names, np.empty((0, len(names))))
+
+    def drill_to(self, length: float) -> Trajectory:
+        """The run down to a drilled length, m; `Stopped` if the integrator cannot go on."""
+        more = np.empty((int(length / self.interval) + 1 - len(self.rows), len(self.names)))
+        lengths = self.interval * np.arange(len(self.rows), len(self.rows) + len(more), dtype=np.float64)
+        force = np.full(len(more), self.case.schedule.rss_force[0])
+        each = np.arange(len(more), dtype=np.intc)
+        try:
+            follow(self.drilling, lengths, force, self.case.active_weight_on_bit, each, more)
+        except CannotContinue as error:
+            raise Stopped(f"after {self.drilling.drilled_length:g} m: {error}") from error
+        self.rows = np.concatenate((self.rows, more))
+        return Trajectory(dict(zip(self.names, self.rows.T, strict=True)), self.case)
+
+
+def _is_steady(run: Trajectory, wave: Rippling, half: float) -> bool:
     """Whether more of a run would not tell more of it."""
     drilled = run["drilled_length"][-1]
     if wave.ripples:
@@ -157,7 +183,7 @@ def critical_dogleg(
 
     The straight hole and turns of `limit`, a half of it, … to 1/32 are tried first, and down to 1/1024 where the
     straight hole ripples by itself; the interval below the smallest that tips is then halved (in proportion). In an
-    inclined hole gravity disturbs even the straight one, and the inclination changes while it settles; the answer is
+    inclined hole gravity disturbs even the straight one, and the inclination changes on the way; the answer is
     for where it starts.
 
     Parameters
@@ -185,7 +211,7 @@ def critical_dogleg(
 
     def tips(turn: float) -> bool:
         bent = with_dogleg(case, side * turn)
-        tried[turn] = drill_until_settled(bent, relative_tolerance=relative_tolerance)[1].ripples
+        tried[turn] = drill_until_steady(bent, relative_tolerance=relative_tolerance)[1].ripples
         return tried[turn]
 
     for k in range(SMALL if tips(0.0) else SCAN):
@@ -243,7 +269,7 @@ def usual_map(case: Case) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     own = eta_pi(case.bha, case.bit, case.active_weight_on_bit)
     inclination = case.survey.inclination[-1]
     contact = can_touch(case.bha, case.bit, inclination, case.schedule.rss_force)
-    critical = critical_eta_pi(case.bha, case.bit, contact=contact, inclination=inclination)
+    critical = critical_eta_pi(case, contact=contact, inclination=inclination)
     highest = max(1.1 * critical.eta_pi if critical else 0.0, 1.5 * own)
     clearance = (*case.bha.stabilizer_clearances, 0.0)[first_that_touches(case) - 1]
     return (

@@ -4,38 +4,58 @@ Nothing here knows what the signal is. Signals come as rows; where a function ta
 """
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import irfft, next_fast_len, rfft
 
 from ..arrays import Floats
 
-FEWEST_ROWS = 8  # of a wave
-FEWEST_WAVES = (
-    5.0  # of a stretch in which waves are looked for: four whole ones, and a half at each end for their trend
-)
+FEWEST_ROWS = 8  # of a wave: with fewer its steepest part lies between two rows
+FEWEST_WAVES = 5.0  # where waves are looked for: four whole ones, and a half at each end for their trend
 DEGREE = 3  # of the polynomial that is the trend while the wavelength is not known: it leaves five waves as they are
 SHALLOW = 0.8  # of a peak: an autocorrelation that has not fallen below it on the way there is a trend with noise
-AS_HIGH = (
-    0.8  # of the highest peak: a peak at a shorter lag that is as high is the wavelength, the others its multiples
-)
+AS_HIGH = 0.8  # of the highest peak: a peak as high at a shorter lag is the wavelength, the others its multiples
 FLANK = 0.15  # of a lag: how far from the top of a peak noise may make another one
 DRIFT = 0.1  # of a wavelength: how far a peak may lie from the multiple of the wavelength at which it is looked for
 ALMOST = 0.02  # of a wave: what may be missing of the last one, whose ends no rows need lie on
 LAST_LAG = 0.6  # of the rows: beyond it too few overlap
+KEPT = 64  # bases of polynomials, one for each number of rows: the cases of a study have the same few
 
 Integers = NDArray[np.intp]
 
 
 def without_trend(x: Floats, signal: Floats) -> Floats:
-    """A signal less the polynomial of degree `DEGREE` in x that fits best, shape (rows,)."""
-    scaled = 2 * (x - x[0]) / (x[-1] - x[0]) - 1
-    basis, _ = np.linalg.qr(np.polynomial.legendre.legvander(scaled, DEGREE))
+    """A signal less the polynomial of degree `DEGREE` in x that fits it best, shape (rows,)."""
+    return _less(_polynomials(2 * (x - x[0]) / (x[-1] - x[0]) - 1), signal)
+
+
+def without_even_trend(signal: Floats) -> Floats:
+    """The same of a signal whose rows are evenly spaced."""
+    return _less(_even_polynomials(len(signal)), signal)
+
+
+def _less(basis: Floats, signal: Floats) -> Floats:
+    """A signal less its part in an orthonormal basis, shape (rows, k)."""
     trend: Floats = basis @ (basis.T @ signal)
     return signal - trend
+
+
+def _polynomials(x: Floats) -> Floats:
+    """An orthonormal basis of the polynomials of degree `DEGREE` over x, from −1 to 1: shape (rows, DEGREE + 1)."""
+    return np.linalg.qr(np.polynomial.legendre.legvander(x, DEGREE)).Q
+
+
+@lru_cache(KEPT)
+def _even_polynomials(rows: int) -> Floats:
+    return _polynomials(np.linspace(-1.0, 1.0, rows))
+
+
+def slope(x: Floats, y: Floats) -> float:
+    """The slope of the least-squares line through points, shape (rows,) each."""
+    away = x - x.mean()
+    return float(away @ y / (away @ away))
 
 
 def autocorrelation(signal: Floats, lags: int) -> Floats:
@@ -45,8 +65,9 @@ def autocorrelation(signal: Floats, lags: int) -> Floats:
     has 1 at its wavelength, like one that lasts.
     """
     rows = len(signal)
-    spectrum = rfft(signal, next_fast_len(rows + lags, real=True))
-    products = irfft(spectrum.real**2 + spectrum.imag**2, next_fast_len(rows + lags, real=True))[:lags]
+    padded = 2 ** (rows + lags - 1).bit_length()  # scipy.fft takes as long, and half a second more to import
+    spectrum = np.fft.rfft(signal, padded)
+    products = np.fft.irfft(spectrum.real**2 + spectrum.imag**2, padded)[:lags]
     energy = np.concatenate(([0.0], np.cumsum(signal**2)))
     lag = np.arange(lags)
     scale = np.sqrt((energy[rows] - energy[lag]) * energy[rows - lag])
@@ -55,11 +76,20 @@ def autocorrelation(signal: Floats, lags: int) -> Floats:
 
 
 def likeness(signal: Floats, lag: float) -> float:
-    """How alike a signal and itself `lag` rows ago are: the autocorrelation there, 1 for a wave of that length."""
+    """How alike a signal and itself `lag` rows ago are: the `autocorrelation` there, 1 for a wave of that length.
+
+    The highest at the three whole numbers of rows about `lag`.
+    """
     near = round(lag)
     if len(signal) <= near + 2:
         return 0.0
-    return float(autocorrelation(signal, near + 2)[near - 1 :].max())
+    return max(_correlation(signal[rows:], signal[:-rows]) for rows in (near - 1, near, near + 1))
+
+
+def _correlation(late: Floats, early: Floats) -> float:
+    """Of two signals about zero, shape (rows,) each; 0 if one is nothing but zero."""
+    scale = float((late @ late) * (early @ early)) ** 0.5
+    return float(late @ early) / scale if scale else 0.0
 
 
 def wavelength_in_rows(signal: Floats) -> tuple[float, float]:
@@ -71,9 +101,9 @@ def wavelength_in_rows(signal: Floats) -> tuple[float, float]:
     rows = len(signal)
     longest = int(rows / FEWEST_WAVES)
     alike = autocorrelation(signal, min(int((LAST_LAG + DRIFT) * rows) + 3, rows))
-    lags = np.arange(FEWEST_ROWS - 1, longest + 1)
-    peaks = lags[(alike[lags] > 0) & (alike[lags] >= alike[lags - 1]) & (alike[lags] > alike[lags + 1])]
-    peaks = peaks[np.minimum.accumulate(alike)[peaks] < SHALLOW * alike[peaks]]
+    before, here, after = (alike[FEWEST_ROWS - 1 + k : longest + 1 + k] for k in (-1, 0, 1))
+    peaks = FEWEST_ROWS - 1 + np.flatnonzero((here > 0) & (here >= before) & (here > after))
+    peaks = peaks[np.minimum.accumulate(alike[: longest + 1])[peaks] < SHALLOW * alike[peaks]]
     if not len(peaks):
         return np.nan, 0.0
     first = int(peaks[alike[peaks] >= AS_HIGH * alike[peaks].max()][0])
@@ -93,22 +123,25 @@ def wavelength_in_rows(signal: Floats) -> tuple[float, float]:
 
 def _summit(values: Floats, top: int) -> float:
     """Where the parabola through the highest of some values and its neighbours is highest."""
-    before, here, after = values[top - 1 : top + 2]
+    before, here, after = values[top - 1 : top + 2].tolist()
     bend = before - 2 * here + after
-    return top + (float(np.clip((before - after) / (2 * bend), -0.5, 0.5)) if bend < 0 else 0.0)
+    return top + min(max((before - after) / (2 * bend), -0.5), 0.5) if bend < 0 else top
 
 
-def mean_over(x: Floats, y: NDArray[Any], width: float) -> tuple[NDArray[np.bool_], NDArray[Any]]:
+def mean_over(x: Floats, y: NDArray[Any], width: float) -> tuple[slice, NDArray[Any]]:
     """The mean of `y`, real or complex, over `width` around each x: which x have as much on both sides, and the means.
 
     Over one wavelength it keeps nothing of a wave and of its harmonics. x increases, shape (rows,).
     """
     if not len(x):
-        return np.zeros(0, dtype=bool), y
-    integral = np.concatenate((np.zeros(1, y.dtype), np.cumsum((y[1:] + y[:-1]) / 2 * np.diff(x))))
-    inside = (x >= x[0] + width / 2) & (x <= x[-1] - width / 2)
-    before, after = x[inside] - width / 2, x[inside] + width / 2
-    return inside, (np.interp(after, x, integral) - np.interp(before, x, integral)) / width
+        return slice(0), y
+    integral = np.zeros_like(y)
+    np.cumsum((y[1:] + y[:-1]) * (x[1:] - x[:-1]), out=integral[1:])
+    half = width / 2
+    first = int(np.searchsorted(x, x[0] + half))
+    inside = slice(first, max(first, int(np.searchsorted(x, x[-1] - half, side="right"))))
+    at = x[inside]
+    return inside, (np.interp(at + half, x, integral) - np.interp(at - half, x, integral)) / (2 * width)
 
 
 def large_since(x: Floats, y: Floats, wavelength: float, least: float) -> float:
@@ -146,11 +179,11 @@ class LastWaves:
         first = int(np.searchsorted(x, x[-1] - (most + 1 + ALMOST) * wavelength)) - 1
         x, y = x[max(first, 0) :], y[max(first, 0) :]
         inside, trend = mean_over(x, y, wavelength)
-        if not inside.any():
+        if not len(trend):
             return cls(wavelength, trend, trend, trend, 0)
         at, deviation = x[inside], y[inside] - trend
         count = int((at[-1] - at[0]) / wavelength + ALMOST)
-        whole = at >= at[-1] - count * wavelength
+        whole = slice(int(np.searchsorted(at, at[-1] - count * wavelength)), None)
         return cls(wavelength, at[whole], deviation[whole], trend[whole], count)
 
     @cached_property
@@ -162,7 +195,7 @@ class LastWaves:
     @cached_property
     def wave(self) -> Integers:
         """The wave that each row is of, from 0."""
-        return np.clip(self.place.astype(np.intp), 0, self.count - 1)
+        return np.minimum(self.place.astype(np.intp), self.count - 1)
 
     @cached_property
     def sizes(self) -> Floats:
@@ -176,8 +209,8 @@ class LastWaves:
         square = float(middle @ middle)
         logarithm = np.log(np.maximum(self.sizes, 1e-6 * self.sizes.max()))
         rate = float(middle @ logarithm) / square
-        residual = float(np.std(logarithm - rate * middle))
-        return rate, 2 * residual / (square * (1 - 2 / self.count)) ** 0.5
+        residual = logarithm - logarithm.mean() - rate * middle
+        return rate, 2 * float(residual @ residual / self.count / (square * (1 - 2 / self.count))) ** 0.5
 
     def height(self, deviation: Floats | None = None) -> float:
         """Between the highest and the lowest of the mean wave, of the deviation or of other values at the same rows.
@@ -186,10 +219,11 @@ class LastWaves:
         steps, whose edges a mean over more of it would round.
         """
         values = self.deviation if deviation is None else deviation
-        folded = values[np.argsort(self.place % 1.0, kind="stable")]
+        folded = values[np.argsort(self.place - self.wave, kind="stable")]
         neighbours = max(self.count // 2, 1)
         total = np.concatenate(([0.0], np.cumsum(np.concatenate((folded, folded[:neighbours])))))
-        return float(np.ptp(total[neighbours:] - total[:-neighbours])) / neighbours
+        means = total[neighbours:] - total[:-neighbours]
+        return float(means.max() - means.min()) / neighbours
 
     def starts(self) -> Floats:
         """Where the waves rise through zero without their harmonics, in the unit of x: one more than there are lengths.

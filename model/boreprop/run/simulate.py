@@ -83,9 +83,10 @@ def simulate(
             break
         if progress:
             progress(drilling.drilled_length)
-    table = table[~np.isnan(table[:, 0])]
-    columns = {"rss_force": forces[rows >= 0][: len(table)], "active_weight_on_bit": np.full(len(table), weight)}
-    trajectory = Trajectory(columns | {name: table[:, j] for j, name in enumerate(names)}, case, stopped, engine)
+    drilled = np.count_nonzero(~np.isnan(table[:, 0]))
+    outputs = np.ascontiguousarray(table[:drilled].T)  # whoever reads a run reads it by columns
+    columns = {"rss_force": forces[rows >= 0][:drilled], "active_weight_on_bit": np.full(drilled, weight)}
+    trajectory = Trajectory(columns | dict(zip(names, outputs, strict=True)), case, stopped, engine)
     if stopped:
         raise Stopped(stopped, trajectory)
     return trajectory

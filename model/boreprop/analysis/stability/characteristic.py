@@ -14,7 +14,6 @@ and ν is a root of
 B_i is entire: that the hole may be moved sideways makes no root.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, pi
@@ -22,6 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize.elementwise import find_root
 
 from ...arrays import Complexes, Floats
 from ...core.beam import Beam
@@ -37,9 +37,6 @@ SAMPLES = 36  # per period of the fastest wave in P, where crossings are looked 
 LOW = np.logspace(-7.0, -0.2, 48)  # further samples below the first, in steps
 PARTS = 8  # into which the space between two samples is divided where crossings may hide
 REFINEMENTS = 5  # of the samples, at most
-SECANTS = 6  # after which a crossing is good enough for Newton's method
-NEWTON_STEPS = 3  # after which only rounding is left
-IN_BETWEEN = 1e-6  # of the space between two samples: how far beyond them a crossing of theirs may be
 IS_A_ROOT = 1e-11  # |P| over the size of its terms
 
 
@@ -86,13 +83,8 @@ class Characteristic:
             saturated=saturated,
         )
 
-    def __call__(self, nu: Complexes, eta_pi: float) -> tuple[Complexes, Complexes]:
-        """P(ν) and P'(ν)."""
-        value, slope, _ = self.with_slopes(nu, eta_pi)
-        return value, slope
-
-    def with_slopes(self, nu: Complexes, eta_pi: float | Floats) -> tuple[Complexes, Complexes, Complexes]:
-        """P(ν), P'(ν) and ∂P/∂ηΠ, for one ηΠ or one for each ν."""
+    def __call__(self, nu: Complexes, eta_pi: float | Floats) -> tuple[Complexes, Complexes]:
+        """P(ν) and P'(ν), for one ηΠ or one for each ν."""
         m, f, m_slope, f_slope = np.zeros((4, *nu.shape), complex)
         for s_i, m_i, f_i in self._terms.tolist():
             B, slope = lag(nu, s_i)
@@ -103,12 +95,8 @@ class Characteristic:
         drag, rest = self.epsilon * eta_pi, eta_pi - self.f_theta
         turning = drag * nu - self.m_theta
         if self.saturated:
-            return turning - m, drag - m_slope, self.epsilon * nu
-        return (
-            turning * (eta_pi + f) - rest * m,
-            drag * (eta_pi + f) + turning * f_slope - rest * m_slope,
-            self.epsilon * nu * (eta_pi + f) + turning - m,
-        )
+            return turning - m, drag - m_slope
+        return turning * (eta_pi + f) - rest * m, drag * (eta_pi + f) + turning * f_slope - rest * m_slope
 
     def size(self, nu: Complexes, eta_pi: Floats) -> Floats:
         """The sum of the moduli of the terms of P: what rounding in P is measured by."""
@@ -162,11 +150,11 @@ class Characteristic:
         """The ηΠ at which iω is a root, ω > 0: complex, two for each ω (one if saturated), shape (2, k) or (1, k).
 
         P is quadratic in ηΠ. A pair of roots ±iω lies on the imaginary axis where one of these ηΠ is real and positive.
-        `waves` are sin ωs and cos ωs, if known.
+        `waves` are sin ωs and 1 − cos ωs, if known.
         """
-        s, rows = self._terms[:, :1], self._terms[:, 1:].T
-        sine, cosine = waves or (np.sin(s * omega), np.cos(s * omega))
-        m, f = (rows @ sine + 1j * (rows @ (cosine - 1))) / omega
+        s, m_f = self._terms[:, :1], self._terms[:, 1:].T
+        sine, versine = waves or (np.sin(s * omega), 2 * np.sin(s * omega / 2) ** 2)  # exact for small ω, too
+        m, f = (m_f @ sine - 1j * (m_f @ versine)) / omega
         drag = 1j * self.epsilon * omega
         if self.saturated:
             one: Complexes = ((self.m_theta + m) / drag)[None]
@@ -214,26 +202,21 @@ class Characteristic:
 
     def _polished(self, a: Floats, b: Floats, x_a: Complexes, x_b: Complexes) -> tuple[Floats, Floats]:
         """ω and ηΠ of the crossings between a and b, where x is x_a and x_b; ηΠ is nan where there is no root."""
+        if not len(a):
+            return a, b
+        ends = a, b, x_a, x_b
+        omega = find_root(lambda omega, *ends: self._on_branch(omega, *ends).imag, (a, b), args=ends).x
+        eta_pi = self._on_branch(omega, *ends).real
+        nu = np.asarray(1j * omega, complex)
+        is_root = abs(self(nu, eta_pi)[0]) < IS_A_ROOT * self.size(nu, eta_pi)
+        return omega, np.where(is_root, eta_pi, np.nan)
 
-        def on_branch(omega: Floats) -> Complexes:
-            x = self.on_imaginary_axis(omega)
-            expected = x_a + (x_b - x_a) * (omega - a) / (b - a)
-            nearest: Complexes = x[np.argmin(abs(x - expected), axis=0), np.arange(len(omega))]
-            return nearest
-
-        omega = zero(lambda omega: on_branch(omega).imag, a, b, x_a.imag, x_b.imag)
-        eta_pi = on_branch(omega).real
-        with np.errstate(all="ignore"):  # what runs away is left out
-            for _ in range(NEWTON_STEPS):  # P + iP' dω + ∂P/∂ηΠ dηΠ = 0, both changes real
-                nu = np.asarray(1j * omega, complex)
-                value, slope, over_eta_pi = self.with_slopes(nu, eta_pi)
-                rest, turn = np.array([value, 1j * slope]) / -over_eta_pi
-                step = -rest.imag / turn.imag
-                omega, eta_pi = omega + step, eta_pi + (rest + turn * step).real
-            nu = np.asarray(1j * omega, complex)
-            residual = abs(self.with_slopes(nu, eta_pi)[0]) / self.size(nu, eta_pi)
-        within = abs(2 * omega - a - b) <= (b - a) * (1 + IN_BETWEEN)
-        return omega, np.where(within & (residual < IS_A_ROOT), eta_pi, np.nan)
+    def _on_branch(self, omega: Floats, a: Floats, b: Floats, x_a: Complexes, x_b: Complexes) -> Complexes:
+        """Of the values of x at ω, between a and b, the one nearest to the line from x_a to x_b."""
+        x = self.on_imaginary_axis(omega)
+        expected = x_a + (x_b - x_a) * (omega - a) / (b - a)
+        nearest: Complexes = x[np.argmin(abs(x - expected), axis=0), np.arange(len(omega))]
+        return nearest
 
     # νP = Q_0 + Σ Q_i e^{−ν s_i} with polynomials Q, so there is no root where Σ |Q_i e^{−ν s_i}| < |Q_0|. The ratio of
     # the two has no maximum within a region that holds no zero of Q_0: what it is on the edge decides.
@@ -288,11 +271,11 @@ class Characteristic:
 
 
 def even_waves(turn: Floats, number: int) -> tuple[Floats, Floats]:
-    """Sine and cosine of kx for k = 1 … number and x in `turn`, shape (rows, 1): cheap, as e^{ikx} is a product."""
+    """Values of sin kx and 1 − cos kx for k = 1 … number, x in `turn`, shape (m, 1): cheap, as e^{ikx} is a product."""
     short = int(number**0.5) + 1
     fine, coarse = np.exp(1j * turn * np.arange(1, short + 1)), np.exp(1j * turn * short * np.arange(short))
     product = (coarse[:, :, None] * fine[:, None, :]).reshape(len(turn), -1)[:, :number]
-    return product.imag.copy(), product.real.copy()
+    return product.imag.copy(), 1 - product.real
 
 
 def follow(x: Complexes) -> None:
@@ -314,10 +297,11 @@ def moves(x: Complexes) -> tuple[Floats, Floats]:
 def doubtful(x: Complexes) -> NDArray[np.bool_]:
     """Between which samples Im x may have two zeros more, or the order of the two branches is not sure.
 
-    Beside a sample where |Im x| is least, and less than its second difference: a parabola dips by an eighth of that.
+    Beside a sample where |Im x| is least, and less than the second difference of Im x: a parabola dips by an eighth of
+    that. Where Im x merely changes its sign, that difference is small.
     """
     size = abs(x.imag)
-    bend = size[:, 2:] - 2 * size[:, 1:-1] + size[:, :-2]
+    bend = abs(x.imag[:, 2:] - 2 * x.imag[:, 1:-1] + x.imag[:, :-2])
     least = (size[:, 1:-1] <= size[:, 2:]) & (size[:, 1:-1] <= size[:, :-2]) & (size[:, 1:-1] < bend)
     low = least.any(axis=0)
     found: NDArray[np.bool_] = np.append(low, False) | np.append(False, low)
@@ -337,21 +321,3 @@ def lag(nu: Complexes, s: float) -> tuple[Complexes, Complexes]:
         np.where(safe == nu, B, s * (1 + near / 2 * (1 + near / 3 * (1 + near / 4)))),
         np.where(safe == nu, (s * decay - B) / safe, -(s**2) * (1 / 2 + near / 3 * (1 + near * 3 / 8))),
     )
-
-
-def zero(function: Callable[[Floats], Floats], a: Floats, b: Floats, f_a: Floats, f_b: Floats) -> Floats:
-    """Zeros of `function` between a and b, where it has the values f_a and f_b of different sign.
-
-    Regula falsi with the weights of Anderson and Björck.
-    """
-    c = b
-    with np.errstate(divide="ignore", invalid="ignore"):  # where f_b is zero to the last bit
-        for _ in range(SECANTS if len(b) else 0):
-            c = np.where(f_b == 0, b, (a * f_b - b * f_a) / (f_b - f_a))
-            f_c = function(c)
-            stays = (f_c > 0) == (f_b > 0)
-            weight = 1 - f_c / f_b
-            f_a = np.where(stays, f_a * np.where(weight > 0, weight, 0.5), f_b)
-            a = np.where(stays, a, b)
-            b, f_b = c, f_c
-    return c

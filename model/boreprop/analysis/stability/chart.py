@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Floats
+from ...case.case import Case
 from ...core.checks import check_increasing, check_number
 from ...core.errors import ParameterError
-from ...core.system import BitRock, BottomHoleAssembly, Scaled, scale
+from ...core.system import BottomHoleAssembly, Scaled, scale
 from .characteristic import Characteristic
 from .contacts import Contact, charted
 from .roots import SMALLEST_ETA_PI, Verdict, touching_stabilizers
@@ -98,13 +99,13 @@ def lambda_2(bha: BottomHoleAssembly) -> float:
 
 
 def stability_chart(
-    bha: BottomHoleAssembly,
-    bit: BitRock,
+    case: Case,
     eta_pi: Floats,
     lambda2: Floats,
-    inclination: float = 0.0,
-    progress: Callable[[float], None] = lambda _: None,
+    *,
+    inclination: float | None = None,
     contacts: Sequence[Contact] | None = None,
+    progress: Callable[[float], None] = lambda _: None,
 ) -> Chart:
     """The verdicts of modes over ηΠ and λ₂, the distance from the first to the second stabilizer over ℓ₁.
 
@@ -112,22 +113,33 @@ def stability_chart(
 
     Parameters
     ----------
-    bha, bit
+    case
         The drilling system, of two stabilizers or more.
     eta_pi, lambda2
-        The grid, both increasing.
+        The grid, both increasing, see `usual_grid`; shape (m,) and (k,).
     inclination
-        Of the straight hole, rad.
+        Of the straight hole, rad; without it, that of the case's hole at the bit.
+    contacts
+        The stabilizers that touch, by number: two panels for each. Without it those of `contacts.charted`.
     progress
         Called with the fraction done.
-    contacts
-        The stabilizers that touch, by number: two panels for each. Without it those of `modes.charted`.
 
     Raises
     ------
     ParameterError
         If there is one stabilizer only, or the grid breaks a constraint.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from boreprop import paper_case, stability_chart
+    >>> chart = stability_chart(paper_case(), np.linspace(0.05, 0.2, 4), np.linspace(0.5, 1.5, 3), inclination=0.0)
+    >>> chart.panels[0].contact, chart.panels[0].verdicts[1].tolist()
+    ((1,), [2, 2, 0, 0])
     """
+    bha, bit = case.bha, case.bit
+    if inclination is None:
+        inclination = case.survey.inclination[-1]
     lambda_2(bha)
     check_increasing("eta_pi", tuple(eta_pi.tolist()))
     check_number("eta_pi", float(eta_pi[0]), at_least=SMALLEST_ETA_PI)

@@ -13,7 +13,7 @@ from ...case.case import Case
 from ...core.modes import Loads, Modes
 from ...core.system import BitRock, BottomHoleAssembly, scale
 from ..steering import offsets, steady_response
-from .roots import critical_eta_pi
+from .roots import critical_of
 
 SHARPEST_TURN = radians(10.0) / 30.0  # rad/m: steerable systems hardly turn a hole faster
 TILTS = 21  # of the bit, from one limit to the other
@@ -109,7 +109,7 @@ def charted(
         return possible
 
     def rank(contact: Contact) -> tuple[bool, float]:
-        critical = critical_eta_pi(bha, bit, contact=contact, inclination=inclination)
+        critical = critical_of(bha, bit, contact, False, inclination)
         return contact in (first, possible[0]), critical.eta_pi if critical else 0.0
 
     chosen = sorted({*met, first, possible[0]}, key=rank, reverse=True)[:MOST_SETS]

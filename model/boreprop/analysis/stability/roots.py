@@ -11,9 +11,11 @@ from math import pi
 
 import numpy as np
 
+from ...case.case import Case
 from ...core.checks import check_number
 from ...core.errors import ParameterError
 from ...core.system import BitRock, BottomHoleAssembly, scale
+from ...core.system import eta_pi as scaled_weight
 from ...errors import InputError, RootsNotFound
 from .characteristic import Characteristic
 from .zeros import Strip, find_zeros
@@ -86,29 +88,28 @@ class CriticalEtaPi:
 
 
 def find_roots(
-    bha: BottomHoleAssembly,
-    bit: BitRock,
-    eta_pi: float,
+    case: Case,
+    eta_pi: float | None = None,
     *,
     contact: Iterable[int] = (),
     saturated: bool = False,
-    inclination: float = 0.0,
+    inclination: float | None = None,
     abscissa: float | None = None,
 ) -> Roots:
     """All roots of a mode right of an abscissa, or the nearest beyond it if there are none.
 
     Parameters
     ----------
-    bha, bit
+    case
         The drilling system.
     eta_pi
-        ηΠ, at least `SMALLEST_ETA_PI`.
+        ηΠ, at least `SMALLEST_ETA_PI`; without it, the case's.
     contact
         Numbers of the stabilizers that touch, from 1; those without clearance always do.
     saturated
         Whether the bit tilt is at its limit.
     inclination
-        Of the straight hole, rad.
+        Of the straight hole, rad; without it, that of the case's hole at the bit.
     abscissa
         Per ℓ₁, at most 0.
 
@@ -116,23 +117,35 @@ def find_roots(
     ------
     ParameterError
         If a value is out of range.
+    RootsNotFound
+        If the argument principle counts more roots than are found.
+
+    Examples
+    --------
+    >>> from boreprop import find_roots, paper_case
+    >>> found = find_roots(paper_case(), contact=[1], inclination=0.0)
+    >>> found.verdict, round(found.roots[0].imag, 3)
+    (<Verdict.OSCILLATORY: 'oscillatory'>, 18.174)
     """
+    if eta_pi is None:
+        eta_pi = scaled_weight(case.bha, case.bit, case.active_weight_on_bit)
+    if inclination is None:
+        inclination = case.survey.inclination[-1]
     check_number("eta_pi", eta_pi, at_least=SMALLEST_ETA_PI)
     check_number("inclination", inclination)
     check_number("abscissa", abscissa or 0.0, at_most=0.0)
-    touching = touching_stabilizers(bha, contact)
-    characteristic = Characteristic.of(scale(bha, bit), touching, saturated, inclination)
+    touching = touching_stabilizers(case.bha, contact)
+    characteristic = Characteristic.of(scale(case.bha, case.bit), touching, saturated, inclination)
     roots = rightmost_roots(characteristic, eta_pi, abscissa)
     return Roots(eta_pi, stabilizer_numbers(touching), saturated, roots)
 
 
 def critical_eta_pi(
-    bha: BottomHoleAssembly,
-    bit: BitRock,
+    case: Case,
     *,
     contact: Iterable[int] | None = None,
     saturated: bool = False,
-    inclination: float = 0.0,
+    inclination: float | None = None,
 ) -> CriticalEtaPi | None:
     """The largest ηΠ at which a complex pair of a mode lies on the imaginary axis.
 
@@ -140,20 +153,35 @@ def critical_eta_pi(
 
     Parameters
     ----------
-    bha, bit
+    case
         The drilling system.
     contact
         Numbers of the stabilizers that touch; without it all non-ideal ones, the mode that makes a hole ripple.
     saturated
         Whether the bit tilt is at its limit.
     inclination
-        Of the straight hole, rad.
+        Of the straight hole, rad; without it, that of the case's hole at the bit.
 
     Raises
     ------
     ParameterError
         If a value is out of range.
+
+    Examples
+    --------
+    >>> from boreprop import critical_eta_pi, paper_case
+    >>> round(critical_eta_pi(paper_case(), inclination=0.0).eta_pi, 3)
+    0.147
     """
+    if inclination is None:
+        inclination = case.survey.inclination[-1]
+    return critical_of(case.bha, case.bit, contact, saturated, inclination)
+
+
+def critical_of(
+    bha: BottomHoleAssembly, bit: BitRock, contact: Iterable[int] | None, saturated: bool, inclination: float
+) -> CriticalEtaPi | None:
+    """`critical_eta_pi` of a drilling system."""
     check_number("inclination", inclination)
     touching = touching_stabilizers(bha, range(1, len(bha.stabilizer_positions)) if contact is None else contact)
     characteristic = Characteristic.of(scale(bha, bit), touching, saturated, inclination)

@@ -61,7 +61,7 @@ def make_figure_6(output: Path) -> None:
     case = paper_case()
     bha, bit = case.bha, case.bit
     grid = usual_grid(bha, eta_pi(bha, bit, case.active_weight_on_bit))
-    save(stability_figure.draw(stability_chart(bha, bit, *grid), case), output)
+    save(stability_figure.draw(stability_chart(case, *grid, inclination=0.0), case), output)
 
 
 def make_figures(output: Path, progress: Callable[[float], None] = lambda _: None) -> None:

@@ -58,5 +58,5 @@ def what_becomes_of(wave: Rippling) -> str:
 
 def _words(stretch: Stretch) -> str:
     touching = [f"{i} {'lower' if wall > 0 else 'upper'}" for i, wall in enumerate(stretch.contact, 1) if wall]
-    limit = [f"{'+' if stretch.tilt > 0 else '−'}ψ*"] if stretch.tilt else []
+    limit = [f"{'+' if stretch.saturation > 0 else '−'}ψ*"] if stretch.saturation else []
     return f"{' '.join(touching + limit) or 'free'} {stretch.share:.0%}"

@@ -1,0 +1,134 @@
+"""The table of a study, a line for each case, and the Parquet file that keeps it while the study goes on."""
+
+import json
+import tomllib
+from functools import partial
+from importlib.metadata import version
+from math import nan
+from pathlib import Path
+from time import monotonic, thread_time
+from typing import Any
+
+from ...case.file import dump_case
+from ...errors import InputError, shown
+from ...replacing import replacing
+from ...run.results import CASE_KEY
+from ...run.workers import WorkerLost
+from .design import Study
+from .figures import Function
+
+Line = dict[str, Any]  # "case", the varied parameters, the results, "error": None or what went wrong
+
+STUDY_KEY = b"boreprop.study"
+WRITING = 0.02  # share of the time that goes into writing the file: a study is not slowed down by more
+
+
+class Table:
+    """The lines of a study by the number of their case, and the file that keeps them, if there is to be one."""
+
+    def __init__(self, cases: Study, function: Function, path: Path | None) -> None:
+        self._cases = cases
+        self.identity = {
+            "function": _name(function),
+            "boreprop": version("boreprop"),
+            "varied parameters": ", ".join(cases.names),
+        }
+        self.case = dump_case(cases.case)
+        self.lines: dict[int, Line] = {}
+        self.results: list[str] = []  # their names
+        self._path = path
+        self._unsaved, self._next_save = False, 0.0
+        if path is not None:
+            if path.suffix != ".parquet":
+                raise InputError(f"{path}: must end in .parquet, got {path.suffix!r}")
+            if path.exists():
+                self._read(path)
+            else:  # so that a file that cannot be written says so before the work
+                self._unsaved = True
+                self.save()
+                self._next_save = 0.0  # the first time takes longer than the next ones
+
+    def add(self, case: int, outcome: dict[str, float] | str | WorkerLost) -> Line:
+        """Add what came of a case: its line of the table."""
+        results = outcome if isinstance(outcome, dict) else {}
+        taken = {"case", "error", *self._cases.names} & set(results)
+        if taken:
+            raise InputError(f"{self.identity['function']}: must call no result {taken.pop()!r}, a column of the study")
+        self.results += [name for name in results if name not in self.results]
+        varied = dict(zip(self._cases.names, self._cases.values[case].tolist(), strict=True))
+        line = {"case": case, **varied, **results, "error": None if isinstance(outcome, dict) else str(outcome)}
+        self.lines[case] = line
+        self._unsaved = True
+        return line
+
+    def columns(self, lines: list[Line]) -> dict[str, list[Any]]:
+        """The results and errors of `lines`."""
+        results = {name: [line.get(name, nan) for line in lines] for name in self.results}
+        return {**results, "error": [line["error"] for line in lines]}
+
+    def save_now_and_then(self) -> None:
+        """Write the file if there is something new, and enough time has gone by to afford it."""
+        if monotonic() >= self._next_save:
+            self.save()
+
+    def save(self) -> None:
+        """Write the file if there is something new."""
+        if self._path is None or not self._unsaved:
+            return
+        import pyarrow
+        import pyarrow.parquet
+
+        begin = thread_time()
+        lines = [self.lines[case] for case in sorted(self.lines)]
+        columns = {name: [line[name] for line in lines] for name in ("case", *self._cases.names)} | self.columns(lines)
+        types = {"case": pyarrow.int64(), "error": pyarrow.string()}
+        schema = pyarrow.schema(
+            [(name, types.get(name, pyarrow.float64())) for name in columns],
+            metadata={STUDY_KEY: json.dumps(self.identity), CASE_KEY: self.case},
+        )
+        with replacing(self._path) as draft:
+            pyarrow.parquet.write_table(pyarrow.table(columns, schema=schema), draft)
+        self._unsaved = False
+        self._next_save = monotonic() + (thread_time() - begin) / WRITING
+
+    def _read(self, path: Path) -> None:
+        """Take over the lines of the file, if it is of this study."""
+        import pyarrow
+        import pyarrow.parquet
+
+        try:
+            table = pyarrow.parquet.read_table(path)
+        except (OSError, pyarrow.ArrowException) as error:
+            raise InputError(f"{path}: must be a readable Parquet file, got: {error}") from error
+        metadata = table.schema.metadata or {}
+        if STUDY_KEY not in metadata:
+            raise InputError(f"{path}: must be the file of a study, got columns {shown(table.column_names)}")
+        theirs = json.loads(metadata[STUDY_KEY]) | _keys(metadata[CASE_KEY].decode())
+        ours = self.identity | _keys(self.case)
+        for name in ours | theirs:
+            if theirs.get(name) != ours.get(name):
+                self._refuse(name, theirs.get(name), ours.get(name))
+        self.lines = {line["case"]: line for line in table.to_pylist()}
+        for case, values in enumerate(self._cases.values.tolist()):
+            for name, value in zip(self._cases.names, values, strict=True):
+                if case in self.lines and self.lines[case][name] != value:
+                    self._refuse(f"{name} of case {case}", self.lines[case][name], value)
+        known = {"case", "error", *self._cases.names}
+        self.results = [name for name in table.column_names if name not in known]
+
+    def _refuse(self, what: str, theirs: object, ours: object) -> None:
+        raise InputError(f"{self._path}: {what}: must be {shown(theirs)}, as in the study it holds, got {shown(ours)}")
+
+
+def _name(function: Any) -> str:
+    """What a function is called, the same in every process."""
+    if isinstance(function, partial):
+        arguments = [repr(value) for value in function.args]
+        arguments += [f"{name}={value!r}" for name, value in function.keywords.items()]
+        return f"{_name(function.func)}({', '.join(arguments)})"
+    return f"{function.__module__}.{function.__qualname__}" if hasattr(function, "__qualname__") else repr(function)
+
+
+def _keys(case: str) -> dict[str, Any]:
+    """What a case file says: "table.key" → value."""
+    return {f"{table}.{key}": value for table, content in tomllib.loads(case).items() for key, value in content.items()}
