@@ -23,7 +23,7 @@ import scipy.stats
 import xarray
 
 import study_functions
-from boreprop.analysis.study.design import parameters, parse_axis, parse_distribution, parse_each
+from boreprop.analysis.study.design import parameters
 from boreprop.analysis.study.run import (
     FIGURES,
     Row,
@@ -38,9 +38,10 @@ from boreprop.analysis.study.run import (
 )
 from boreprop.analysis.summary import summarize
 from boreprop.case.paper import paper_case
+from boreprop.cli.ranges import parse_axis, parse_distribution, parse_each
 from boreprop.core.system import eta_pi
 from boreprop.errors import InputError
-from boreprop.report.tables.study import lines, verdict
+from boreprop.report.tables.study import lines, outcome
 from boreprop.run.results import write_trajectory
 from boreprop.run.simulate import simulate
 from boreprop.run.workers import work
@@ -219,7 +220,7 @@ def test_a_study_of_which_every_case_fails_says_so() -> None:
     ):
         results = run(study, workers=1)
         assert lines(results, [0.5]) == []
-        assert verdict(results).startswith(
+        assert outcome(results).startswith(
             "2 cases, 2 failed (the first: stabilizer_clearances: must be >= 0, got -0.00"
         )
 

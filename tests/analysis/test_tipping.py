@@ -27,7 +27,8 @@ from boreprop.core.drilling import Drilling
 from boreprop.core.errors import ParameterError
 from boreprop.core.survey import Survey
 from boreprop.errors import Stopped
-from boreprop.report.tables.tipping import left_out, loop, rows
+from boreprop.report.tables.hysteresis import loop
+from boreprop.report.tables.tipping import left_out, lines
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
 from conftest import Command
@@ -192,7 +193,7 @@ def test_a_hole_that_ripples_straight_but_not_after_small_turns_is_told(monkeypa
     tipping_where(monkeypatch, [(0.0, 0.0), (1.0, 90.0)])
     found = critical_dogleg(paper_case())
     assert (found.angle, found.monotonic) == (0.0, False)
-    [(_, amount)] = rows(paper_case(), {1: found}, radians(10.0))
+    [(_, amount)] = lines(paper_case(), {1: found}, radians(10.0))
     assert amount == "none needed: it ripples from a straight hole, but not after a turn of 0.0098° to 0.62°"
 
 
@@ -201,7 +202,7 @@ def test_a_straight_hole_that_the_smallest_turn_tips_is_not_said_to_ripple(monke
     found = critical_dogleg(paper_case())
     assert found.angle == 0.0
     assert dict(found.tried)[0.0] is False
-    assert [amount for _, amount in rows(paper_case(), {1: found}, radians(10.0))] == ["any from 0.001° on"]
+    assert [amount for _, amount in lines(paper_case(), {1: found}, radians(10.0))] == ["any from 0.001° on"]
 
 
 def test_an_inclined_hole_that_ripples_by_itself_does_not_after_a_small_turn_down() -> None:
@@ -346,17 +347,17 @@ def critical(angle: float, monotonic: bool = True) -> CriticalDogleg:
 
 def test_the_critical_dogleg_in_words() -> None:
     found = {1: critical(radians(1.0)), -1: critical(inf)}
-    assert [amount for _, amount in rows(paper_case(), found, radians(10.0))] == [
+    assert [amount for _, amount in lines(paper_case(), found, radians(10.0))] == [
         "1.00° over 3.66 m (8.2 °/30 m)", "none up to 10°"
     ]  # fmt: skip
     found = {1: critical(0.0), -1: critical(radians(2.0), monotonic=False)}
-    assert [amount for _, amount in rows(paper_case(), found, radians(10.0))] == [
+    assert [amount for _, amount in lines(paper_case(), found, radians(10.0))] == [
         "any: it ripples from a straight hole", "2.00° over 3.66 m (16.4 °/30 m), but not every larger one"
     ]  # fmt: skip
 
 
 def test_a_stopped_run_in_words() -> None:
-    [(_, amount)] = rows(paper_case(), {1: "after 3 m: the bit turns over"}, radians(10.0))
+    [(_, amount)] = lines(paper_case(), {1: "after 3 m: the bit turns over"}, radians(10.0))
     assert amount == "not known: after 3 m: the bit turns over"
 
 

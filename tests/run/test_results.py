@@ -84,7 +84,7 @@ def test_a_run_without_a_case_does_not_inherit_the_case_of_the_run_that_it_repla
 
 def test_the_number_of_stabilizers_and_their_columns_in_order(trajectory: Trajectory) -> None:
     without_case = Trajectory(dict(reversed(trajectory.columns.items())))
-    assert (trajectory.n, without_case.n, len(trajectory)) == (2, 2, 5)
+    assert (trajectory.n, without_case.n, trajectory.row_count) == (2, 2, 5)
     inclinations = without_case.stack("average_inclination")
     np.testing.assert_array_equal(inclinations[:, 0], trajectory["average_inclination[1]"])
     np.testing.assert_array_equal(inclinations[:, 1], trajectory["average_inclination[2]"])

@@ -16,7 +16,7 @@ from boreprop.core.quantities import INPUTS, OUTPUTS, scalar_names
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop.errors import Stopped
-from boreprop.report.tables.summary import rows, verdict
+from boreprop.report.tables.summary import lines, whether_it_ripples
 from boreprop.run.simulate import simulate
 from boreprop_viz.card import in_words
 from places import EXAMPLES
@@ -172,7 +172,7 @@ def test_summary_of_a_rippling_run() -> None:
     assert summary.contact_share[0] == pytest.approx(np.mean(run["stabilizer_contact[1]"] != 0), abs=1e-3)
     assert summary.largest_contact_force[0] == pytest.approx(np.abs(run["stabilizer_force[1]"][late]).max(), rel=0.01)
     assert 0.7 < summary.saturation_share < 0.9
-    told = dict(rows(summary))
+    told = dict(lines(summary))
     assert told["ripple of the hole axis"] == f"±{1e3 * summary.rippling.axis_amplitude:.3g} mm"
     assert told["modes of a wave"].startswith("1 lower −ψ* 45%\n")
 
@@ -201,7 +201,7 @@ def test_summary_of_a_steered_run() -> None:
 def test_a_summary_says_which_waves_the_rows_cannot_show(interval: float, length: float, hidden: str) -> None:
     summary = summarize(simulate(paper_case(), sample_interval=interval, length=length))
     assert summary.hidden_waves == hidden
-    assert ("waves that would not show" in dict(rows(summary))) is bool(hidden)
+    assert ("waves that would not show" in dict(lines(summary))) is bool(hidden)
 
 
 @pytest.mark.parametrize(
@@ -228,7 +228,7 @@ def test_a_summary_says_which_waves_the_rows_cannot_show(interval: float, length
     ids=[*State],
 )
 def test_what_becomes_of_a_wave_in_words(wave: Rippling, words: str, card: str) -> None:
-    assert (verdict(wave), in_words(wave)) == (words, card)
+    assert (whether_it_ripples(wave), in_words(wave)) == (words, card)
 
 
 def test_a_case_of_numpy_numbers_runs_like_one_of_floats(case: Case) -> None:

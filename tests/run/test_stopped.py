@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import typer
 
 from boreprop.case.case import Case, Schedule
 from boreprop.case.file import dump_case, load_case
-from boreprop.cli.console import tolerance, typer
+from boreprop.cli.options import tolerance
 from boreprop.errors import BorepropError, InputError, Stopped
 from boreprop.run.results import case_path, read_trajectory, write_trajectory
 from boreprop.run.simulate import simulate
@@ -105,7 +106,7 @@ def test_simulate_ends_with_3_and_one_line_and_keeps_the_rows(command: Command, 
     assert "after 3.3" in done.stderr
     assert "the bit turns over at 3.35" in done.stderr
     run = read_trajectory(pushed_file.with_name(name))
-    assert len(run) == KEPT
+    assert run.row_count == KEPT
     assert run.stopped is not None
     assert run.stopped in done.stderr
     told = command("boreprop", "summary", name)

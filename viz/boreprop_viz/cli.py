@@ -4,15 +4,19 @@ from collections import Counter
 from pathlib import Path
 from typing import Annotated, NoReturn
 
+import typer
+
 from boreprop.case.file import load_case
 from boreprop.case.tables import read_schedule, read_survey
 from boreprop.cli import console
-from boreprop.cli.console import positive, typer
+from boreprop.cli.lazy import new_app
+from boreprop.cli.options import Version, positive
 from boreprop.errors import InputError, Stopped
 from boreprop.run.results import SUFFIXES, read_trajectory
+from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
 
-app = console.new_app("Runs to look at in Rerun: vertical section, bit frame, ripple, plots over the drilled length.")
+app = new_app("Runs to look at in Rerun: vertical section, bit frame, ripple, plots over the drilled length.")
 
 
 def main() -> NoReturn:
@@ -26,11 +30,13 @@ def view(
         list[Path],
         typer.Argument(
             metavar="RUN.csv|RUN.parquet|CASE.toml|Borehole.fmu…",
-            help="Runs of any FMI tool, cases to run, FMUs to run and show while they run; several as overlays.",
+            help="Runs of any FMI tool, cases to simulate, FMUs to run and show while they run. Several are drawn over "
+            "one another.",
         ),
     ],
     case: Annotated[
-        Path | None, typer.Option(metavar="CASE.toml", help="The runs' case, if not the one that they come with.")
+        Path | None,
+        typer.Option(metavar="CASE.toml", help="The case of the runs. Default: the one that they come with."),
     ] = None,
     fmu: Annotated[
         Path | None, typer.Option(metavar="Borehole.fmu", help="The FMU that made the runs, with its case.")
@@ -39,21 +45,25 @@ def view(
         Path | None, typer.Option(metavar="PLAN.csv", help="The planned hole: measured_depth, inclination_deg.")
     ] = None,
     schedule: Annotated[
-        Path | None, typer.Option(metavar="S.csv", help="RSS force over drilled length, for an FMU.")
+        Path | None, typer.Option(metavar="S.csv", help="Steering force over drilled length, for an FMU.")
     ] = None,
     step: Annotated[
         float | None, typer.Option(parser=positive, metavar="S", help="Communication step, s, for an FMU.")
     ] = None,
-    stop: Annotated[float | None, typer.Option(parser=positive, metavar="T", help="End, s, for an FMU.")] = None,
-    save: Annotated[Path | None, typer.Option(metavar="X.rrd", help="The recording to write.")] = None,
-    spawn: Annotated[bool, typer.Option("--spawn", help="Show it in a new viewer; what happens by default.")] = False,
-    serve: Annotated[bool, typer.Option("--serve", help="Show it in the browser, until Ctrl-C.")] = False,
-    connect: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Show it in the viewer at rerun+http://HOST:PORT/proxy.")
+    stop: Annotated[
+        float | None, typer.Option(parser=positive, metavar="T", help="Time at the end, s, for an FMU.")
     ] = None,
-    _version: console.Version = False,
+    save: Annotated[Path | None, typer.Option(metavar="X.rrd", help="The recording to write.")] = None,
+    spawn: Annotated[bool, typer.Option("--spawn", help="Show it in a new viewer: the default.")] = False,
+    serve: Annotated[bool, typer.Option("--serve", help="Show it in the browser until Ctrl-C.")] = False,
+    connect: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="Show it in the viewer that listens at rerun+http://HOST:PORT/proxy."),
+    ] = None,
+    _version: Version = False,
 ) -> None:
-    """Draw runs; a case is run first, an FMU while it is drawn."""
+    """Draw runs. A case is simulated first; an FMU is drawn while it runs."""
+    # here: Rerun takes longer to load than to say what is wrong with an option
     from .record import draw
     from .sinks import open_recording
     from .source import Source, live, stored
@@ -74,7 +84,7 @@ def view(
 
     def open_source(name: str, path: Path) -> Source:
         if path.suffix == ".fmu":
-            from boreprop_fmu.host.drive import Run
+            from boreprop_fmu.host.drive import Run  # here: only an FMU needs fmpy
 
             return live(name, Run(path, forces, step=step, stop=stop), planned)
         try:
@@ -116,8 +126,6 @@ def names(sources: list[Path]) -> list[str]:
 def load_run(source: Path, case: Path | None, fmu: Path | None) -> Trajectory:
     """The run in a result file, or of a case file that is run now."""
     if source.suffix == ".toml":
-        from boreprop.run.simulate import simulate
-
         if case or fmu:
             raise InputError(f"{source}: must be a run to be given a case, got a case file")
         to_run = load_case(source)
@@ -126,7 +134,7 @@ def load_run(source: Path, case: Path | None, fmu: Path | None) -> Trajectory:
     if source.suffix not in SUFFIXES:
         raise InputError(f"{source}: must end in {', '.join(SUFFIXES)}, .fmu or .toml, got {source.suffix!r}")
     if fmu is not None:
-        from boreprop_fmu.host.drive import read_packed_case
+        from boreprop_fmu.host.drive import read_packed_case  # here: only an FMU needs fmpy
 
         packed = read_packed_case(fmu)
         if packed is None:

@@ -74,7 +74,7 @@ def stored(name: str, run: Trajectory, plan: Survey | None = None) -> Source:
     run = complete(run)
     case = case_of(run)
     [whole] = stretches([run], case, plan)
-    return Source(name, case, len(run), whole.rows, live=False, stretches=pieces(whole))
+    return Source(name, case, run.row_count, whole.rows, live=False, stretches=pieces(whole))
 
 
 def live(name: str, run: Run, plan: Survey | None = None) -> Source:

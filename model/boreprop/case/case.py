@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from ..core.checks import check_increasing, check_number
 from ..core.errors import ParameterError
 from ..core.survey import Survey
-from ..core.system import BitRock, BottomHoleAssembly
+from ..core.system import BitRock, BottomHoleAssembly, eta_pi
 
 SAMPLE_INTERVAL = 0.1  # m between the rows of a run, unless told otherwise: some 50 for each wave of a rippling hole
 
@@ -77,3 +77,13 @@ class Case:
     def __post_init__(self) -> None:
         for name in ("bit_diameter", "active_weight_on_bit", "length"):
             check_number(name, getattr(self, name), above=0.0)
+
+    @property
+    def eta_pi(self) -> float:
+        """ηΠ, the active weight on bit in the group that the stability of the hole depends on, (3) and (9)."""
+        return eta_pi(self.bha, self.bit, self.active_weight_on_bit)
+
+    @property
+    def length_scale(self) -> float:
+        """ℓ₁, from the bit to the first stabilizer, m."""
+        return self.bha.length_scale

@@ -1,15 +1,19 @@
 """A case: what is drilled, with what, from where, under which steering force. Read from and written to TOML.
 
-The file speaks the field's language (long names, degrees), a `Case` the core's (SI, radians). What the file must look
-like is in `case_file`, which needs the extra [cli]; a `Case` made in Python needs nothing.
+The file speaks the field's language (long names, degrees), a `Case` the core's (SI, radians). `schema` says what the
+file must look like.
 """
 
 import tomllib
+from collections.abc import Mapping
 from math import degrees, radians
 from pathlib import Path
 
+import tomli_w
+
 from ..errors import InputError
 from .case import Case
+from .schema import parse
 
 
 def load_case(path: str | Path) -> Case:
@@ -36,29 +40,23 @@ def parse_case(text: str, source: str | Path) -> Case:
     InputError
         If the text is no TOML, breaks a constraint, or refers to a file that does.
     """
-    from .schema import parse
-
     return parse(text, Path(source))
 
 
-def read_stopped(text: str) -> str | None:
-    """Why the run of a case stopped before its end, if the text of the case's file says so."""
+def read_run(text: str) -> dict[str, str]:
+    """What the text of a case file says of a run of the case: "engine", and if it stopped, why as "stopped"."""
     try:
-        stopped = tomllib.loads(text).get("run", {}).get("stopped")
+        return {key: str(value) for key, value in tomllib.loads(text).get("run", {}).items()}
     except (tomllib.TOMLDecodeError, AttributeError):
-        return None
-    return None if stopped is None else str(stopped)
+        return {}
 
 
-def dump_case(case: Case, stopped: str | None = None) -> str:
+def dump_case(case: Case, run: Mapping[str, str] | None = None) -> str:
     """`case` as the text of a case file that refers to no other file; `parse_case` gives the same case back.
 
-    If its run stopped before its end, the text may say why; `read_stopped` gives that back.
+    The text may say of a `run` of the case what `read_run` gives back.
     """
-    import tomli_w
-
     bha, bit = case.bha, case.bit
-    run = {} if stopped is None else {"run": {"stopped": stopped}}
     document = {
         "bha": {
             "stabilizer_positions": list(bha.stabilizer_positions),
@@ -80,7 +78,7 @@ def dump_case(case: Case, stopped: str | None = None) -> str:
         },
         "rss": {"drilled_length": list(case.schedule.drilled_length), "force": list(case.schedule.rss_force)},
     }
-    return tomli_w.dumps(document | run)
+    return tomli_w.dumps(document | ({"run": dict(run)} if run else {}))
 
 
 def _file_degrees(angle: float) -> float:

@@ -76,9 +76,10 @@ class _Rss(_Columns):
 
 
 class _Run(_Table):
-    """What became of the run of a case: in the case file beside it."""
+    """What there is to say of a run of the case: in the case file beside it."""
 
-    stopped: str
+    engine: str | None = None
+    stopped: str | None = None
 
 
 class _CaseFile(_Table):

@@ -10,7 +10,7 @@ import numpy as np
 from ..arrays import Floats
 from ..core.checks import check_number
 from ..core.drilling import check_inputs, check_tolerance
-from ..core.errors import ParameterError
+from ..core.errors import BorepropError, ParameterError
 from ..core.propagation import RELATIVE_TOLERANCE
 from ..core.quantities import OUTPUTS, scalar_names
 from ..core.survey import Survey
@@ -20,7 +20,7 @@ from .compiler import library_path, sources_digest
 MESSAGE = 512
 
 
-class KernelError(RuntimeError):
+class KernelError(BorepropError):
     """The kernel is not there. The message says why, and what helps."""
 
 
@@ -66,7 +66,7 @@ def library() -> ctypes.CDLL:
         If it is not built, cannot be loaded, or is older than its sources.
     """
     path = library_path()
-    helps = "with a C compiler or ziglang (pip install 'boreprop[native]') run: python -m boreprop.kernel"
+    helps = "with a C compiler, or after pip install ziglang, run: python -m boreprop.kernel"
     if not path.exists():
         raise KernelError(f"the native kernel must be built, got no {path.name}: {helps}")
     try:

@@ -30,7 +30,10 @@ ENVIRONMENT = CACHES | {"PATH", "SYSTEMROOT", "TEMP", "TMP", "TMPDIR", "USERPROF
 
 
 class CompilerError(RuntimeError):
-    """Nothing was compiled. The message says on one line what is missing or wrong and what helps."""
+    """Nothing was compiled. The message says on one line what is missing or wrong and what helps.
+
+    No `BorepropError`: the build hook loads this file alone. What compiles for a user says `InputError` instead.
+    """
 
 
 class NoCompilerError(CompilerError):
@@ -143,7 +146,7 @@ def compile_library(
     else:
         what = "ziglang" if platform else "a C compiler (cc, gcc, clang or $CC) or ziglang"
         target = platform or "this machine"
-        raise NoCompilerError(f"{what} must be installed to compile for {target}: pip install 'boreprop[native]'")
+        raise NoCompilerError(f"{what} must be installed to compile for {target}: pip install ziglang")
 
     flags += [f"-I{folder}" for folder in folders]
     flags += [f"-D{name}={value}" for name, value in defines.items()]

@@ -67,7 +67,7 @@ class Known:
     """The columns known so far, by the names of variables: (rows,), or (rows, n) or (rows, n − 1) by stabilizer."""
 
     def __init__(self, run: Trajectory, case: Case) -> None:
-        self.columns, self.rows = dict(run.columns), len(run)
+        self.columns, self.rows = dict(run.columns), run.row_count
         self.case, self.scaled = case, scale(case.bha, case.bit)
         self.beam = Beam(self.scaled)
         self.length, self.force = case.bha.length_scale, case.bha.force_scale  # ℓ₁, F*

@@ -11,19 +11,24 @@ from ..kernel.binding import NativeDrilling, available
 
 AnyDrilling = Drilling | NativeDrilling
 
-ENGINES = ("python", "native")
+ENGINES = ("auto", "native", "python")
 
 
 def engine() -> str:
-    """The native engine where it is there, else Python."""
+    """The engine that "auto" stands for here: "native" where it is built, else "python"."""
     return "native" if available() else "python"
+
+
+def chosen(name: str) -> str:
+    """The engine, "native" or "python", that one of `ENGINES` stands for; `ParameterError` if `name` is none."""
+    if name not in ENGINES:
+        raise ParameterError("engine", f"must be {', '.join(ENGINES[:-1])} or {ENGINES[-1]}", name)
+    return engine() if name == "auto" else name
 
 
 def start(case: Case, engine: str, relative_tolerance: float) -> AnyDrilling:
     """A case before its first step, under its first force; errors as in `simulate`."""
-    if engine not in ENGINES:
-        raise ParameterError("engine", f"must be {' or '.join(ENGINES)}", engine)
-    make = NativeDrilling if engine == "native" else Drilling
+    make = NativeDrilling if chosen(engine) == "native" else Drilling
     return make(
         case.bha,
         case.bit,

@@ -1,7 +1,8 @@
 """What a run gives: columns over the drilled length, and the files that hold them with their case.
 
-A CSV file is read and written with the standard library alone; its case stands beside it (run.csv, run.case.toml).
-A Parquet file, with the extra [parquet], holds its case in its metadata.
+The case of a CSV file stands beside it (run.csv, run.case.toml), that of a Parquet file, for which pyarrow must be
+installed, in its metadata. With it stand, in its table [run], the engine that computed the run, and why the run stopped
+if it did.
 
 Files of other tools have our columns under longer names: with the path of the component before (OMSimulator and fmpy,
 model.root.borehole.bit_tilt) or what the variable is behind (libcosim up to 0.9, bit_tilt [6 real output]).
@@ -16,19 +17,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..case.case import Case
-from ..case.file import dump_case, load_case, parse_case, read_stopped
+from ..case.file import dump_case, load_case, parse_case, read_run
 from ..core.columns import read_columns
 from ..core.quantities import BY_NAME, INPUTS, OUTPUTS
 from ..errors import InputError
 from ..replacing import replacing
-from .trajectory import Trajectory, _variable
+from .trajectory import Trajectory, quantity_of
 
 SUFFIXES = (".csv", ".parquet")
 CASE_KEY = b"boreprop.case"
 
 
 def write_trajectory(trajectory: Trajectory, path: str | Path) -> None:
-    """Write a run, and if it is known its case, with why the run stopped if it did, to a .csv or .parquet file.
+    """Write a run to a .csv or .parquet file; if its case is known, that too, with the engine and why the run stopped.
 
     Nothing of that name changes before everything is written.
 
@@ -49,7 +50,7 @@ def write_trajectory(trajectory: Trajectory, path: str | Path) -> None:
 def read_trajectory(path: str | Path, case: Case | None = None) -> Trajectory:
     """Read a run written by `write_trajectory` or by any FMI tool.
 
-    Columns that are not in the table of variables are left out; of those that are, only drilled_length must be there.
+    Columns that are not in the table of quantities are left out; of those that are, only drilled_length must be there.
     In a file of a system, those of the component that has drilled_length are read. Several may have it, as an input
     say: then the one that has every output that the others have.
 
@@ -71,7 +72,7 @@ def read_trajectory(path: str | Path, case: Case | None = None) -> Trajectory:
     if read is None:
         raise InputError(f"{path}: must end in {' or '.join(SUFFIXES)}, got {path.suffix!r}")
     trajectory = read(path, case)
-    if not len(trajectory):
+    if not trajectory.row_count:
         raise InputError(f"{path}: must have at least one row, got none")
     found = Trajectory(trajectory.columns).n
     if found not in (0, trajectory.n):
@@ -95,12 +96,12 @@ def _ours(path: Path, headings: list[str]) -> dict[str, str]:
     components: dict[str, dict[str, str]] = {}
     for heading in headings:
         match = HEADING.fullmatch(heading)
-        if match and _variable(match["name"]) in IO_NAMES:
+        if match and quantity_of(match["name"]) in IO_NAMES:
             components.setdefault(match["component"] or "", {}).setdefault(match["name"], heading)
     drilling = [names for names in components.values() if "drilled_length" in names]
     if not drilling:
         raise InputError(f"{path}: must have a column 'drilled_length', got {headings}")
-    outputs = [{name for name in names if _variable(name) in OUTPUT_NAMES} for names in drilling]
+    outputs = [{name for name in names if quantity_of(name) in OUTPUT_NAMES} for names in drilling]
     ours = [names for names, own in zip(drilling, outputs, strict=True) if own >= set().union(*outputs)]
     if len(ours) != 1:
         found = ", ".join(names["drilled_length"] for names in drilling)
@@ -111,8 +112,13 @@ def _ours(path: Path, headings: list[str]) -> dict[str, str]:
 
 def _typed(trajectory: Trajectory) -> dict[str, NDArray[Any]]:
     """The columns, those of FMI's Integer variables as such."""
-    integers = {name for name in trajectory.columns if (v := BY_NAME.get(_variable(name))) and v.kind == "Integer"}
+    integers = {name for name in trajectory.columns if (v := BY_NAME.get(quantity_of(name))) and v.kind == "Integer"}
     return {k: v.astype(np.int32) if k in integers else v for k, v in trajectory.columns.items()}
+
+
+def _about(trajectory: Trajectory) -> dict[str, str]:
+    """What the file says of a run besides its case."""
+    return {key: text for key in ("engine", "stopped") if (text := getattr(trajectory, key)) is not None}
 
 
 def _write_csv(trajectory: Trajectory, path: Path) -> None:
@@ -127,7 +133,7 @@ def _write_csv(trajectory: Trajectory, path: Path) -> None:
             case_path(path).unlink(missing_ok=True)  # of a run that is overwritten
         else:
             with replacing(case_path(path)) as case_draft:
-                case_draft.write_text(dump_case(trajectory.case, trajectory.stopped), encoding="utf-8")
+                case_draft.write_text(dump_case(trajectory.case, _about(trajectory)), encoding="utf-8")
 
 
 def _read_csv(path: Path, case: Case | None) -> Trajectory:
@@ -139,13 +145,13 @@ def _read_csv(path: Path, case: Case | None) -> Trajectory:
     own = case_path(path)
     if not own.exists():
         return Trajectory(columns, case)
-    stopped = read_stopped(own.read_text("utf-8-sig", errors="replace"))
-    return Trajectory(columns, load_case(own) if case is None else case, stopped)
+    about = read_run(own.read_text("utf-8-sig", errors="replace"))
+    return Trajectory(columns, load_case(own) if case is None else case, about.get("stopped"), about.get("engine"))
 
 
 def _write_parquet(trajectory: Trajectory, path: Path) -> None:
     pyarrow, parquet = _pyarrow(path)
-    metadata = {} if trajectory.case is None else {CASE_KEY: dump_case(trajectory.case, trajectory.stopped)}
+    metadata = {} if trajectory.case is None else {CASE_KEY: dump_case(trajectory.case, _about(trajectory))}
     with replacing(path) as draft:
         parquet.write_table(pyarrow.table(_typed(trajectory), metadata=metadata), draft)
 
@@ -162,7 +168,10 @@ def _read_parquet(path: Path, case: Case | None) -> Trajectory:
     if CASE_KEY not in metadata:
         return Trajectory(columns, case)
     own = metadata[CASE_KEY].decode()
-    return Trajectory(columns, parse_case(own, path) if case is None else case, read_stopped(own))
+    about = read_run(own)
+    return Trajectory(
+        columns, parse_case(own, path) if case is None else case, about.get("stopped"), about.get("engine")
+    )
 
 
 def _numbers(path: Path, name: str, column: Any) -> NDArray[np.float64]:
@@ -183,7 +192,5 @@ def _pyarrow(path: Path) -> tuple[Any, Any]:
         import pyarrow
         import pyarrow.parquet
     except ModuleNotFoundError as error:
-        raise InputError(
-            f"{path}: must be .csv unless pyarrow is installed: pip install 'boreprop[parquet]'"
-        ) from error
+        raise InputError(f"{path}: must be .csv unless pyarrow is installed: pip install 'boreprop[study]'") from error
     return pyarrow, pyarrow.parquet

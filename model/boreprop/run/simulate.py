@@ -1,4 +1,4 @@
-"""A schedule in, a trajectory out."""
+"""Drill a case along its schedule of forces: a trajectory comes out."""
 
 from collections.abc import Callable
 
@@ -11,7 +11,7 @@ from ..core.checks import check_number
 from ..core.propagation import RELATIVE_TOLERANCE
 from ..core.quantities import OUTPUTS, scalar_names
 from ..errors import Stopped
-from .engines import follow, start
+from .engines import chosen, follow, start
 from .trajectory import Trajectory
 
 PARTS = 100  # a run reports its progress about so often
@@ -26,7 +26,7 @@ def simulate(
     length: float | None = None,
     relative_tolerance: float = RELATIVE_TOLERANCE,
     progress: Callable[[float], None] | None = None,
-    engine: str = "python",
+    engine: str = "auto",
 ) -> Trajectory:
     """Drill a case under its force schedule.
 
@@ -44,12 +44,13 @@ def simulate(
     progress
         Called with the drilled length, m, about a hundred times.
     engine
-        "python", or "native": the same model as compiled code, which agrees but for rounding and is many times faster.
+        "python"; "native", the same model as compiled code, which agrees but for rounding and is many times faster; or
+        "auto", native where it is built. The run says which it was.
 
     Returns
     -------
     Trajectory
-        The inputs `rss_force` and `active_weight_on_bit` and every output of the table of variables.
+        The inputs `rss_force` and `active_weight_on_bit` and every output of the table of quantities.
 
     Raises
     ------
@@ -64,6 +65,7 @@ def simulate(
     check_number("length", length, above=0.0)
     check_number("sample_interval", sample_interval, above=0.0)
     weight = case.active_weight_on_bit
+    engine = chosen(engine)
     drilling = start(case, engine, relative_tolerance)
     names = scalar_names(OUTPUTS, len(case.bha.stabilizer_positions))
     table = np.full((int(length / sample_interval + ROUNDING) + 1, len(names)), np.nan)
@@ -81,7 +83,7 @@ def simulate(
             progress(drilling.drilled_length)
     table = table[~np.isnan(table[:, 0])]
     columns = {"rss_force": forces[rows >= 0][: len(table)], "active_weight_on_bit": np.full(len(table), weight)}
-    trajectory = Trajectory(columns | {name: table[:, j] for j, name in enumerate(names)}, case, stopped)
+    trajectory = Trajectory(columns | {name: table[:, j] for j, name in enumerate(names)}, case, stopped, engine)
     if stopped:
         raise Stopped(stopped, trajectory)
     return trajectory

@@ -1,9 +1,9 @@
 """What a study is made of: cases that differ from one in some parameters, on a grid or drawn from distributions."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import inf, nan, radians
-from typing import Any, Protocol, TypeVar
+from math import radians
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,10 +12,6 @@ from ...case.case import Case, Schedule
 from ...core.quantities import BY_NAME
 from ...core.system import BitRock, BottomHoleAssembly
 from ...errors import InputError, shown
-
-T = TypeVar("T")
-
-MOST_VALUES = 5000  # on an axis of a picture
 
 CONVENIENT = {"eta_pi": "active_weight_on_bit", "bit_tilt_limit_deg": "bit_tilt_limit"}
 """Names that a study knows besides those of the table of variables → what they stand for."""
@@ -187,90 +183,3 @@ def sample(case: Case, uncertain: Mapping[str, Distribution], n: int, seed: int)
         if not np.isfinite(column).all():
             raise InputError(f"{name}: must be drawn from a distribution of finite numbers, got {column[0]}")
     return Study(case, tuple(uncertain), values)
-
-
-# as text, for the command line
-
-
-def parse_each(parse: Callable[[str], tuple[str, T]], texts: Iterable[str]) -> dict[str, T]:
-    """What `parse_axis` or `parse_distribution` makes of each text, by name; `InputError` if a name comes twice."""
-    found: dict[str, T] = {}
-    for text in texts:
-        name, value = parse(text)
-        if name in found:
-            raise InputError(f"{name}: must be varied once, got {text!r} besides")
-        found[name] = value
-    return found
-
-
-def parse_range(option: str, text: str) -> NDArray[np.float64]:
-    """The values that START:STOP:COUNT stands for; `InputError` names the `option`."""
-    try:
-        start, stop, count = text.split(":")
-        low, high, number = float(start), float(stop), int(count)
-    except ValueError:
-        low, high, number = nan, nan, 0
-    if not (0 < low < high < inf and 2 <= number <= MOST_VALUES):
-        constraint = f"START:STOP:COUNT with 0 < START < STOP and COUNT from 2 to {MOST_VALUES}"
-        raise InputError(f"{option}: must be {constraint}, got {text!r}")
-    return np.linspace(low, high, number)
-
-
-def parse_axis(text: str) -> tuple[str, NDArray[np.float64]]:
-    """Name and values of "NAME=START:STOP:COUNT", evenly spaced, or "NAME=VALUE,VALUE,…"; `InputError` if neither."""
-    name, _, values = text.partition("=")
-    try:
-        if ":" not in values:
-            return name, np.array([float(value) for value in values.split(",")])
-        start, stop, count = values.split(":")
-        return name, np.linspace(float(start), float(stop), int(count))
-    except ValueError as error:
-        raise InputError(f"--vary: must be NAME=START:STOP:COUNT or NAME=VALUE,VALUE,…, got {text!r}") from error
-
-
-def _normal(mean: float, deviation: float) -> Distribution:
-    from scipy.stats import norm
-
-    return norm(mean, deviation)
-
-
-def _lognormal(median: float, deviation_of_log: float) -> Distribution:
-    from scipy.stats import lognorm
-
-    return lognorm(deviation_of_log, scale=median)
-
-
-def _uniform(low: float, high: float) -> Distribution:
-    from scipy.stats import uniform
-
-    return uniform(low, high - low)
-
-
-def _triangular(low: float, mode: float, high: float) -> Distribution:
-    from scipy.stats import triang
-
-    return triang((mode - low) / (high - low), low, high - low)
-
-
-DISTRIBUTIONS: dict[str, Callable[..., Distribution]] = {
-    "normal": _normal,
-    "lognormal": _lognormal,
-    "uniform": _uniform,
-    "triangular": _triangular,
-}
-
-
-def parse_distribution(text: str) -> tuple[str, Distribution]:
-    """Name and distribution of "NAME=normal(MEAN,DEVIATION)" or another of `DISTRIBUTIONS`; `InputError` if neither."""
-    name, _, call = text.partition("=")
-    kind, _, arguments = call.strip().partition("(")
-    try:
-        if kind not in DISTRIBUTIONS or not arguments.endswith(")"):
-            raise ValueError
-        distribution = DISTRIBUTIONS[kind](*map(float, arguments[:-1].split(",")))
-        if not np.isfinite(distribution.ppf(0.5)):
-            raise ValueError
-    except (ArithmeticError, TypeError, ValueError) as error:
-        forms = "normal(MEAN,DEVIATION), lognormal(MEDIAN,DEVIATION OF THE LOG), uniform(LOW,HIGH) or "
-        raise InputError(f"--uncertain: must be NAME={forms}triangular(LOW,MODE,HIGH), got {text!r}") from error
-    return name, distribution

@@ -8,7 +8,7 @@ from ...analysis.stability.roots import CriticalEtaPi, Roots, Verdict
 HEADINGS = ("growth, per ℓ₁", "frequency, per ℓ₁", "what it does", "wavelength")
 MODE_HEADINGS = ("in contact", "bit tilt", "verdict", "what it does", "wavelength", "the case")
 NOT_MET = "not met: the case does not come to this contact, in no hole that turns by up to 10° over 30 m"
-MOST_ROWS = 20
+MOST_LINES = 20
 
 
 def as_plain(found: Roots) -> dict[str, object]:
@@ -35,7 +35,7 @@ def modes_title(eta_pi: float, active_weight_on_bit: float, inclination: float) 
     )
 
 
-def mode_row(
+def mode_line(
     found: Roots, length_scale: float, here: tuple[tuple[int, ...], bool], met: Container[tuple[int, ...]]
 ) -> tuple[str, ...]:
     """A mode in a line, under `MODE_HEADINGS`: its verdict and the root that makes it.
@@ -61,11 +61,11 @@ def contact_text(contact: tuple[int, ...]) -> str:
     return f"stabilizer{'s' * (len(contact) > 1)} {numbers} in contact" if contact else "no contact"
 
 
-def rows(found: Roots, length_scale: float) -> list[tuple[str, str, str, str]]:
+def lines(found: Roots, length_scale: float) -> list[tuple[str, str, str, str]]:
     """A line for each of the rightmost roots, under `HEADINGS`; `length_scale` is ℓ₁, m."""
     return [
         (f"{root.real:.6f}", f"{root.imag:.6f}", change(root, length_scale), wavelength(root, length_scale))
-        for root in found.roots[:MOST_ROWS]
+        for root in found.roots[:MOST_LINES]
     ]
 
 
@@ -88,7 +88,7 @@ def metres(length: float) -> str:
 
 def caption(found: Roots) -> str | None:
     """How many roots are not shown."""
-    more = len(found.roots) - MOST_ROWS
+    more = len(found.roots) - MOST_LINES
     return f"{more} more with a growth above {found.roots[-1].real:.2g} per ℓ₁" if more > 0 else None
 
 

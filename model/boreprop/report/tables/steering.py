@@ -96,7 +96,7 @@ def summarize(case: Case, inclination: float | None = None, force_limit: float |
     )
 
 
-def rows(summary: SteeringSummary) -> list[tuple[str, str]]:
+def lines(summary: SteeringSummary) -> list[tuple[str, str]]:
     """The lines of a table, the warnings last: what, and how much in the units people use."""
     limit = kilonewtons(summary.curve[-1].end.rss_force)
     held = " or ".join(
@@ -120,7 +120,7 @@ def rows(summary: SteeringSummary) -> list[tuple[str, str]]:
     ]
 
 
-def piece_rows(curve: tuple[Piece, ...]) -> list[tuple[str, ...]]:
+def piece_lines(curve: tuple[Piece, ...]) -> list[tuple[str, ...]]:
     """A line for each piece of the curve, with a cell for each of `HEADINGS`."""
     return [
         (

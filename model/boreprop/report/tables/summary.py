@@ -9,7 +9,7 @@ from ...analysis.summary import Summary
 from ...units import BUILD_LENGTH
 
 
-def rows(summary: Summary) -> list[tuple[str, str]]:
+def lines(summary: Summary) -> list[tuple[str, str]]:
     """The lines of a table: what, and how much in the units people use."""
     mean = f"mean over {summary.averaging_length:.3g} m"
     stabilizers = enumerate(zip(summary.largest_contact_force, summary.contact_share, strict=True), 1)
@@ -29,7 +29,7 @@ def rows(summary: Summary) -> list[tuple[str, str]]:
             )
         ),
         ("bit tilt saturated", f"{summary.saturation_share:.0%} of the length"),
-        *_wave_rows(summary.rippling),
+        *_wave_lines(summary.rippling),
         *([("waves that would not show", summary.hidden_waves)] if summary.hidden_waves else []),
     ]
 
@@ -38,11 +38,11 @@ def _rate(change: float) -> str:
     return f"{np.degrees(change) * BUILD_LENGTH:+.2f} °/{BUILD_LENGTH:g} m"
 
 
-def _wave_rows(wave: Rippling) -> list[tuple[str, str]]:
+def _wave_lines(wave: Rippling) -> list[tuple[str, str]]:
     if wave.state is State.NONE:
         return [("rippling", "no")]
     return [
-        ("rippling", verdict(wave)),
+        ("rippling", whether_it_ripples(wave)),
         ("ripple of the inclination", f"±{degrees(wave.amplitude):.3g} °"),
         ("ripple of the hole axis", f"±{1e3 * wave.axis_amplitude:.3g} mm"),
         ("ripple, from wave to wave", f"length ±{wave.spread:.2f} m"),
@@ -52,7 +52,7 @@ def _wave_rows(wave: Rippling) -> list[tuple[str, str]]:
     ]
 
 
-def verdict(wave: Rippling) -> str:
+def whether_it_ripples(wave: Rippling) -> str:
     """Whether a run ends rippling, and with what wave."""
     length = f"{wave.wavelength:.2f} m long"
     return {

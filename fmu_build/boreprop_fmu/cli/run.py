@@ -1,0 +1,51 @@
+"""The command `boreprop-fmu run`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from boreprop.case.tables import read_schedule
+from boreprop.cli import console
+from boreprop.cli.options import Tolerance, positive
+from boreprop.errors import Stopped
+from boreprop.run.results import SUFFIXES, write_trajectory
+
+from ..host.drive import Run
+
+
+def run_command(
+    fmu: Annotated[Path, typer.Argument(metavar="Borehole.fmu", help="An FMU with our variable names.")],
+    output: Annotated[Path, typer.Option(metavar="RUN.csv", help="The result file, .csv or .parquet.")],
+    schedule: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="S.csv", help="Steering force over drilled length. Default: the schedule packed in the FMU."
+        ),
+    ] = None,
+    step: Annotated[
+        float | None,
+        typer.Option(parser=positive, metavar="S", help="Communication step, s. Default: the FMU's own."),
+    ] = None,
+    stop: Annotated[
+        float | None, typer.Option(parser=positive, metavar="T", help="Time at the end, s. Default: the FMU's own.")
+    ] = None,
+    tolerance: Tolerance = None,
+) -> None:
+    """Run an FMU and write the run to a file.
+
+    Its rows are at whole multiples of the communication step, from 0. If the FMU cannot go on to the end, the rows so
+    far are written all the same; the exit status is then 3.
+    """
+    console.check_output(output, SUFFIXES)
+    forces = None if schedule is None else read_schedule(schedule)
+    fmu_run = Run(fmu, forces, step=step, stop=stop, relative_tolerance=tolerance)
+    try:
+        with console.progress("drilling", fmu_run.stop) as done:
+            trajectory = fmu_run.trajectory(done)
+    except Stopped as stopped:
+        if stopped.trajectory is not None:
+            write_trajectory(stopped.trajectory, output)
+        raise
+    write_trajectory(trajectory, output)
+    print(f"{output}: {trajectory.row_count} rows over {trajectory['drilled_length'][-1]:g} m")

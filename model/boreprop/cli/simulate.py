@@ -1,0 +1,67 @@
+"""The command `boreprop simulate`."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..case.case import SAMPLE_INTERVAL
+from ..case.file import load_case
+from ..core.checks import check_number
+from ..core.propagation import RELATIVE_TOLERANCE
+from ..errors import InputError, Stopped
+from ..run.results import SUFFIXES, case_path, write_trajectory
+from ..run.simulate import simulate
+from . import console
+from .options import CaseFile, Tolerance, positive
+
+MAX_ROWS = 10_000_000  # a file of some gigabytes
+
+
+def simulate_command(
+    case_file: CaseFile,
+    output: Annotated[Path, typer.Option(metavar="RUN.csv", help="The result file, .csv or .parquet.")],
+    sample_interval: Annotated[
+        float, typer.Option(parser=positive, metavar="M", help="Drilled length between rows, m.")
+    ] = SAMPLE_INTERVAL,
+    length: Annotated[
+        float | None, typer.Option(parser=positive, metavar="M", help="Length to drill, m. Default: the case's.")
+    ] = None,
+    engine: Annotated[
+        str,
+        typer.Option(
+            metavar="auto|native|python",
+            help="What computes: native, compiled code; python, the same model in Python, many times slower; auto, "
+            "native where it is there.",
+        ),
+    ] = "auto",
+    tolerance: Tolerance = None,
+) -> None:
+    """Simulate a case and write the run to a file.
+
+    Its rows are at whole multiples of the sample interval, from 0. If the run cannot go on to its end, the rows so far
+    are written all the same; the exit status is then 3.
+    """
+    console.check_output(output, SUFFIXES)
+    if case_path(output).resolve() == case_file.resolve():
+        raise InputError(f"{output}: must have another name, as its case would replace the case file, got {case_file}")
+    case = load_case(case_file)
+    if length is not None:
+        case = replace(case, length=length)
+    check_number("--sample-interval", sample_interval, at_least=case.length / MAX_ROWS)
+    try:
+        with console.progress("drilling", case.length) as drilled:
+            trajectory = simulate(
+                case,
+                sample_interval=sample_interval,
+                relative_tolerance=tolerance or RELATIVE_TOLERANCE,
+                progress=drilled,
+                engine=engine,
+            )
+    except Stopped as stopped:
+        if stopped.trajectory is not None:
+            write_trajectory(stopped.trajectory, output)
+        raise
+    write_trajectory(trajectory, output)
+    print(f"{output}: {trajectory.row_count} rows over {case.length:g} m ({trajectory.engine} engine)")

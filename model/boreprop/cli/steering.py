@@ -1,0 +1,46 @@
+"""The command `boreprop steering`."""
+
+from math import radians
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..case.file import load_case
+from ..core.checks import check_number
+from ..report.tables.steering import HEADINGS, lines, piece_lines, summarize
+from . import console
+from .options import CaseFile, Inclination, positive
+from .printing import print_table
+
+
+def steering_command(
+    case_file: CaseFile,
+    output: Annotated[
+        Path | None, typer.Option(metavar="STEERING.png", help="Draw build rate against force into this file.")
+    ] = None,
+    inclination_deg: Inclination = None,
+    force_limit: Annotated[
+        float | None,
+        typer.Option(
+            parser=positive,
+            metavar="N",
+            help="Largest force, N. Default: the largest of the case's schedule, or 30 kN if that has none.",
+        ),
+    ] = None,
+) -> None:
+    """Print how fast a steady steering force turns the hole, and draw it."""
+    if output is not None:
+        console.check_output(output, (".png",))
+    if inclination_deg is not None:
+        check_number("--inclination-deg", inclination_deg)
+    case = load_case(case_file)
+    summary = summarize(case, None if inclination_deg is None else radians(inclination_deg), force_limit)
+    print_table(lines(summary), (str(case_file), ""))
+    print_table(piece_lines(summary.curve), HEADINGS)
+    if output is not None:
+        from ..report.figures.drawing import save  # here: only a picture needs matplotlib
+        from ..report.figures.steering import draw
+
+        save(draw(summary), output)
+        print(f"{output}: build rate and bit tilt over the steering force")

@@ -1,0 +1,78 @@
+"""The command `boreprop study`."""
+
+from functools import partial
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..analysis.study.design import grid, sample
+from ..analysis.study.run import key_figures, run
+from ..case.file import load_case
+from ..core.checks import check_number
+from ..errors import InputError
+from ..report.tables.study import lines, outcome
+from . import console
+from .options import CaseFile, Tolerance
+from .printing import print_table
+from .ranges import parse_axis, parse_distribution, parse_each
+
+QUANTILES_OF_GRID = {"least": 0.0, "median": 0.5, "largest": 1.0}
+QUANTILES_OF_SAMPLE = {"10 %": 0.1, "50 %": 0.5, "90 %": 0.9}
+
+
+def study_command(
+    case_file: CaseFile,
+    output: Annotated[
+        Path,
+        typer.Option(metavar="STUDY.parquet", help="The file of results. If it exists already, the study goes on."),
+    ],
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=START:STOP:COUNT",
+            help="An axis of a grid, or NAME=VALUE,VALUE,…; may be given several times.",
+        ),
+    ] = None,
+    uncertain: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=normal(MEAN,DEVIATION)",
+            help="The distribution of an uncertain parameter, also lognormal(MEDIAN,DEVIATION OF THE LOG), "
+            "uniform(LOW,HIGH) or triangular(LOW,MODE,HIGH); may be given several times.",
+        ),
+    ] = None,
+    draws: Annotated[int, typer.Option("--sample", metavar="N", help="Number of draws.")] = 200,
+    seed: Annotated[int, typer.Option(metavar="S", help="Seed of the draws.")] = 1,
+    workers: Annotated[
+        int | None, typer.Option(metavar="K", help="Number of processes. Default: one for each core.")
+    ] = None,
+    tolerance: Tolerance = None,
+) -> None:
+    """Simulate many cases on all cores: over a grid, or of uncertain parameters.
+
+    NAME is an input or parameter of the case in SI units (stabilizer_clearance[1]), eta_pi or bit_tilt_limit_deg.
+    """
+    console.check_output(output, (".parquet",))
+    check_number("--sample", draws, at_least=1)
+    check_number("--seed", seed, at_least=0)
+    if workers is not None:
+        check_number("--workers", workers, at_least=1)
+    if bool(vary) == bool(uncertain):
+        raise InputError(f"must be given either --vary or --uncertain, got {'both' if vary else 'neither'}")
+    case = load_case(case_file)
+    if vary:
+        cases, quantiles = grid(case, parse_each(parse_axis, vary)), QUANTILES_OF_GRID
+    else:
+        cases = sample(case, parse_each(parse_distribution, uncertain or []), draws, seed)
+        quantiles = QUANTILES_OF_SAMPLE
+    figures = key_figures if tolerance is None else partial(key_figures, relative_tolerance=tolerance)
+    try:
+        with console.progress("cases", len(cases)) as done:
+            results = run(cases, figures, output=output, workers=workers, progress=done)
+    except KeyboardInterrupt:
+        if output.exists():
+            console.warn(f"{output}: keeps the cases that are done; the same command goes on from there")
+        raise
+    print_table(lines(results, quantiles.values()), (str(output), *quantiles))
+    print(f"{output}: {outcome(results)}")

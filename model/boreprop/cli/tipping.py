@@ -1,0 +1,101 @@
+"""The commands `boreprop dogleg` and `boreprop hysteresis`: what tips a system that can ripple and need not."""
+
+from math import radians
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..analysis.hysteresis import hysteresis
+from ..analysis.stability.contacts import first_that_touches
+from ..analysis.tipping import critical_dogleg_or_why, dogleg_map, usual_map
+from ..arrays import Floats
+from ..case.case import Case
+from ..case.file import load_case
+from ..core.propagation import RELATIVE_TOLERANCE
+from ..errors import InputError
+from ..report.tables.hysteresis import loop
+from ..report.tables.tipping import SIDES, left_out, lines
+from . import console
+from .options import CaseFile, ClearanceRange, EtaPiRange, Tolerance, positive
+from .printing import print_table
+from .ranges import parse_range
+
+
+def dogleg_command(
+    case_file: CaseFile,
+    output: Annotated[
+        Path | None, typer.Option(metavar="MAP.png", help="Draw a map over weight and clearance into this file.")
+    ] = None,
+    eta_pi: EtaPiRange = None,
+    clearance_mm: ClearanceRange = None,
+    limit_deg: Annotated[
+        float, typer.Option(parser=positive, metavar="A", help="Largest turn that is tried, degrees.")
+    ] = 10.0,
+    tolerance: Tolerance = None,
+) -> None:
+    """Print the smallest kink in the existing hole that starts rippling, and map it.
+
+    The hole is straight and turns over half the length of the BHA before the bit. The map is over weight, as ηΠ, and
+    clearance; without --eta-pi or --clearance-mm around those of the case.
+    """
+    if output is not None:
+        console.check_output(output, (".png",))
+    across = parse_range("--eta-pi", eta_pi) if eta_pi else None
+    up = parse_range("--clearance-mm", clearance_mm) / 1e3 if clearance_mm else None
+    case, limit = load_case(case_file), radians(limit_deg)
+    error = tolerance or RELATIVE_TOLERANCE
+    found = {side: critical_dogleg_or_why(case, side=side, limit=limit, relative_tolerance=error) for side in SIDES}
+    print_table(lines(case, found, limit), (str(case_file), ""))
+    if output is not None:
+        _draw_map(case, output, across, up, limit, error)
+
+
+def _draw_map(case: Case, output: Path, across: Floats | None, up: Floats | None, limit: float, error: float) -> None:
+    from ..report.figures.drawing import save  # here: only a picture needs matplotlib
+    from ..report.figures.tipping import draw
+
+    usual_across, usual_up = usual_map(case)
+    across, up = usual_across if across is None else across, usual_up if up is None else up
+    with console.progress("doglegs", len(across) * len(up)) as done:
+        found = dogleg_map(case, across, up, limit=limit, relative_tolerance=error, progress=done)
+    save(draw(case, found, limit), output)
+    print(f"{output}: the smallest dogleg that tips it over, by weight and clearance{left_out(found)}")
+
+
+def hysteresis_command(
+    case_file: CaseFile,
+    output: Annotated[Path, typer.Option(metavar="LOOP.png", help="The picture.")],
+    eta_pi: EtaPiRange = None,
+    clearance_mm: ClearanceRange = None,
+    dogleg_deg: Annotated[
+        float,
+        typer.Option(
+            parser=positive,
+            metavar="A",
+            help="Turn of the straight holes over half the BHA before the bit, on the way down, degrees.",
+        ),
+    ] = 0.5,
+    tolerance: Tolerance = None,
+) -> None:
+    """Draw where a ripple dies out on the way up, and returns on the way down.
+
+    What goes up and down is the weight, with --eta-pi, or the clearance, with --clearance-mm.
+    """
+    from ..report.figures.drawing import save  # here: `dogleg` without a picture needs no matplotlib
+    from ..report.figures.hysteresis import draw
+
+    console.check_output(output, (".png",))
+    if (eta_pi is None) == (clearance_mm is None):
+        raise InputError(f"must be given one of --eta-pi and --clearance-mm, got {'both' if eta_pi else 'neither'}")
+    case = load_case(case_file)
+    if eta_pi is not None:
+        name, values = "eta_pi", parse_range("--eta-pi", eta_pi).tolist()
+    else:
+        name = f"stabilizer_clearance[{first_that_touches(case)}]"
+        values = (parse_range("--clearance-mm", clearance_mm or "") / 1e3).tolist()
+    error = tolerance or RELATIVE_TOLERANCE
+    with console.progress("values", 2 * len(values)) as done:
+        found = hysteresis(case, name, values, radians(dogleg_deg), relative_tolerance=error, progress=done)
+    save(draw(case, found), output)
+    print(f"{output}: {loop(case, found)}")
