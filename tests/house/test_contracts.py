@@ -14,6 +14,9 @@ from places import ROOT
 SOURCE_ROOTS = ("model", "fmu_build", "viz")
 
 DOWNWARDS = "Arrows run downwards: viewer, FMU, model"
+INSIDE_MODEL = "Arrows run downwards inside the model"
+INSIDE_FMU = "Arrows run downwards inside the FMU's package"
+CIRCLES = "No circles in any package"
 MODEL = "The model knows nothing of FMI and Rerun"
 CORE = "The core, which travels inside the FMU, needs the standard library only"
 
@@ -31,23 +34,29 @@ def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_the_contract_holds(copy: Path, command: Command) -> None:
     result = command("lint-imports", "--no-cache")
     assert result.returncode == 0, result.stdout
-    for contract in (DOWNWARDS, MODEL, CORE):
+    for contract in (DOWNWARDS, INSIDE_MODEL, INSIDE_FMU, CIRCLES, MODEL, CORE):
         assert f"{contract} KEPT" in result.stdout
 
 
 @pytest.mark.parametrize(
-    ("package", "statement", "contract"),
+    ("module", "statement", "contract"),
     [
-        ("model/boreprop", "import fmpy", MODEL),
-        ("model/boreprop", "import pythonfmu", MODEL),
-        ("model/boreprop", "def late():\n    import rerun", MODEL),
-        ("model/boreprop", "import boreprop_fmu", DOWNWARDS),
-        ("fmu_build/boreprop_fmu", "import boreprop_viz", DOWNWARDS),
-        ("model/boreprop/core", "import numpy", CORE),
+        ("model/boreprop/__init__.py", "import fmpy", MODEL),
+        ("model/boreprop/__init__.py", "import pythonfmu", MODEL),
+        ("model/boreprop/__init__.py", "def late():\n    import rerun", MODEL),
+        ("model/boreprop/__init__.py", "import boreprop_fmu", DOWNWARDS),
+        ("fmu_build/boreprop_fmu/__init__.py", "import boreprop_viz", DOWNWARDS),
+        ("model/boreprop/core/__init__.py", "import numpy", CORE),
+        ("model/boreprop/run/__init__.py", "from boreprop import analysis", INSIDE_MODEL),
+        ("model/boreprop/analysis/summary.py", "from ..report.tables.summary import lines", INSIDE_MODEL),
+        ("model/boreprop/new.py", "", INSIDE_MODEL),
+        ("fmu_build/boreprop_fmu/pack/build.py", "from ..host import drive", INSIDE_FMU),
+        ("model/boreprop/core/linear.py", "def late():\n    from . import beam", CIRCLES),
+        ("viz/boreprop_viz/scene.py", "from . import style", CIRCLES),
     ],
 )
-def test_the_contract_fails_when(copy: Path, command: Command, package: str, statement: str, contract: str) -> None:
-    with (copy / package / "__init__.py").open("a", encoding="utf-8") as file:
+def test_the_contract_fails_when(copy: Path, command: Command, module: str, statement: str, contract: str) -> None:
+    with (copy / module).open("a", encoding="utf-8") as file:
         file.write(f"\n{statement}\n")
     result = command("lint-imports", "--no-cache")
     assert result.returncode == 1, result.stdout

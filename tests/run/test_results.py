@@ -3,6 +3,8 @@
 import csv
 import subprocess
 import sys
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -328,6 +330,36 @@ def test_a_wrong_parquet_file_is_named(tmp_path: Path) -> None:
         read_trajectory(file)
 
 
+def test_a_run_is_a_mapping_from_names_to_columns(trajectory: Trajectory) -> None:
+    assert isinstance(trajectory, Mapping)
+    assert (list(trajectory), len(trajectory)) == (list(trajectory.columns), len(trajectory.columns))
+    assert dict(trajectory.items()).keys() == dict(trajectory).keys() == trajectory.columns.keys()
+    assert "drilled_length" in trajectory
+    assert "depth" not in trajectory
+    assert trajectory.get("depth") is None
+    with pytest.raises(InputError, match=r"^the run must have a column 'depth', got "):
+        trajectory["depth"]
+
+
+def test_a_run_is_told_in_a_line(trajectory: Trajectory) -> None:
+    told = repr(replace(trajectory, stopped="the bit turns over", engine="native"))
+    length = trajectory["drilled_length"][-1]
+    assert told == (
+        f"<Trajectory: {len(trajectory)} columns, {trajectory.row_count} rows over {length:g} m, native engine, "
+        "stopped before its end>"
+    )
+    assert repr(Trajectory(trajectory.columns)).endswith(" m, case not known>")
+
+
+@pytest.mark.parametrize("name", ["run.csv", "run.parquet"])
+@pytest.mark.parametrize("engine", ["native", None])
+def test_a_file_says_which_engine_computed_the_run(
+    trajectory: Trajectory, tmp_path: Path, name: str, engine: str | None
+) -> None:
+    write_trajectory(replace(trajectory, engine=engine), tmp_path / name)
+    assert read_trajectory(tmp_path / name).engine == engine
+
+
 def test_a_name_that_is_neither_csv_nor_parquet_is_refused(trajectory: Trajectory, tmp_path: Path) -> None:
     for use in (lambda path: write_trajectory(trajectory, path), read_trajectory):
         with pytest.raises(InputError, match=r"run\.txt: must end in \.csv or \.parquet, got '\.txt'"):
@@ -339,7 +371,7 @@ def test_without_pyarrow_parquet_says_what_to_install(
     trajectory: Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "pyarrow", None)
-    with pytest.raises(InputError, match=r"run\.parquet: .* pip install 'boreprop\[parquet\]'"):
+    with pytest.raises(InputError, match=r"run\.parquet: .* pip install 'boreprop\[study\]'"):
         write_trajectory(trajectory, tmp_path / "run.parquet")
     assert not list(tmp_path.iterdir())
 

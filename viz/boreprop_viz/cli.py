@@ -1,6 +1,8 @@
 """The command `boreprop-view`: draws runs with Rerun."""
 
+import sys
 from collections import Counter
+from importlib.abc import MetaPathFinder
 from pathlib import Path
 from typing import Annotated, NoReturn
 
@@ -15,6 +17,19 @@ from boreprop.errors import InputError, Stopped
 from boreprop.run.results import SUFFIXES, read_trajectory
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
+
+
+class WithoutPandas(MetaPathFinder):
+    """Says that pandas is not installed.
+
+    pyarrow, on which Rerun builds, would load it to see whether it was given a table of pandas: a third of a second.
+    """
+
+    def find_spec(self, fullname: str, path: object = None, target: object = None) -> None:  # noqa: ARG002
+        """Refuse pandas, and leave all else to the other finders."""
+        if fullname == "pandas":
+            raise ModuleNotFoundError("pandas is not needed here", name=fullname)
+
 
 app = new_app("Runs to look at in Rerun: vertical section, bit frame, ripple, plots over the drilled length.")
 
@@ -63,7 +78,8 @@ def view(
     _version: Version = False,
 ) -> None:
     """Draw runs. A case is simulated first; an FMU is drawn while it runs."""
-    # here: Rerun takes longer to load than to say what is wrong with an option
+    sys.meta_path.insert(0, WithoutPandas())
+    # here: Rerun takes longer to load than it takes to say what is wrong with an option
     from .record import draw
     from .sinks import open_recording
     from .source import Source, live, stored

@@ -49,7 +49,7 @@ class Trajectory(Mapping[str, Floats]):
         length = f" over {self['drilled_length'][-1]:g} m" if self.row_count else ""
         engine = f", {self.engine} engine" if self.engine else ""
         case = "" if self.case else ", case not known"
-        stopped = f", stopped {self.stopped}" if self.stopped else ""
+        stopped = ", stopped before its end" if self.stopped else ""
         return f"<Trajectory: {len(self)} columns, {self.row_count} rows{length}{engine}{case}{stopped}>"
 
     @property

@@ -40,11 +40,11 @@ def mode_line(
 ) -> tuple[str, ...]:
     """A mode in a line, under `MODE_HEADINGS`: its verdict and the root that makes it.
 
-    `here` is the mode that the case is held in, `met` are the contacts that occur.
+    `here` is the mode in which the case drills steadily, `met` are the contacts that occur.
     """
     pairs = [root for root in found.roots if root.imag]
     root = pairs[0] if found.verdict is Verdict.OSCILLATORY else found.roots[0]
-    place = "held here" if (found.contact, found.saturated) == here else "" if found.contact in met else "not met"
+    place = "drills so" if (found.contact, found.saturated) == here else "" if found.contact in met else "not met"
     return (
         ", ".join(map(str, found.contact)) or "none",
         "saturated" if found.saturated else "not saturated",
