@@ -90,30 +90,24 @@ def view(
         raise InputError("--case and --fmu: must be at most one, got both")
     if (viewers := spawn + serve + (connect is not None)) > 1:
         raise InputError(f"--spawn, --serve and --connect: must be at most one, got {viewers}")
-    for option, value in (("--schedule", schedule), ("--step", step), ("--stop", stop)):
-        if value is not None and not any(source.suffix == ".fmu" for source in sources):
-            raise InputError(f"{option}: must come with an FMU to run, got {', '.join(map(str, sources))}")
+    check_that_one_runs(sources, {"--schedule": schedule, "--step": step, "--stop": stop})
     forces = None if schedule is None else read_schedule(schedule)
     planned = None if plan is None else read_survey(plan)
 
-    stopped: list[Stopped] = []  # runs that came to less than their end: what there is of them is drawn
+    stopped: list[Stopped] = []
 
     def open_source(name: str, path: Path) -> Source:
         if path.suffix == ".fmu":
             from boreprop_fmu.host.drive import Run  # here: only an FMU needs fmpy
 
             return live(name, Run(path, forces, step=step, stop=stop), planned)
-        try:
-            run = load_run(path, case, fmu)
-        except Stopped as error:
-            if error.trajectory is None:
-                raise
+        run, error = drawable(path, case, fmu)
+        if error:
             stopped.append(error)
-            run = error.trajectory
         try:
             return stored(name, run, planned)
-        except InputError as error:
-            raise InputError(f"{path}: {error}") from error
+        except InputError as wrong:
+            raise InputError(f"{path}: {wrong}") from wrong
 
     opened = [open_source(name, path) for name, path in zip(names(sources), sources, strict=True)]
     rows = sum(source.rows for source in opened)
@@ -127,6 +121,25 @@ def view(
         print(f"{save}: {rows} rows, {save.stat().st_size / 1e6:.1f} MB")
     if stopped:
         raise stopped[0]
+
+
+def check_that_one_runs(sources: list[Path], options: dict[str, object]) -> None:
+    """Raise `InputError` if one of the options for running an FMU is given without an FMU to run."""
+    if any(source.suffix == ".fmu" for source in sources):
+        return
+    for option, value in options.items():
+        if value is not None:
+            raise InputError(f"{option}: must come with an FMU to run, got {', '.join(map(str, sources))}")
+
+
+def drawable(source: Path, case: Path | None, fmu: Path | None) -> tuple[Trajectory, Stopped | None]:
+    """The run in a file or of a case file, as far as it goes, and what it raised if that is not to its end."""
+    try:
+        return load_run(source, case, fmu), None
+    except Stopped as error:
+        if error.trajectory is None:
+            raise
+        return error.trajectory, error
 
 
 def names(sources: list[Path]) -> list[str]:

@@ -60,7 +60,7 @@ def _draw_map(case: Case, output: Path, across: Floats | None, up: Floats | None
     with console.progress("doglegs", len(across) * len(up)) as done:
         found = dogleg_map(case, across, up, limit=limit, relative_tolerance=error, progress=done)
     save(draw(case, found, limit), output)
-    print(f"{output}: the smallest dogleg that tips it over, by weight and clearance{left_out(found)}")
+    print(f"{output}: the smallest kink that starts rippling, over weight and clearance{left_out(found)}")
 
 
 def hysteresis_command(

@@ -1,4 +1,4 @@
-"""A run in a table."""
+"""A run in a table: a dozen numbers."""
 
 from math import degrees
 

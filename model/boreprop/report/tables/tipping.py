@@ -14,7 +14,7 @@ def lines(case: Case, found: Mapping[int, CriticalDogleg | str], limit: float) -
     """The lines of a table; `found` by side, or why a run stopped; `limit` the largest turn that was tried, rad."""
     return [
         (
-            f"dogleg that makes it ripple, turning {SIDES[side]}",
+            f"smallest kink that starts rippling, turning {SIDES[side]}",
             f"not known: {one}" if isinstance(one, str) else _amount(one, case.bha.half_length, limit),
         )
         for side, one in found.items()
