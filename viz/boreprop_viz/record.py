@@ -99,7 +99,7 @@ def draw(
                 rec.send_blueprint(blueprint(seen, tracks))
             flush(rec)  # what came before: it would pile up in memory if the disk is slow
             stream.send(stretch)
-            done += len(stretch.rows)
+            done += stretch.rows.row_count
             progress(done)
         verdicts[i] = stream.verdict()
         log_card(rec, sources, verdicts)

@@ -131,6 +131,6 @@ def hole_columns(length: Array, hole: Hole, case: Case, plan: Survey | None) -> 
 
 def pieces(whole: Stretch) -> Iterator[Stretch]:
     """A stretch in batches."""
-    for first in range(0, len(whole.rows), BATCH):
+    for first in range(0, whole.rows.row_count, BATCH):
         columns = {name: column[first : first + BATCH] for name, column in whole.rows.columns.items()}
         yield replace(whole, rows=replace(whole.rows, columns=columns))
