@@ -332,7 +332,7 @@ def test_a_kernel_older_than_its_sources_is_not_used(case: Case, monkeypatch: py
 
 
 def test_an_engine_that_there_is_none_is_refused(case: Case) -> None:
-    with pytest.raises(ParameterError, match="engine: must be python or native, got 'fortran'"):
+    with pytest.raises(ParameterError, match="engine: must be auto, native or python, got 'fortran'"):
         simulate(case, engine="fortran")
 
 
