@@ -33,8 +33,8 @@ else:
     begin = perf_counter()
     for _ in run:
         pass
-rate = len(run) / (perf_counter() - begin)
-print(rate, sizes[-1][1] - next(size for done, size in sizes if done > len(run) / 4) if sizes else 0)
+rate = run.row_count / (perf_counter() - begin)
+print(rate, sizes[-1][1] - next(size for done, size in sizes if done > run.row_count / 4) if sizes else 0)
 """
 
 

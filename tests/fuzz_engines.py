@@ -150,7 +150,7 @@ def compare(case: Case, tolerance: float, found: Finding) -> None:
     interval = min(case.length, COMPARED) / 100
     python, native = (drilled(case, tolerance, engine, interval) for engine in ("python", "native"))
     bad = differing(python, native, AGREEMENT)
-    sure = native.rows
+    sure = native.row_count
     if bad.any() or not same_end(python, native):
         bha, positions = case.bha, case.bha.stabilizer_positions
         longer = tuple(position * (1 + i * HAIR) for i, position in enumerate(positions))
@@ -158,9 +158,9 @@ def compare(case: Case, tolerance: float, found: Finding) -> None:
         other = drilled(replace(case, bha=moved_bha), tolerance, "native", interval)
         moved = differing(other, native, AGREEMENT / 10)
         sure = int(np.argmax(moved)) if moved.any() else len(moved)
-        if sure == native.rows and same_end(other, native) and not same_end(python, native):
+        if sure == native.row_count and same_end(other, native) and not same_end(python, native):
             found.fault = f"python: {python.stopped or 'no stop'}; native: {native.stopped or 'no stop'}"
-    found.rows, found.uncompared = min(sure, len(bad)), native.rows - min(sure, len(bad))
+    found.rows, found.uncompared = min(sure, len(bad)), native.row_count - min(sure, len(bad))
     if bad[:sure].any():
         row = int(np.argmax(bad))
         found.fault = f"the engines differ at {native['drilled_length'][row]:g} m"

@@ -6,17 +6,18 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated
 
+import typer
 from pythonfmu.builder import FmuBuilder
 
 from boreprop.case.file import load_case
 from boreprop.cli import console
-from boreprop.cli.console import typer
+from boreprop.cli.lazy import new_app
 from boreprop.replacing import replacing
 from boreprop_fmu.pack.build import build_fmu
 
 HERE = Path(__file__).parent
 
-app = console.new_app("Pack the controller and the borehole as an SSP.")
+app = new_app("Pack the controller and the borehole as an SSP.")
 
 
 @app.command()

@@ -4,11 +4,12 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
+import typer
 from matplotlib.figure import Figure
 
 from boreprop.case.tables import read_survey
 from boreprop.cli import console
-from boreprop.cli.console import typer
+from boreprop.cli.lazy import new_app
 from boreprop.replacing import replacing
 from boreprop.report.figures.paper import COLOURS
 from boreprop.run.results import read_trajectory
@@ -17,7 +18,7 @@ PLAN = Path(__file__).parents[1] / "build_section_plan.csv"
 TOLERANCE = 0.5  # deg, to be kept after the first SETTLING m
 SETTLING = 60.0
 
-app = console.new_app("Draw runs of the closed loop.")
+app = new_app("Draw runs of the closed loop.")
 
 
 @app.command()

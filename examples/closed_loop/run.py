@@ -18,12 +18,14 @@ from xml.etree import ElementTree
 
 import fmpy
 import numpy as np
+import typer
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave
 from fmpy.ssp.ssd import read_ssd
 
 from boreprop.cli import console
-from boreprop.cli.console import positive, typer
+from boreprop.cli.lazy import new_app
+from boreprop.cli.options import positive
 from boreprop.core.quantities import INPUTS, OUTPUTS, scalar_names
 from boreprop.errors import InputError
 from boreprop.run.results import SUFFIXES, write_trajectory
@@ -36,7 +38,7 @@ EXPERIMENT = "{http://ssp-standard.org/SSP1/SystemStructureDescription}DefaultEx
 FIXED_STEP = "{http://opensimulationplatform.com/SSP/OSPAnnotations}FixedStepAlgorithm"
 NANOSECONDS = 1_000_000_000  # libcosim's times are integers
 
-app = console.new_app("The closed loop of controller and borehole.")
+app = new_app("The closed loop of controller and borehole.")
 
 
 class Importer(StrEnum):

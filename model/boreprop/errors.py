@@ -12,6 +12,12 @@ class InputError(BorepropError, ValueError):
     """What a user gave cannot be used. The message is one line: file, key, constraint, value."""
 
 
+class MissingColumn(InputError, KeyError):
+    """A run lacks a column. The message names it, and those that there are."""
+
+    __str__ = Exception.__str__  # that of a KeyError puts the message in quotes
+
+
 class RootsNotFound(BorepropError):
     """Some of the roots of a mode could not be found. The message says how many, and what helps."""
 

@@ -36,8 +36,7 @@ from boreprop.core.quantities import MAX_STABILIZERS
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly, Scaled, eta_pi, scale
 from boreprop.report.figures.steering import draw
-from boreprop.report.tables.steering import lines as table_lines
-from boreprop.report.tables.steering import piece_lines, summarize, warnings
+from boreprop.report.tables.steering import lines, piece_lines, summarize, warnings
 from boreprop.run.simulate import simulate
 from conftest import Command
 from places import EXAMPLES
@@ -440,23 +439,23 @@ def test_the_table_warns_near_and_beyond_the_reversal_and_where_the_tilt_is_at_i
 
 def test_the_table_has_the_numbers_in_kilonewtons_and_degrees(build_section: Case) -> None:
     summary = summarize(build_section, radians(53.43), 31e3)
-    told = dict(table_lines(summary))
+    told = dict(lines(summary))
     assert told["force that holds the inclination"] == f"{summary.holding[0].rss_force / 1e3:+.2f} kN"
     free = summary.free.build_rate * DEGREES_PER_30_M
     assert told["build rate without force"] == f"{free:+.2f} °/30 m, on a wall: 1 low, 2 low"
-    lines = piece_lines(summary.curve)
-    assert lines[1][0] == "+15.20…+18.29"
-    assert [line[4] for line in lines] == ["1 low, 2 low", "2 low", "1 high, 2 low"]
+    pieces = piece_lines(summary.curve)
+    assert pieces[1][0] == "+15.20…+18.29"
+    assert [line[4] for line in pieces] == ["1 low, 2 low", "2 low", "1 high, 2 low"]
     weight_per_eta_pi = build_section.active_weight_on_bit / summary.eta_pi
-    for line, piece in zip(lines, summary.curve, strict=True):
+    for line, piece in zip(pieces, summary.curve, strict=True):
         weight = piece.reversal_eta_pi * weight_per_eta_pi
         assert line[5] == f"{weight / 1e3:.4g} ({piece.reversal_eta_pi:.3g})"
 
 
 def test_unless_told_the_table_is_for_the_end_of_the_hole(case: Case) -> None:
     curved = replace(case, survey=Survey((0.0, 30.0), (0.2, 0.6)))
-    assert dict(table_lines(summarize(curved)))["inclination at which the weight acts"] == f"{degrees(0.6):.2f} °"
-    assert dict(table_lines(summarize(curved, 0.4)))["inclination at which the weight acts"] == f"{degrees(0.4):.2f} °"
+    assert dict(lines(summarize(curved)))["inclination at which the weight acts"] == f"{degrees(0.6):.2f} °"
+    assert dict(lines(summarize(curved, 0.4)))["inclination at which the weight acts"] == f"{degrees(0.4):.2f} °"
 
 
 @pytest.mark.parametrize(
@@ -476,7 +475,7 @@ def test_unless_told_the_forces_are_those_of_the_schedule_or_thirty_kilonewtons(
 def test_where_gravity_leaves_nothing_out_the_table_prints_no_rounding(
     build_section: Case, inclination_deg: float
 ) -> None:
-    told = dict(table_lines(summarize(build_section, radians(inclination_deg))))
+    told = dict(lines(summarize(build_section, radians(inclination_deg))))
     left_out = told["left out: gravity changes along the arc"]
     assert re.fullmatch(r"(less than 0\.01|up to \d+\.\d\d) °/30 m", left_out)
     assert "-0.00" not in " ".join(told.values())

@@ -33,7 +33,7 @@ from boreprop.case.parameters import parameters
 from boreprop.cli.ranges import parse_axis, parse_distribution, parse_each
 from boreprop.core.system import eta_pi
 from boreprop.errors import InputError
-from boreprop.report.tables.study import lines, sentence
+from boreprop.report.tables.study import lines, outcome
 from boreprop.run.results import write_trajectory
 from boreprop.run.simulate import simulate
 from boreprop.run.workers import work
@@ -212,7 +212,7 @@ def test_a_study_of_which_every_case_fails_says_so() -> None:
     ):
         results = study(cases, workers=1)
         assert lines(results, [0.5]) == []
-        assert sentence(results).startswith(
+        assert outcome(results).startswith(
             "2 cases, 2 failed (the first: stabilizer_clearance[1]: must be >= 0, got -0.00"
         )
 

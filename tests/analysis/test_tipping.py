@@ -26,7 +26,8 @@ from boreprop.case.paper import LENGTH_SCALE, paper_case
 from boreprop.core.drilling import Drilling
 from boreprop.core.errors import ParameterError
 from boreprop.core.survey import Survey
-from boreprop.report.tables.tipping import left_out, lines, loop
+from boreprop.report.tables.hysteresis import loop
+from boreprop.report.tables.tipping import left_out, lines
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Stopped, Trajectory
 from conftest import Command

@@ -1,7 +1,7 @@
 """The command `boreprop`, as a user meets it: its own process, its exit status, its one line of error."""
 
-import inspect
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -12,16 +12,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from boreprop import engine
+import boreprop_fmu.cli
 from boreprop.case.file import load_case
 from boreprop.cli import app, console
+from boreprop.cli.lazy import new_app
 from boreprop.core.errors import ParameterError, TableError
 from boreprop.errors import InputError, RootsNotFound
-from boreprop.run.results import read_trajectory
+from boreprop.run.engines import engine
+from boreprop.run.results import read_trajectory, write_trajectory
+from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Stopped
-from boreprop_fmu.cli import app as fmu_app
 from conftest import Command, assert_refused
 from places import ROOT
+
+EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
 
 
 @pytest.mark.parametrize(
@@ -127,7 +131,7 @@ def test_simulate_writes_a_row_at_each_multiple_of_the_sample_interval(
     for name in ("run.csv", "run.parquet"):
         result = command("boreprop", "simulate", paper_case, "--output", name, *arguments)
         assert (result.returncode, result.stderr) == (0, "")
-        assert result.stdout == f"{name}: 7 rows over 2 m, {engine()} engine\n"
+        assert result.stdout == f"{name}: 7 rows over 2 m ({engine()} engine)\n"
     run = read_trajectory(tmp_path / "run.csv")
     np.testing.assert_array_equal(run["drilled_length"], [0.3 * k for k in range(7)])
     assert run.case is not None
@@ -135,17 +139,74 @@ def test_simulate_writes_a_row_at_each_multiple_of_the_sample_interval(
     assert run.case.bha == load_case(paper_case).bha
     parquet = read_trajectory(tmp_path / "run.parquet")
     assert parquet.case == run.case
-    for name, column in run.columns.items():
+    assert parquet.engine == run.engine == engine()
+    for name, column in run.items():
         np.testing.assert_array_equal(parquet[name], column)
     assert {file.name for file in tmp_path.iterdir()} == {"run.csv", "run.case.toml", "run.parquet"}
 
 
-def test_simulate_loads_nothing_slow_that_it_does_not_use(tmp_path: Path, paper_case: Path) -> None:
-    found = loaded(
-        "boreprop.cli.app", "simulate", str(paper_case), "--output", str(tmp_path / "run.csv"), "--length", "1"
-    )
-    assert "numpy" in found
-    assert not found & {"pandas", "scipy", "matplotlib", "pyarrow", "rich", "fmpy"}
+HEAVY = {"fmpy", "matplotlib", "numpy", "pandas", "pyarrow", "pydantic", "rerun", "rich", "scipy", "xarray"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "loaded"),
+    [
+        (["--help"], set()),
+        (["simulate", "CASE", "--output", "OUT", "--length", "1"], {"numpy", "pydantic"}),
+        (["summary", "RUN"], {"numpy", "pydantic", "rich", "scipy"}),
+        (["roots", "CASE"], {"numpy", "pydantic", "rich", "scipy"}),
+    ],
+    ids=lambda value: value[0] if isinstance(value, list) else "",
+)
+def test_a_command_loads_nothing_slow_that_it_does_not_use(
+    tmp_path: Path, paper_case: Path, arguments: list[str], loaded: set[str]
+) -> None:
+    files = {"CASE": paper_case, "RUN": tmp_path / "run.csv", "OUT": tmp_path / "out.csv"}
+    write_trajectory(simulate(load_case(paper_case), length=1.0), files["RUN"])
+    command = [sys.executable, "-X", "importtime", "-m", "boreprop.cli.app"]
+    given = [str(files.get(argument, argument)) for argument in arguments]
+    result = subprocess.run([*command, *given], capture_output=True, text=True, check=True)
+    names = {line.rpartition("|")[2].strip().partition(".")[0] for line in result.stderr.splitlines()}
+    assert names & HEAVY == loaded
+
+
+@pytest.mark.parametrize("commands", [app.COMMANDS, boreprop_fmu.cli.COMMANDS])
+def test_the_list_of_commands_says_what_each_says_of_itself(commands: dict[str, tuple[str, str]]) -> None:
+    for name, (module, summary) in commands.items():
+        command = getattr(import_module(module), f"{name}_command")
+        assert command.__doc__.splitlines()[0] == summary
+
+
+def test_a_command_that_is_misspelt_is_guessed(command: Command) -> None:
+    assert_refused(command("boreprop", "simulat"), "simulat", "Did you mean 'simulate'?")
+
+
+@pytest.mark.parametrize(
+    ("program", "arguments", "package", "extra"),
+    [
+        ("boreprop.cli.app", ["figures", "out"], "matplotlib", "plot"),
+        ("boreprop_fmu.cli", ["run", "Borehole.fmu", "--output", "run.csv"], "fmpy", "fmu"),
+        ("boreprop_viz.cli", ["run.csv"], "rerun", "viz"),
+    ],
+)
+def test_without_its_extra_a_command_says_what_to_install(
+    tmp_path: Path, program: str, arguments: list[str], package: str, extra: str
+) -> None:
+    text = f"import sys; sys.modules[{package!r}] = None; from {program} import main; main()"
+    result = subprocess.run([sys.executable, "-c", text, *arguments], cwd=tmp_path, capture_output=True, text=True)
+    assert_refused(result, package, f"pip install 'boreprop[{extra}]'")
+    assert extra in EXTRAS
+
+
+def test_every_extra_that_a_message_names_exists() -> None:
+    named = {
+        extra
+        for folder in ("model", "fmu_build", "viz", "examples")
+        for path in (ROOT / folder).rglob("*")
+        if path.suffix in (".py", ".md")
+        for extra in re.findall(r"boreprop\[(\w+)\]", path.read_text(encoding="utf-8"))
+    }
+    assert named | set(console.EXTRAS.values()) <= set(EXTRAS)
 
 
 def test_the_version(command: Command) -> None:
@@ -159,44 +220,15 @@ def test_figures_refuses_a_directory_that_is_a_file(command: Command, tmp_path: 
     assert (tmp_path / "out").read_text() == "mine"
 
 
-def test_what_only_an_extra_brings_is_named_with_the_extra(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    with pytest.raises(SystemExit):
-        run_raising(ModuleNotFoundError("No module named 'rerun.x'", name="rerun.x"), monkeypatch)
-    assert "pip install 'boreprop[viz]'" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("package", sorted(set(console.EXTRAS.values())))
-def test_the_extras_that_are_named_exist(package: str) -> None:
-    assert package in tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
-
-
-@pytest.mark.parametrize("commands", [app.COMMANDS, fmu_app.COMMANDS])
-def test_the_help_lists_each_command_with_the_first_line_of_its_own(commands: dict[str, tuple[str, str]]) -> None:
-    for name, (module, line) in commands.items():
-        assert (inspect.getdoc(getattr(import_module(module), name)) or "").splitlines()[0] == line
-
-
-def loaded(*arguments: str) -> set[str]:
-    """The packages that a command loads."""
-    command = [sys.executable, "-X", "importtime", "-m", *arguments]
-    result = subprocess.run(command, capture_output=True, text=True, check=True)
-    return {line.rpartition("|")[2].strip().partition(".")[0] for line in result.stderr.splitlines()}
-
-
-def test_the_help_loads_nothing_slow() -> None:
-    slow = {"numpy", "scipy", "rich", "pydantic", "matplotlib", "pyarrow", "rerun", "fmpy"}
-    for module in ("boreprop.cli.app", "boreprop_fmu.cli.app", "boreprop_viz.cli"):
-        assert not loaded(module, "--help") & slow
-
-
 def run_raising(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
+    one = new_app("An application with one command.")
+
+    @one.command()
     def fails() -> None:
         raise error
 
     monkeypatch.setattr(sys, "argv", ["fails"])
-    console.run(console.one_command(fails))
+    console.run(one)
 
 
 @pytest.mark.parametrize(

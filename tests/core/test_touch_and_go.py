@@ -40,11 +40,11 @@ def assert_both_engines_agree(case: Case, tolerance: float = 1e-7) -> None:
 def test_each_near_bit_bha_that_stopped_drills_on() -> None:
     assert len(NEAR_BIT["fails"]) == 30
     for entry in NEAR_BIT["fails"]:
-        assert simulate(near_bit_case(entry), sample_interval=15.0, engine="native").rows == 101
+        assert simulate(near_bit_case(entry), sample_interval=15.0, engine="native").row_count == 101
 
 
 def test_the_case_file_that_stopped_drills_on() -> None:
-    assert simulate(load_case(FIELD / "fail.toml"), sample_interval=5.0, engine="native").rows == 101
+    assert simulate(load_case(FIELD / "fail.toml"), sample_interval=5.0, engine="native").row_count == 101
 
 
 def test_a_touch_shorter_than_the_first_point_of_a_step_is_the_same_in_both_engines() -> None:
@@ -60,7 +60,7 @@ def test_what_comes_after_such_a_touch_does_not_depend_on_the_tolerance() -> Non
 
 
 def test_a_kink_nearer_than_the_shortest_step_far_down_the_hole_is_passed() -> None:
-    assert simulate(near_bit_case(FAR_DOWN, 1400.0), sample_interval=14.0, engine="native").rows == 101
+    assert simulate(near_bit_case(FAR_DOWN, 1400.0), sample_interval=14.0, engine="native").row_count == 101
 
 
 def test_python_passes_a_kink_nearer_than_the_shortest_step() -> None:

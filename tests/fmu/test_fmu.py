@@ -156,7 +156,7 @@ def test_the_command_runs_the_packed_schedule_exactly_whatever_the_step(
         *scalar_names(OUTPUTS, 2),
     ]
     np.testing.assert_allclose(run["time"], 1.5 * np.arange(14), rtol=0, atol=0)
-    rows = [{name: run[name][k] for name in scalar_names(OUTPUTS, 2)} for k in range(run.rows)]
+    rows = [{name: run[name][k] for name in scalar_names(OUTPUTS, 2)} for k in range(run.row_count)]
     assert_agrees(rows, expected, 1e-9)
     np.testing.assert_array_equal(run["rss_force"], expected["rss_force"])
 

@@ -217,7 +217,7 @@ def test_the_rate_of_penetration_is_that_of_the_rows_to_come(
 
 def test_columns_that_are_there_stay_as_they_are_and_come_first(runs: dict[int, Trajectory]) -> None:
     run = without(runs[3], "rss_force", "displacement", "stabilizer_contact")
-    columns = {name: np.full(run.rows, 0.01) for name in run if name != "average_inclination[2]"}
+    columns = {name: np.full(run.row_count, 0.01) for name in run.columns if name != "average_inclination[2]"}
     columns["drilled_length"] = run["drilled_length"]
     back = complete(Trajectory(columns, run.case))
     assert list(back.columns)[: len(columns)] == list(columns)

@@ -3,6 +3,8 @@
 import csv
 import subprocess
 import sys
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -84,7 +86,7 @@ def test_a_run_without_a_case_does_not_inherit_the_case_of_the_run_that_it_repla
 
 def test_the_number_of_stabilizers_and_their_columns_in_order(trajectory: Trajectory) -> None:
     without_case = Trajectory(dict(reversed(trajectory.columns.items())))
-    assert (trajectory.n, without_case.n, trajectory.rows) == (2, 2, 5)
+    assert (trajectory.n, without_case.n, trajectory.row_count) == (2, 2, 5)
     inclinations = without_case.stack("average_inclination")
     np.testing.assert_array_equal(inclinations[:, 0], trajectory["average_inclination[1]"])
     np.testing.assert_array_equal(inclinations[:, 1], trajectory["average_inclination[2]"])
@@ -326,6 +328,36 @@ def test_a_wrong_parquet_file_is_named(tmp_path: Path) -> None:
     file.write_bytes(b"drilled_length\n0\n")
     with pytest.raises(InputError, match=r"run\.parquet: must be a readable Parquet file, got: "):
         read_trajectory(file)
+
+
+def test_a_run_is_a_mapping_from_names_to_columns(trajectory: Trajectory) -> None:
+    assert isinstance(trajectory, Mapping)
+    assert (list(trajectory), len(trajectory)) == (list(trajectory.columns), len(trajectory.columns))
+    assert dict(trajectory.items()).keys() == dict(trajectory).keys() == trajectory.columns.keys()
+    assert "drilled_length" in trajectory
+    assert "depth" not in trajectory
+    assert trajectory.get("depth") is None
+    with pytest.raises(InputError, match=r"^the run must have a column 'depth', got "):
+        trajectory["depth"]
+
+
+def test_a_run_is_told_in_a_line(trajectory: Trajectory) -> None:
+    told = repr(replace(trajectory, stopped="the bit turns over", engine="native"))
+    length = trajectory["drilled_length"][-1]
+    assert told == (
+        f"<Trajectory: {len(trajectory)} columns, {trajectory.row_count} rows over {length:g} m, native engine, "
+        "stopped before its end>"
+    )
+    assert repr(Trajectory(trajectory.columns)).endswith(" m, case not known>")
+
+
+@pytest.mark.parametrize("name", ["run.csv", "run.parquet"])
+@pytest.mark.parametrize("engine", ["native", None])
+def test_a_file_says_which_engine_computed_the_run(
+    trajectory: Trajectory, tmp_path: Path, name: str, engine: str | None
+) -> None:
+    write_trajectory(replace(trajectory, engine=engine), tmp_path / name)
+    assert read_trajectory(tmp_path / name).engine == engine
 
 
 def test_a_name_that_is_neither_csv_nor_parquet_is_refused(trajectory: Trajectory, tmp_path: Path) -> None:

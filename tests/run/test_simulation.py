@@ -15,7 +15,7 @@ from boreprop.core.errors import ParameterError
 from boreprop.core.quantities import INPUTS, OUTPUTS, scalar_names
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
-from boreprop.report.tables.summary import lines, what_becomes_of
+from boreprop.report.tables.summary import lines, whether_it_ripples
 from boreprop.run.simulate import simulate
 from boreprop_viz.card import in_words
 from places import EXAMPLES
@@ -218,7 +218,7 @@ def test_a_summary_says_which_waves_the_rows_cannot_show(interval: float, length
     ids=[*State],
 )
 def test_what_becomes_of_a_wave_in_words(wave: Rippling, words: str, card: str) -> None:
-    assert (what_becomes_of(wave), in_words(wave)) == (words, card)
+    assert (whether_it_ripples(wave), in_words(wave)) == (words, card)
 
 
 def test_a_case_of_numpy_numbers_runs_like_one_of_floats(case: Case) -> None:

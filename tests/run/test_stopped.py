@@ -51,7 +51,7 @@ def test_the_whole_rows_so_far_are_those_of_a_run_that_ends_before(case: Case, p
     assert rows.stopped == str(error)
     assert rows.case == pushed
     before = simulate(replace(case, length=3.3), engine=engine)
-    assert before.rows == KEPT
+    assert before.row_count == KEPT
     assert list(rows.columns) == list(before.columns)
     for name, column in before.columns.items():
         np.testing.assert_array_equal(rows[name], column, err_msg=name)
@@ -62,14 +62,14 @@ def test_progress_makes_no_difference_to_what_is_kept(pushed: Case) -> None:
     with pytest.raises(Stopped) as caught:
         simulate(pushed, progress=seen.append, engine="native")
     assert caught.value.trajectory is not None
-    assert caught.value.trajectory.rows == KEPT
+    assert caught.value.trajectory.row_count == KEPT
     assert max(seen) == 3.35
 
 
 def test_it_travels_between_processes(pushed: Case) -> None:
     error, rows = stopped(pushed)
     there = pickle.loads(pickle.dumps(error))
-    assert (str(there), there.trajectory.rows) == (str(error), rows.rows)
+    assert (str(there), there.trajectory.row_count) == (str(error), rows.row_count)
 
 
 @pytest.mark.parametrize("name", ["run.csv", "run.parquet"])
@@ -106,7 +106,7 @@ def test_simulate_ends_with_3_and_one_line_and_keeps_the_rows(command: Command, 
     assert "after 3.3" in done.stderr
     assert "the bit turns over at 3.35" in done.stderr
     run = read_trajectory(pushed_file.with_name(name))
-    assert run.rows == KEPT
+    assert run.row_count == KEPT
     assert run.stopped is not None
     assert run.stopped in done.stderr
     told = command("boreprop", "summary", name)

@@ -116,7 +116,7 @@ def test_what_is_not_installed_is_named_with_its_extra(
     run: Trajectory, package: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, package, None)
-    with pytest.raises(InputError, match=rf"{package} must be installed .* 'boreprop\[notebook\]', got: "):
+    with pytest.raises(InputError, match=rf"{package} must be installed .* 'boreprop\[viz\]', got: "):
         show(run)
 
 

@@ -89,7 +89,7 @@ def test_the_axis_of_the_bit_is_tilted_against_the_hole_within_its_limits(
     bit, hole, limits = angles("bit_axis"), angles("hole_axis"), angles("limits")
     np.testing.assert_allclose((bit - hole)[:, 0], run["bit_tilt"], atol=1e-6)
     limit = case.bit.tilt_limit
-    np.testing.assert_allclose(limits - hole, np.tile([-limit, limit], (run.rows, 1)), atol=1e-6)
+    np.testing.assert_allclose(limits - hole, np.tile([-limit, limit], (run.row_count, 1)), atol=1e-6)
     labels = read(recorded, "bit_frame/tilt/label", "Points2D:labels").values()
     shown = [float(label.removeprefix("ψ ").removesuffix("°")) for [label] in labels]
     np.testing.assert_allclose(shown, np.degrees(run["bit_tilt"]), atol=0.0051)
@@ -101,7 +101,7 @@ def test_the_blades_have_their_clearance_from_the_wall(
     blades = stacked(recorded, "bit_frame/stabilizers", "LineStrips2D:strips")
     widths = (blades[:, :, 1, 0] - blades[:, :, 0, 0]) / scales.lateral
     clearances = np.array([*case.bha.stabilizer_clearances, 0.0])
-    np.testing.assert_allclose(widths, np.tile(case.bit_diameter - 2 * clearances, (run.rows, 1)), atol=1e-6)
+    np.testing.assert_allclose(widths, np.tile(case.bit_diameter - 2 * clearances, (run.row_count, 1)), atol=1e-6)
     np.testing.assert_allclose(-blades[0, :, 0, 1], case.bha.stabilizer_positions, rtol=1e-6)
 
 
@@ -185,7 +185,7 @@ def test_a_lane_changes_where_the_mode_does(
         [lane_now] = changes.get(int(tick), [lane_now])
         shown.append(lane_now)
     assert shown == [words[int(mode)] for mode in run[column]]
-    assert 2 < len(changes) < run.rows
+    assert 2 < len(changes) < run.row_count
 
 
 def test_the_ripple_is_shown_as_far_as_its_trend_is_known(recorded: Path, run: Trajectory, case: Case) -> None:
@@ -286,7 +286,7 @@ def test_a_run_that_stands_still_is_drawn(run: Trajectory, tmp_path: Path) -> No
     twice = Trajectory({name: np.repeat(column, 2) for name, column in run.columns.items()}, run.case)
     record(twice, save=tmp_path / "twice.rrd")
     pieces = stacked(tmp_path / "twice.rrd", "vertical_section/drilled_hole", "LineStrips2D:strips")
-    assert len(pieces) == run.rows - 1
+    assert len(pieces) == run.row_count - 1
 
 
 @pytest.mark.parametrize(
@@ -311,7 +311,7 @@ def test_the_command_draws_a_run_with_the_case_that_stands_beside_it(
     write_trajectory(run, tmp_path / "run.csv")
     done = command("boreprop-view", "run.csv", "--save", "run.rrd")
     assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.startswith(f"run.rrd: {run.rows} rows, ")
+    assert done.stdout.startswith(f"run.rrd: {run.row_count} rows, ")
     shown = stacked(tmp_path / "run.rrd", "plots/bit_tilt/bit_tilt", "Scalars:scalars")[:, 0]
     np.testing.assert_array_equal(shown, np.degrees(run["bit_tilt"]))
 

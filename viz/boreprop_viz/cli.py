@@ -1,30 +1,51 @@
 """The command `boreprop-view`: draws runs with Rerun."""
 
+import sys
+from importlib.abc import MetaPathFinder
 from pathlib import Path
 from typing import Annotated, NoReturn
 
 import typer
 
 from boreprop.cli import console
-from boreprop.cli.options import positive
+from boreprop.cli.lazy import new_app
+from boreprop.cli.options import Version, positive
 from boreprop.errors import InputError
+
+
+class WithoutPandas(MetaPathFinder):
+    """Says that pandas is not installed.
+
+    pyarrow, on which Rerun builds, would load it to see whether it was given a table of pandas: a third of a second.
+    """
+
+    def find_spec(self, fullname: str, path: object = None, target: object = None) -> None:  # noqa: ARG002
+        """Refuse pandas, and leave all else to the other finders."""
+        if fullname == "pandas":
+            raise ModuleNotFoundError("pandas is not needed here", name=fullname)
+
+
+app = new_app("Runs to look at in Rerun: vertical section, bit frame, ripple, plots over the drilled length.")
 
 
 def main() -> NoReturn:
     """Run the command `boreprop-view`."""
-    console.run(console.one_command(view))
+    console.run(app)
 
 
+@app.command()
 def view(
     sources: Annotated[
         list[Path],
         typer.Argument(
             metavar="RUN.csv|RUN.parquet|CASE.toml|Borehole.fmu…",
-            help="Runs of any FMI tool, cases to run, FMUs to run and show while they run; several as overlays.",
+            help="Runs of any FMI tool, cases to simulate, FMUs to run and show while they run. Several are drawn over "
+            "one another.",
         ),
     ],
     case: Annotated[
-        Path | None, typer.Option(metavar="CASE.toml", help="The runs' case, if not the one that they come with.")
+        Path | None,
+        typer.Option(metavar="CASE.toml", help="The case of the runs. Default: the one that they come with."),
     ] = None,
     fmu: Annotated[
         Path | None, typer.Option(metavar="Borehole.fmu", help="The FMU that made the runs, with its case.")
@@ -33,31 +54,33 @@ def view(
         Path | None, typer.Option(metavar="PLAN.csv", help="The planned hole: measured_depth, inclination_deg.")
     ] = None,
     schedule: Annotated[
-        Path | None, typer.Option(metavar="S.csv", help="RSS force over drilled length, for an FMU.")
+        Path | None, typer.Option(metavar="S.csv", help="Steering force over drilled length, for an FMU.")
     ] = None,
     step: Annotated[
         float | None, typer.Option(parser=positive, metavar="S", help="Communication step, s, for an FMU.")
     ] = None,
-    stop: Annotated[float | None, typer.Option(parser=positive, metavar="T", help="End, s, for an FMU.")] = None,
-    save: Annotated[Path | None, typer.Option(metavar="X.rrd", help="The recording to write.")] = None,
-    spawn: Annotated[bool, typer.Option("--spawn", help="Show it in a new viewer; what happens by default.")] = False,
-    serve: Annotated[bool, typer.Option("--serve", help="Show it in the browser, until Ctrl-C.")] = False,
-    connect: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Show it in the viewer at rerun+http://HOST:PORT/proxy.")
+    stop: Annotated[
+        float | None, typer.Option(parser=positive, metavar="T", help="Time at the end, s, for an FMU.")
     ] = None,
-    _version: console.Version = False,
+    save: Annotated[Path | None, typer.Option(metavar="X.rrd", help="The recording to write.")] = None,
+    spawn: Annotated[bool, typer.Option("--spawn", help="Show it in a new viewer: the default.")] = False,
+    serve: Annotated[bool, typer.Option("--serve", help="Show it in the browser until Ctrl-C.")] = False,
+    connect: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="Show it in the viewer that listens at rerun+http://HOST:PORT/proxy."),
+    ] = None,
+    _version: Version = False,
 ) -> None:
-    """Draw runs in Rerun; a case is drilled first, an FMU drills while it is drawn."""
+    """Draw runs. A case is simulated first; an FMU is drawn while it runs."""
     if save is not None:
         console.check_output(save, (".rrd",))
     if case is not None and fmu is not None:
         raise InputError("--case and --fmu: must be at most one, got both")
     if (viewers := spawn + serve + (connect is not None)) > 1:
         raise InputError(f"--spawn, --serve and --connect: must be at most one, got {viewers}")
-    for option, value in (("--schedule", schedule), ("--step", step), ("--stop", stop)):
-        if value is not None and not any(source.suffix == ".fmu" for source in sources):
-            raise InputError(f"{option}: must come with an FMU to run, got {', '.join(map(str, sources))}")
-    from .view import show  # here: Rerun takes longer to load than --help should
+    check_that_one_runs(sources, {"--schedule": schedule, "--step": step, "--stop": stop})
+    sys.meta_path.insert(0, WithoutPandas())
+    from .view import show  # here: Rerun takes longer to load than it takes to say what is wrong with an option
 
     show(
         sources,
@@ -72,6 +95,15 @@ def view(
         serve=serve,
         connect=connect,
     )
+
+
+def check_that_one_runs(sources: list[Path], options: dict[str, object]) -> None:
+    """Raise `InputError` if one of the options for running an FMU is given without an FMU to run."""
+    if any(source.suffix == ".fmu" for source in sources):
+        return
+    for option, value in options.items():
+        if value is not None:
+            raise InputError(f"{option}: must come with an FMU to run, got {', '.join(map(str, sources))}")
 
 
 if __name__ == "__main__":

@@ -49,7 +49,7 @@ def show(
         import rerun_notebook  # noqa: F401  # Rerun does without until it shows something
         from rerun.notebook import Viewer
     except ModuleNotFoundError as error:
-        message = f"show: {error.name} must be installed for this: pip install 'boreprop[all]', got: {error}"
+        message = f"show: {error.name} must be installed for this: pip install 'boreprop[viz]', got: {error}"
         raise InputError(message) from error
     from .record import draw, find_sources
     from .sinks import APPLICATION
@@ -66,12 +66,12 @@ def show(
 def by_name(runs: tuple[Trajectory | Mapping[str, Trajectory], ...]) -> dict[str, Trajectory]:
     """The runs by name: as in the mapping, else run, or run 1, run 2, …; `InputError` if they are no runs."""
     match runs:
+        case [Trajectory() as run]:
+            named = {"run": run}
         case [Mapping() as mapping]:
             named = dict(mapping)
-        case [run]:
-            named = {"run": run}
         case _:
-            named = {f"run {k}": run for k, run in enumerate(runs, start=1)}
+            named = {f"run {k}": run for k, run in enumerate(runs, start=1)}  # type: ignore[misc]  # checked below
     if not named or not all(isinstance(run, Trajectory) for run in named.values()):
         got = ", ".join(type(run).__name__ for run in named.values()) or "none"
         raise InputError(f"show: must be given runs, or one mapping from names to runs, got {got}")

@@ -117,7 +117,7 @@ def draw(
                 rec.send_blueprint(blueprint(scales, tracks))
             flush(rec)  # what came before: it would pile up in memory if the disk is slow
             stream.send(stretch)
-            done += len(stretch.rows)
+            done += stretch.rows.row_count
             progress(done)
         findings[i] = stream.finding()
         log_card(rec, sources, findings)

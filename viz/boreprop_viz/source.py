@@ -109,7 +109,7 @@ def stored(name: str, run: Trajectory, plan: Survey | None = None, *, batch: int
     run = complete(run)
     case = case_of(run)
     [whole] = stretches([run], case, plan)
-    return Source(name, case, run.rows, whole.rows, live=False, stretches=pieces(whole, batch))
+    return Source(name, case, run.row_count, whole.rows, live=False, stretches=pieces(whole, batch))
 
 
 def live(name: str, run: LiveRun, plan: Survey | None = None, *, batch: int = BATCH) -> Source:

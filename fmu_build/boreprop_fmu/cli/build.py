@@ -14,17 +14,21 @@ from boreprop.kernel.compiler import PLATFORMS
 from ..pack.build import build_fmu
 
 
-def build(
+def build_command(
     case_file: CaseFile,
     output: Annotated[Path, typer.Option(metavar="Borehole.fmu", help="The FMU.")],
     runtime: Annotated[
-        str, typer.Option(metavar="python|native", help="What runs in it: Python, which the host has, or machine code.")
+        str,
+        typer.Option(
+            metavar="python|native",
+            help="What computes in it: python, for which its host needs Python, or native, compiled code.",
+        ),
     ] = "python",
     platforms: Annotated[
         str | None,
         typer.Option(
             metavar="linux64,win64,…|all|none",
-            help="What native code is compiled for, instead of this machine; none: only the C sources are packed.",
+            help="What native code is compiled for; none: only the C sources are packed. Default: this machine.",
         ),
     ] = None,
 ) -> None:
@@ -46,4 +50,5 @@ def _contents(fmu: Path) -> list[str]:
     with ZipFile(fmu) as archive:
         folders = [name.split("/")[:2] for name in archive.namelist()]
     binaries = sorted({path[1] for path in folders if path[0] == "binaries"})
-    return [*binaries, "C sources"] if any(path[0] == "sources" for path in folders) else binaries
+    has_sources = any(path[0] == "sources" for path in folders)
+    return [*binaries, "C sources"] if has_sources else binaries

@@ -14,24 +14,28 @@ from boreprop.run.trajectory import Stopped
 from ..host.drive import FmuRun
 
 
-def run(
+def run_command(
     fmu: Annotated[Path, typer.Argument(metavar="Borehole.fmu", help="An FMU with our variable names.")],
     output: Annotated[Path, typer.Option(metavar="RUN.csv", help="The result file, .csv or .parquet.")],
     schedule: Annotated[
-        Path | None, typer.Option(metavar="S.csv", help="RSS force over drilled length, instead of the packed one.")
+        Path | None,
+        typer.Option(
+            metavar="S.csv", help="Steering force over drilled length. Default: the schedule packed in the FMU."
+        ),
     ] = None,
     step: Annotated[
-        float | None, typer.Option(parser=positive, metavar="S", help="Communication step, s. Default: the FMU's own.")
+        float | None,
+        typer.Option(parser=positive, metavar="S", help="Communication step, s. Default: the FMU's own."),
     ] = None,
     stop: Annotated[
-        float | None, typer.Option(parser=positive, metavar="T", help="End, s. Default: the FMU's own.")
+        float | None, typer.Option(parser=positive, metavar="T", help="Time at the end, s. Default: the FMU's own.")
     ] = None,
     tolerance: Tolerance = None,
 ) -> None:
-    """Run an FMU through fmpy.
+    """FmuRun an FMU and write the run to a file.
 
-    Rows are at k times the step, k = 0, 1, … If the FMU cannot go on to the end, the rows so far are written all the
-    same; the exit status is then 3.
+    Its rows are at whole multiples of the communication step, from 0. If the FMU cannot go on to the end, the rows so
+    far are written all the same; the exit status is then 3.
     """
     console.check_output(output, SUFFIXES)
     forces = None if schedule is None else read_schedule(schedule)
@@ -44,4 +48,4 @@ def run(
             write_trajectory(stopped.trajectory, output)
         raise
     write_trajectory(trajectory, output)
-    print(f"{output}: {trajectory.rows} rows over {trajectory['drilled_length'][-1]:g} m")
+    print(f"{output}: {trajectory.row_count} rows over {trajectory['drilled_length'][-1]:g} m")

@@ -1,27 +1,31 @@
-"""The command `boreprop`."""
+"""The command `boreprop`: the commands that it has, and where they are."""
 
 from typing import NoReturn
 
-from .console import many_commands, run
+from . import console
+from .lazy import new_group
 
-COMMANDS = {  # name: its module, and the line about it in the help
-    "simulate": ("boreprop.cli.simulate", "Drill a case and write the run to a file."),
+COMMANDS = {  # name → module and what it does
+    "simulate": ("boreprop.cli.simulate", "Simulate a case and write the run to a file."),
     "summary": ("boreprop.cli.summary", "Print a run in a dozen numbers."),
     "steering": ("boreprop.cli.steering", "Print how fast a steady steering force turns the hole, and draw it."),
-    "roots": ("boreprop.cli.stability", "Print what becomes of small disturbances of a straight hole."),
-    "stability": ("boreprop.cli.stability", "Draw where a straight hole is stable, drifts or oscillates."),
-    "dogleg": ("boreprop.cli.tipping", "Print the smallest kink in the existing hole that starts rippling."),
-    "hysteresis": ("boreprop.cli.tipping", "Draw where a ripple dies out, and where it comes back."),
-    "study": ("boreprop.cli.study", "Drill many cases on all cores: a grid, or uncertain parameters."),
-    "figures": ("boreprop.cli.figures", "Draw the paper's figures 6, 7 and 8."),
+    "study": ("boreprop.cli.study", "Simulate many cases on all cores: over a grid, or of uncertain parameters."),
+    "dogleg": (
+        "boreprop.cli.tipping",
+        "Print the smallest kink in the existing hole that starts rippling, and map it.",
+    ),
+    "hysteresis": ("boreprop.cli.tipping", "Draw where a ripple dies out on the way up, and returns on the way down."),
+    "roots": ("boreprop.cli.stability", "Print whether each mode of a case is stable, drifts or oscillates."),
+    "stability": ("boreprop.cli.stability", "Draw the stability chart of a case over ηΠ and λ₂, and print its limits."),
+    "figures": ("boreprop.cli.figures", "Draw the paper's figures 6, 7 and 8 (PNG)."),
 }
 
-app = many_commands("Borehole propagation of a directional drilling system.", COMMANDS)
+app = new_group("Borehole propagation of a directional drilling system.", COMMANDS)
 
 
 def main() -> NoReturn:
     """Run the command `boreprop`."""
-    run(app)
+    console.run(app)
 
 
 if __name__ == "__main__":

@@ -9,8 +9,10 @@ from ..report.figures.paper import make_figures
 from . import console
 
 
-def figures(output: Annotated[Path, typer.Argument(metavar="OUT/", help="The directory to put them in.")]) -> None:
-    """Draw the paper's figures 6, 7 and 8."""
+def figures_command(
+    output: Annotated[Path, typer.Argument(metavar="OUT/", help="The directory to put them in.")],
+) -> None:
+    """Draw the paper's figures 6, 7 and 8 (PNG)."""
     output.mkdir(parents=True, exist_ok=True)
     with console.progress("figures", 1.0) as done:
         make_figures(output, done)

@@ -1,5 +1,6 @@
-"""Options and arguments that several commands have, and how their texts are read."""
+"""Options that several commands share, and the texts that they take."""
 
+from importlib.metadata import version
 from math import inf, nan
 from pathlib import Path
 from typing import Annotated
@@ -29,19 +30,44 @@ def tolerance(text: str) -> float:
     return value
 
 
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        print(version("boreprop"))
+        raise typer.Exit
+
+
+Version = Annotated[
+    bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit.")
+]
+"""The option --version: ``version: Version = False``."""
+
 CaseFile = Annotated[Path, typer.Argument(metavar="CASE.toml", help="The case file.")]
+"""The argument CASE.toml: ``case_file: CaseFile``."""
+
 Tolerance = Annotated[
     float | None,
     typer.Option(
         parser=tolerance,
         metavar="X",
-        help="Local error of a step of the integrator, over 1 rad and ℓ₁. Default: 1e-7.",
+        help="Local error allowed in one step of the integrator, relative to 1 rad and to the length ℓ₁ from the bit "
+        "to the first stabilizer. Default: 1e-7.",
     ),
 ]
 """The option --tolerance of a command that drills: ``tolerance: Tolerance = None``."""
-Engine = Annotated[
-    str,
+
+Inclination = Annotated[
+    float | None,
     typer.Option(
-        metavar="auto|native|python", help="The model as compiled code or in Python; auto: the faster one here."
+        metavar="A", help="Inclination of the straight hole, degrees. Default: that at the end of the existing hole."
     ),
 ]
+"""The option --inclination-deg: ``inclination_deg: Inclination = None``."""
+
+EtaPiRange = Annotated[str | None, typer.Option(metavar="START:STOP:COUNT", help="Values of ηΠ.")]
+"""The option --eta-pi of a command that takes many: ``eta_pi: EtaPiRange = None``; see `ranges.parse_range`."""
+
+ClearanceRange = Annotated[
+    str | None,
+    typer.Option(metavar="START:STOP:COUNT", help="Clearances of the first stabilizer that can touch the wall, mm."),
+]
+"""The option --clearance-mm: ``clearance_mm: ClearanceRange = None``; see `ranges.parse_range`."""

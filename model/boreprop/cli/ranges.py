@@ -1,8 +1,8 @@
-"""Values that are given as text: START:STOP:COUNT, lists, distributions."""
+"""The numbers and distributions that texts on the command line stand for."""
 
 from collections.abc import Callable, Iterable
 from math import inf, nan
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -12,7 +12,28 @@ from ..errors import InputError
 
 T = TypeVar("T")
 
-MOST_VALUES = 5000  # on an axis of a picture: more than its pixels
+MOST_VALUES = 5000  # on an axis of a picture: more than it has pixels
+
+DISTRIBUTIONS: dict[str, tuple[str, Callable[..., tuple[float, ...]]]] = {
+    "normal": ("norm", lambda mean, deviation: (mean, deviation)),
+    "lognormal": ("lognorm", lambda median, deviation_of_log: (deviation_of_log, 0.0, median)),
+    "uniform": ("uniform", lambda low, high: (low, high - low)),
+    "triangular": ("triang", lambda low, mode, high: ((mode - low) / (high - low), low, high - low)),
+}
+"""Name → the name in scipy.stats and, from our arguments, those that it takes."""
+
+
+def parse_range(option: str, text: str) -> Floats:
+    """The evenly spaced values that START:STOP:COUNT stands for; `InputError` names the `option`."""
+    try:
+        start, stop, count = text.split(":")
+        low, high, number = float(start), float(stop), int(count)
+    except ValueError:
+        low, high, number = nan, nan, 0
+    if not (0 < low < high < inf and 2 <= number <= MOST_VALUES):
+        constraint = f"START:STOP:COUNT with 0 < START < STOP and COUNT from 2 to {MOST_VALUES}"
+        raise InputError(f"{option}: must be {constraint}, got {text!r}")
+    return np.linspace(low, high, number)
 
 
 def parse_each(parse: Callable[[str], tuple[str, T]], texts: Iterable[str]) -> dict[str, T]:
@@ -24,19 +45,6 @@ def parse_each(parse: Callable[[str], tuple[str, T]], texts: Iterable[str]) -> d
             raise InputError(f"{name}: must be varied once, got {text!r} besides")
         found[name] = value
     return found
-
-
-def parse_range(option: str, text: str) -> Floats:
-    """The values that START:STOP:COUNT stands for; `InputError` names the `option`."""
-    try:
-        start, stop, count = text.split(":")
-        low, high, number = float(start), float(stop), int(count)
-    except ValueError:
-        low, high, number = nan, nan, 0
-    if not (0 < low < high < inf and 2 <= number <= MOST_VALUES):
-        constraint = f"START:STOP:COUNT with 0 < START < STOP and COUNT from 2 to {MOST_VALUES}"
-        raise InputError(f"{option}: must be {constraint}, got {text!r}")
-    return np.linspace(low, high, number)
 
 
 def parse_axis(text: str) -> tuple[str, Floats]:
@@ -51,46 +59,18 @@ def parse_axis(text: str) -> tuple[str, Floats]:
         raise InputError(f"--vary: must be NAME=START:STOP:COUNT or NAME=VALUE,VALUE,…, got {text!r}") from error
 
 
-def _normal(mean: float, deviation: float) -> Distribution:
-    from scipy.stats import norm
-
-    return norm(mean, deviation)
-
-
-def _lognormal(median: float, deviation_of_log: float) -> Distribution:
-    from scipy.stats import lognorm
-
-    return lognorm(deviation_of_log, scale=median)
-
-
-def _uniform(low: float, high: float) -> Distribution:
-    from scipy.stats import uniform
-
-    return uniform(low, high - low)
-
-
-def _triangular(low: float, mode: float, high: float) -> Distribution:
-    from scipy.stats import triang
-
-    return triang((mode - low) / (high - low), low, high - low)
-
-
-DISTRIBUTIONS: dict[str, Callable[..., Distribution]] = {
-    "normal": _normal,
-    "lognormal": _lognormal,
-    "uniform": _uniform,
-    "triangular": _triangular,
-}
-
-
 def parse_distribution(text: str) -> tuple[str, Distribution]:
     """Name and distribution of "NAME=normal(MEAN,DEVIATION)" or another of `DISTRIBUTIONS`; `InputError` if neither."""
+    from scipy import stats  # here: it takes longer to load than a small grid to compute, which needs none of it
+
     name, _, call = text.partition("=")
-    kind, _, arguments = call.strip().partition("(")
+    kind, _, numbers = call.strip().partition("(")
     try:
-        if kind not in DISTRIBUTIONS or not arguments.endswith(")"):
+        if kind not in DISTRIBUTIONS or not numbers.endswith(")"):
             raise ValueError
-        distribution = DISTRIBUTIONS[kind](*map(float, arguments[:-1].split(",")))
+        scipy_name, scipy_arguments = DISTRIBUTIONS[kind]
+        family: Any = getattr(stats, scipy_name)
+        distribution: Distribution = family(*scipy_arguments(*map(float, numbers[:-1].split(","))))
         if not np.isfinite(distribution.ppf(0.5)):
             raise ValueError
     except (ArithmeticError, TypeError, ValueError) as error:

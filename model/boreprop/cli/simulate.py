@@ -8,19 +8,18 @@ import typer
 
 from ..case.file import load_case
 from ..core.checks import check_number
-from ..core.propagation import RELATIVE_TOLERANCE
+from ..core.options import RELATIVE_TOLERANCE
 from ..errors import InputError
-from ..run import simulate as runs
 from ..run.results import SUFFIXES, case_path, write_trajectory
-from ..run.simulate import SAMPLE_INTERVAL
+from ..run.simulate import SAMPLE_INTERVAL, simulate
 from ..run.trajectory import Stopped
 from . import console
-from .options import CaseFile, Engine, Tolerance, positive
+from .options import CaseFile, Tolerance, positive
 
-MAX_ROWS = 10_000_000
+MAX_ROWS = 10_000_000  # a file of some gigabytes
 
 
-def simulate(
+def simulate_command(
     case_file: CaseFile,
     output: Annotated[Path, typer.Option(metavar="RUN.csv", help="The result file, .csv or .parquet.")],
     sample_interval: Annotated[
@@ -29,13 +28,20 @@ def simulate(
     length: Annotated[
         float | None, typer.Option(parser=positive, metavar="M", help="Length to drill, m. Default: the case's.")
     ] = None,
-    engine: Engine = "auto",
+    engine: Annotated[
+        str,
+        typer.Option(
+            metavar="auto|native|python",
+            help="What computes: native, compiled code; python, the same model in Python, many times slower; auto, "
+            "native where it is there.",
+        ),
+    ] = "auto",
     tolerance: Tolerance = None,
 ) -> None:
-    """Drill a case and write the run to a file.
+    """Simulate a case and write the run to a file.
 
-    Rows are at k times the sample interval, k = 0, 1, … If the run cannot go on to its end, the rows so far are written
-    all the same; the exit status is then 3.
+    Its rows are at whole multiples of the sample interval, from 0. If the run cannot go on to its end, the rows so far
+    are written all the same; the exit status is then 3.
     """
     console.check_output(output, SUFFIXES)
     if case_path(output).resolve() == case_file.resolve():
@@ -46,7 +52,7 @@ def simulate(
     check_number("--sample-interval", sample_interval, at_least=case.length / MAX_ROWS)
     try:
         with console.progress("drilling", case.length) as drilled:
-            run = runs.simulate(
+            trajectory = simulate(
                 case,
                 sample_interval=sample_interval,
                 relative_tolerance=tolerance or RELATIVE_TOLERANCE,
@@ -57,5 +63,5 @@ def simulate(
         if stopped.trajectory is not None:
             write_trajectory(stopped.trajectory, output)
         raise
-    write_trajectory(run, output)
-    print(f"{output}: {run.rows} rows over {case.length:g} m, {run.engine} engine")
+    write_trajectory(trajectory, output)
+    print(f"{output}: {trajectory.row_count} rows over {case.length:g} m ({trajectory.engine} engine)")

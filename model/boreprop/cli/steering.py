@@ -5,27 +5,21 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
-from rich.table import Table
 
 from ..case.file import load_case
 from ..core.checks import check_number
 from ..report.tables.steering import HEADINGS, lines, piece_lines, summarize
 from . import console
-from .options import CaseFile, positive
+from .options import CaseFile, Inclination, positive
+from .printing import print_table
 
 
-def steering(
+def steering_command(
     case_file: CaseFile,
     output: Annotated[
         Path | None, typer.Option(metavar="STEERING.png", help="Draw build rate against force into this file.")
     ] = None,
-    inclination_deg: Annotated[
-        float | None,
-        typer.Option(
-            metavar="A", help="Inclination at which the weight acts, degrees. Default: that at the end of the hole."
-        ),
-    ] = None,
+    inclination_deg: Inclination = None,
     force_limit: Annotated[
         float | None,
         typer.Option(
@@ -42,14 +36,10 @@ def steering(
         check_number("--inclination-deg", inclination_deg)
     case = load_case(case_file)
     summary = summarize(case, None if inclination_deg is None else radians(inclination_deg), force_limit)
-    table, pieces = Table(str(case_file), ""), Table(*HEADINGS)
-    for line in lines(summary):
-        table.add_row(*line)
-    for cells in piece_lines(summary.curve):
-        pieces.add_row(*cells)
-    Console().print(table, pieces)
+    print_table(lines(summary), (str(case_file), ""))
+    print_table(piece_lines(summary.curve), HEADINGS)
     if output is not None:
-        from ..report.figures.drawing import save  # here: matplotlib takes longer to load than all else to compute
+        from ..report.figures.drawing import save  # here: only a picture needs matplotlib
         from ..report.figures.steering import draw
 
         save(draw(summary), output)

@@ -5,38 +5,43 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
-from rich.table import Table
 
+from ..analysis.study.cluster import on_cluster
 from ..analysis.study.design import Study, grid, sample
-from ..analysis.study.run import key_figures, run
+from ..analysis.study.figures import key_figures
+from ..analysis.study.run import study
 from ..case.file import load_case
 from ..core.checks import check_number
 from ..errors import InputError
-from ..report.tables.study import lines, sentence
+from ..report.tables.study import lines, outcome
 from . import console
-from .options import Tolerance
+from .options import CaseFile, Tolerance
+from .printing import print_table
 from .ranges import parse_axis, parse_distribution, parse_each
 
-GRID_QUANTILES = {"least": 0.0, "median": 0.5, "largest": 1.0}
-SAMPLE_QUANTILES = {"10 %": 0.1, "50 %": 0.5, "90 %": 0.9}
+QUANTILES_OF_GRID = {"least": 0.0, "median": 0.5, "largest": 1.0}
+QUANTILES_OF_SAMPLE = {"10 %": 0.1, "50 %": 0.5, "90 %": 0.9}
 
 
-def study(
-    case_file: Annotated[Path, typer.Argument(metavar="CASE.toml", help="The case file: what the cases share.")],
+def study_command(
+    case_file: CaseFile,
     output: Annotated[
-        Path, typer.Option(metavar="STUDY.parquet", help="The file of results. If it is there, the study goes on.")
+        Path,
+        typer.Option(metavar="STUDY.parquet", help="The file of results. If it exists already, the study goes on."),
     ],
     vary: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME=START:STOP:COUNT", help="An axis of a grid, or NAME=VALUE,VALUE,…; may come again."),
+        typer.Option(
+            metavar="NAME=START:STOP:COUNT",
+            help="An axis of a grid, or NAME=VALUE,VALUE,…; may be given several times.",
+        ),
     ] = None,
     uncertain: Annotated[
         list[str] | None,
         typer.Option(
             metavar="NAME=normal(MEAN,DEVIATION)",
-            help="What a parameter is drawn from, also lognormal(MEDIAN,DEVIATION OF THE LOG), uniform(LOW,HIGH) or "
-            "triangular(LOW,MODE,HIGH); may come again.",
+            help="The distribution of an uncertain parameter, also lognormal(MEDIAN,DEVIATION OF THE LOG), "
+            "uniform(LOW,HIGH) or triangular(LOW,MODE,HIGH); may be given several times.",
         ),
     ] = None,
     draws: Annotated[int, typer.Option("--sample", metavar="N", help="Number of draws.")] = 200,
@@ -44,9 +49,12 @@ def study(
     workers: Annotated[
         int | None, typer.Option(metavar="K", help="Number of processes. Default: one for each core.")
     ] = None,
+    dask: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Compute on the workers of a Dask scheduler, tcp://HOST:PORT.")
+    ] = None,
     tolerance: Tolerance = None,
 ) -> None:
-    """Drill many cases on all cores: a grid, or uncertain parameters.
+    """Simulate many cases on all cores: over a grid, or of uncertain parameters.
 
     NAME is an input or parameter of the case in SI units (stabilizer_clearance[1]), eta_pi or bit_tilt_limit_deg.
     """
@@ -55,25 +63,24 @@ def study(
     check_number("--seed", seed, at_least=0)
     if workers is not None:
         check_number("--workers", workers, at_least=1)
+    if dask is not None and workers is not None:
+        raise InputError(f"--workers: must not be given with --dask, whose workers compute, got {workers}")
     cases = _cases(case_file, vary or [], uncertain or [], draws, seed)
     figures = key_figures if tolerance is None else partial(key_figures, relative_tolerance=tolerance)
     try:
-        with console.progress("cases", len(cases)) as done:
-            results = run(cases, figures, output=output, workers=workers, progress=done)
+        with on_cluster(dask) as executor, console.progress("cases", len(cases)) as done:
+            results = study(cases, figures, output=output, executor=executor, workers=workers, progress=done)
     except KeyboardInterrupt:
         if output.exists():
             console.warn(f"{output}: keeps the cases that are done; the same command goes on from there")
         raise
-    quantiles = SAMPLE_QUANTILES if uncertain else GRID_QUANTILES
-    table = Table(str(output), *quantiles)
-    for line in lines(results, quantiles.values()):
-        table.add_row(*line)
-    Console().print(table)
-    print(f"{output}: {sentence(results)}")
+    quantiles = QUANTILES_OF_SAMPLE if uncertain else QUANTILES_OF_GRID
+    print_table(lines(results, quantiles.values()), (str(output), *quantiles))
+    print(f"{output}: {outcome(results)}")
 
 
 def _cases(case_file: Path, vary: list[str], uncertain: list[str], draws: int, seed: int) -> Study:
-    """The cases of a study: a grid, or a sample."""
+    """The cases of the study: a grid, or a sample."""
     if bool(vary) == bool(uncertain):
         raise InputError(f"must be given either --vary or --uncertain, got {'both' if vary else 'neither'}")
     case = load_case(case_file)

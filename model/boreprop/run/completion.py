@@ -6,6 +6,7 @@ give goes nowhere else, as a hundredth of a degree in ⟨Θ⟩_i is tens of newt
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from math import floor, log10
 from typing import Any, NamedTuple
 
@@ -46,11 +47,11 @@ def complete(run: Trajectory) -> Trajectory:
     InputError
         If the run lacks its case, drilled_length, or one of the `INDISPENSABLE` that nothing determines.
     """
-    known = Known(run, case_of(run))
-    while known.add(ROW_BY_ROW):
+    columns = KnownColumns(run, case_of(run))
+    while columns.add(ROW_BY_ROW):
         pass
-    known.add(ALONG_THE_HOLE)
-    completed = Trajectory(known.columns, run.case)
+    columns.add(ALONG_THE_HOLE)
+    completed = replace(run, columns=columns.by_name)
     for name in INDISPENSABLE:
         completed.stack(name)  # raises if it is not there
     return completed
@@ -63,85 +64,85 @@ def case_of(run: Trajectory) -> Case:
     return run.case
 
 
-class Known:
-    """The columns known so far, by the names of variables: (rows,), or (rows, n) or (rows, n − 1) by stabilizer."""
+class KnownColumns:
+    """The columns known so far, by the names of quantities: (rows,), or (rows, n) or (rows, n − 1) by stabilizer."""
 
     def __init__(self, run: Trajectory, case: Case) -> None:
-        self.columns, self.rows = dict(run.columns), run.rows
+        self.by_name, self.row_count = dict(run), run.row_count
         self.case, self.scaled = case, scale(case.bha, case.bit)
         self.beam = Beam(self.scaled)
         self.length, self.force = case.bha.length_scale, case.bha.force_scale  # ℓ₁, F*
 
     def __contains__(self, name: str) -> bool:
-        return all(scalar in self.columns for scalar in self._scalars(name))
+        return all(scalar in self.by_name for scalar in self._scalars(name))
 
     def __getitem__(self, name: str) -> Array:
-        values = [self.columns[scalar] for scalar in self._scalars(name)]
+        values = [self.by_name[scalar] for scalar in self._scalars(name)]
         if name == "time" or BY_NAME[name].size == "1":
             return values[0]
-        return np.column_stack(values) if values else np.empty((self.rows, 0))
+        return np.column_stack(values) if values else np.empty((self.row_count, 0))
 
     def _scalars(self, name: str) -> list[str]:
         return [name] if name == "time" else BY_NAME[name].names(len(self.scaled.s))
 
     def add(self, formulas: "tuple[Formula, ...]") -> bool:
         """Add what formulas give that is not there, from what is; whether that was anything."""
-        before = len(self.columns)
+        before = len(self.by_name)
         for formula in formulas:
             if formula.gives not in self and all(name in self for name in formula.needs):
                 values = formula.values(self)
                 if values is not None:
                     for scalar, column in zip(self._scalars(formula.gives), np.atleast_2d(values.T), strict=True):
-                        self.columns.setdefault(scalar, column)
-        return len(self.columns) > before
+                        self.by_name.setdefault(scalar, column)
+        return len(self.by_name) > before
 
 
 class Formula(NamedTuple):
-    """How a variable follows from others; `values` gives None where those of this run do not determine it."""
+    """How a quantity follows from others; `values` gives None where those of this run do not determine it."""
 
     gives: str
     needs: tuple[str, ...]
-    values: Callable[[Known], Array | None]
+    values: Callable[[KnownColumns], Array | None]
 
 
 # Row by row. The core's formulas of the beam are plain arithmetic: they take columns for floats.
 
 
-def eta_pi(known: Known) -> Array:
+def eta_pi(columns: KnownColumns) -> Array:
     """ηΠ = η (Π F*)/F*, (3) and (9)."""
-    return known.case.bit.lateral_steering_resistance * known["active_weight_on_bit"] / known.force
+    return columns.case.bit.lateral_steering_resistance * columns["active_weight_on_bit"] / columns.force
 
 
-def active_weight_on_bit(known: Known) -> Array:
+def active_weight_on_bit(columns: KnownColumns) -> Array:
     """Π F*, (3) and (9)."""
-    return known["eta_pi"] * known.force / known.case.bit.lateral_steering_resistance
+    return columns["eta_pi"] * columns.force / columns.case.bit.lateral_steering_resistance
 
 
-def bit_inclination(known: Known) -> Array:
+def bit_inclination(columns: KnownColumns) -> Array:
     """θ = Θ + ψ, (16)."""
-    return known["borehole_inclination"] + known["bit_tilt"]
+    return columns["borehole_inclination"] + columns["bit_tilt"]
 
 
-def borehole_inclination(known: Known) -> Array:
+def borehole_inclination(columns: KnownColumns) -> Array:
     """Θ = θ − ψ, (16)."""
-    return known["bit_inclination"] - known["bit_tilt"]
+    return columns["bit_inclination"] - columns["bit_tilt"]
 
 
-def bit_tilt(known: Known) -> Array:
+def bit_tilt(columns: KnownColumns) -> Array:
     """ψ = θ − Θ, (16)."""
-    return known["bit_inclination"] - known["borehole_inclination"]
+    return columns["bit_inclination"] - columns["borehole_inclination"]
 
 
-def bit_tilt_from_force(known: Known) -> Array:
+def bit_tilt_from_force(columns: KnownColumns) -> Array:
     """ψ = clip(F_0/(ηΠ), −ψ*, ψ*), (10) and (11)."""
-    psi_star = known.scaled.psi_star
-    return np.clip(known["bit_lateral_force"] / known.force / known["eta_pi"], -psi_star, psi_star)
+    psi_star = columns.scaled.psi_star
+    return np.clip(columns["bit_lateral_force"] / columns.force / columns["eta_pi"], -psi_star, psi_star)
 
 
-def bit_tilt_saturation(known: Known) -> Array:
+def bit_tilt_saturation(columns: KnownColumns) -> Array:
     """The side on which ψ is at its limit ±ψ*, (11)."""
-    psi = known["bit_tilt"]
-    return np.where(np.abs(psi) >= (1 - AT_LIMIT) * known.scaled.psi_star, np.sign(psi), 0.0)
+    psi = columns["bit_tilt"]
+    return np.where(np.abs(psi) >= (1 - AT_LIMIT) * columns.scaled.psi_star, np.sign(psi), 0.0)
 
 
 class LoadColumns(NamedTuple):
@@ -152,74 +153,75 @@ class LoadColumns(NamedTuple):
     sin_Theta_1: Any
 
 
-def loads(known: Known, rss_force: Any) -> LoadColumns:
+def loads(columns: KnownColumns, rss_force: Any) -> LoadColumns:
     """e_i = Σ_{k≤i} λ_k (⟨Θ⟩_k − θ), F_RSS and sin⟨Θ⟩_1."""
-    averages = known["average_inclination"]
-    turns = (averages - known["bit_inclination"][:, None]) * known.scaled.lambda_
-    return LoadColumns(list(np.cumsum(turns, axis=1).T), rss_force / known.force, np.sin(averages[:, 0]))
+    averages = columns["average_inclination"]
+    turns = (averages - columns["bit_inclination"][:, None]) * columns.scaled.lambda_
+    return LoadColumns(list(np.cumsum(turns, axis=1).T), rss_force / columns.force, np.sin(averages[:, 0]))
 
 
-def contacts(known: Known) -> Any:
+def contacts(columns: KnownColumns) -> Any:
     """F_1 … F_{n−1}, in columns."""
-    return list(known["stabilizer_force"].T / known.force)
+    return list(columns["stabilizer_force"].T / columns.force)
 
 
-def bit_lateral_force(known: Known, rss_force: Any) -> Any:
+def bit_lateral_force(columns: KnownColumns, rss_force: Any) -> Any:
     """F_0 under an RSS force, (14)."""
-    at = loads(known, rss_force)
-    return known.force * known.beam.bit_force(at.e[-1], contacts(known), at.F_rss, at.sin_Theta_1)
+    at = loads(columns, rss_force)
+    return columns.force * columns.beam.bit_force(at.e[-1], contacts(columns), at.F_rss, at.sin_Theta_1)
 
 
-def bit_moment(known: Known, rss_force: Any) -> Any:
+def bit_moment(columns: KnownColumns, rss_force: Any) -> Any:
     """M_0 = −M under an RSS force, (17)."""
-    at = loads(known, rss_force)
-    return -known.force * known.length * known.beam.bit_moment(at.e[-1], contacts(known), at.F_rss, at.sin_Theta_1)
+    at = loads(columns, rss_force)
+    M = columns.beam.bit_moment(at.e[-1], contacts(columns), at.F_rss, at.sin_Theta_1)
+    return -columns.force * columns.length * M
 
 
-def rss_force_from_force(known: Known) -> Array | None:
+def rss_force_from_force(columns: KnownColumns) -> Array | None:
     """F_RSS from the balance (14) of forces at the bit."""
-    rest = known["bit_lateral_force"] - bit_lateral_force(known, 0.0)
-    return rounded_force(known, rest, known.beam.F0_rss)
+    rest = columns["bit_lateral_force"] - bit_lateral_force(columns, 0.0)
+    return rounded_force(columns, rest, columns.beam.F0_rss)
 
 
-def rss_force_from_moment(known: Known) -> Array | None:
+def rss_force_from_moment(columns: KnownColumns) -> Array | None:
     """F_RSS from the balance (17) of moments at the bit."""
-    rest = known["bit_moment"] - bit_moment(known, 0.0)
-    return rounded_force(known, rest, -known.length * known.beam.M_rss)
+    rest = columns["bit_moment"] - bit_moment(columns, 0.0)
+    return rounded_force(columns, rest, -columns.length * columns.beam.M_rss)
 
 
-def rounded_force(known: Known, rest: Array, per_force: float) -> Array | None:
+def rounded_force(columns: KnownColumns, rest: Array, per_force: float) -> Array | None:
     """The RSS force that a balance leaves, rid of rounding; None where the pads are at a support that bears it all."""
     if per_force == 0.0:
         return None
-    decimals = -floor(log10(FORCE_ROUNDING * known.force))
+    decimals = -floor(log10(FORCE_ROUNDING * columns.force))
     return np.round(rest / per_force, decimals)
 
 
-def stabilizer_force(known: Known) -> Array:
+def stabilizer_force(columns: KnownColumns) -> Array:
     """F_i from the contacts that satisfy (7) and (21)."""
-    modes, columns = Modes(known.scaled), loads(known, known["rss_force"])
-    contact = (0,) * len(known.scaled.y_star)
-    values = np.empty((known.rows, len(contact)))
-    for k, (*e, F_rss, sine) in enumerate(np.column_stack((*columns.e, columns.F_rss, columns.sin_Theta_1)).tolist()):
+    modes, bending = Modes(columns.scaled), loads(columns, columns["rss_force"])
+    contact = (0,) * len(columns.scaled.y_star)
+    values = np.empty((columns.row_count, len(contact)))
+    for k, (*e, F_rss, sine) in enumerate(np.column_stack((*bending.e, bending.F_rss, bending.sin_Theta_1)).tolist()):
         at = Loads(e, F_rss, sine)
         mode = modes.settle(at, contact)
         contact, values[k] = mode.contact, [row(at) for row in mode.F]
-    return known.force * values
+    return columns.force * values
 
 
-def stabilizer_deflection(known: Known) -> Array:
+def stabilizer_deflection(columns: KnownColumns) -> Array:
     """δ = q̃ + K⁻¹F, (21)."""
-    at = loads(known, known["rss_force"])
-    q_tilde = known.beam.q_tilde(at.e, at.F_rss, at.sin_Theta_1)
-    delta: Array = np.column_stack(q_tilde) + known["stabilizer_force"] / known.force @ np.array(known.beam.K_inv)
-    return known.length * delta
+    at = loads(columns, columns["rss_force"])
+    q_tilde = columns.beam.q_tilde(at.e, at.F_rss, at.sin_Theta_1)
+    delta: Array = np.column_stack(q_tilde) + columns["stabilizer_force"] / columns.force @ np.array(columns.beam.K_inv)
+    return columns.length * delta
 
 
 # Along the hole: the existing one and then the rows, the inclination linear in between.
 
 
-class Hole:
+class Stations:
     """Stations of the hole; where the inclination jumps there are two at one length.
 
     Attributes
@@ -230,13 +232,13 @@ class Hole:
         Which station is the bit at the start of the run; the rows follow it.
     """
 
-    def __init__(self, known: Known) -> None:
-        survey = known.case.survey
+    def __init__(self, columns: KnownColumns) -> None:
+        survey = columns.case.survey
         existing = np.array(survey.measured_depth) - survey.measured_depth[-1]
-        above = existing[0] - known.case.bha.stabilizer_positions[-1]  # straight above the first station
-        self.length = np.concatenate(([above], existing, known["drilled_length"]))
+        above = existing[0] - columns.case.bha.stabilizer_positions[-1]  # straight above the first station
+        self.length = np.concatenate(([above], existing, columns["drilled_length"]))
         self.inclination = np.concatenate(
-            (survey.inclination[:1], survey.inclination, known["borehole_inclination"]), dtype=np.float64
+            (survey.inclination[:1], survey.inclination, columns["borehole_inclination"]), dtype=np.float64
         )
         self.start = existing.size
 
@@ -263,41 +265,41 @@ def path(length: Array, inclination: Array) -> Array:
     return np.concatenate((np.zeros((1, 2)), np.cumsum(pieces, axis=0)))
 
 
-def drilled(known: Known) -> Array:
+def drilled(columns: KnownColumns) -> Array:
     """Positions (x, z) of the bit, (rows, 2), from where the run starts."""
-    hole = Hole(known)
-    return path(hole.length[hole.start :], hole.inclination[hole.start :])[1:]
+    at = Stations(columns)
+    return path(at.length[at.start :], at.inclination[at.start :])[1:]
 
 
-def average_inclination(known: Known) -> Array:
+def average_inclination(columns: KnownColumns) -> Array:
     """⟨Θ⟩_i = (Y(ξ−s_{i−1}) − Y(ξ−s_i))/λ_i, (6)."""
-    behind = np.append(0.0, known.case.bha.stabilizer_positions)
-    lateral = Hole(known).lateral_at(known["drilled_length"][:, None] - behind)
+    behind = np.append(0.0, columns.case.bha.stabilizer_positions)
+    lateral = Stations(columns).lateral_at(columns["drilled_length"][:, None] - behind)
     return -np.diff(lateral, axis=1) / np.diff(behind)
 
 
-def borehole_curvature(known: Known) -> Array:
+def borehole_curvature(columns: KnownColumns) -> Array:
     """Change of Θ over the last ℓ₁, per length."""
-    behind = Hole(known).inclination_at(known["drilled_length"] - known.length)
-    return (known["borehole_inclination"] - behind) / known.length
+    behind = Stations(columns).inclination_at(columns["drilled_length"] - columns.length)
+    return (columns["borehole_inclination"] - behind) / columns.length
 
 
-def rate_of_penetration(known: Known) -> Array | None:
+def rate_of_penetration(columns: KnownColumns) -> Array | None:
     """Drilled length per time from each row to the next; None if no time passes.
 
     A row that repeats its time, and the last one, have the rate of their neighbour.
     """
-    time = np.diff(known["time"])
+    time = np.diff(columns["time"])
     pieces = np.flatnonzero(time > 0.0)
     if not pieces.size:
         return None
-    rates = np.round(np.diff(known["drilled_length"])[pieces] / time[pieces], RATE_DECIMALS)
-    piece = np.searchsorted(pieces, np.arange(known.rows))
+    rates = np.round(np.diff(columns["drilled_length"])[pieces] / time[pieces], RATE_DECIMALS)
+    piece = np.searchsorted(pieces, np.arange(columns.row_count))
     return rates[np.minimum(piece, pieces.size - 1)]
 
 
-FREE = ("bit_inclination", "average_inclination")  # with the RSS force, the loads
-HELD = (*FREE, "stabilizer_force")
+ANGLES = ("bit_inclination", "average_inclination")  # with the RSS force, the loads
+BENDING = (*ANGLES, "stabilizer_force")  # with the RSS force, all that bends the BHA
 
 ROW_BY_ROW = (
     Formula("eta_pi", ("active_weight_on_bit",), eta_pi),
@@ -307,13 +309,13 @@ ROW_BY_ROW = (
     Formula("bit_tilt", ("bit_inclination", "borehole_inclination"), bit_tilt),
     Formula("bit_tilt", ("bit_lateral_force", "eta_pi"), bit_tilt_from_force),
     Formula("bit_tilt_saturation", ("bit_tilt",), bit_tilt_saturation),
-    Formula("rss_force", (*HELD, "bit_lateral_force"), rss_force_from_force),
-    Formula("rss_force", (*HELD, "bit_moment"), rss_force_from_moment),
-    Formula("stabilizer_force", (*FREE, "rss_force"), stabilizer_force),
+    Formula("rss_force", (*BENDING, "bit_lateral_force"), rss_force_from_force),
+    Formula("rss_force", (*BENDING, "bit_moment"), rss_force_from_moment),
+    Formula("stabilizer_force", (*ANGLES, "rss_force"), stabilizer_force),
     Formula("stabilizer_contact", ("stabilizer_force",), lambda k: np.sign(k["stabilizer_force"])),  # (7)
-    Formula("stabilizer_deflection", (*HELD, "rss_force"), stabilizer_deflection),
-    Formula("bit_lateral_force", (*HELD, "rss_force"), lambda k: bit_lateral_force(k, k["rss_force"])),
-    Formula("bit_moment", (*HELD, "rss_force"), lambda k: bit_moment(k, k["rss_force"])),
+    Formula("stabilizer_deflection", (*BENDING, "rss_force"), stabilizer_deflection),
+    Formula("bit_lateral_force", (*BENDING, "rss_force"), lambda k: bit_lateral_force(k, k["rss_force"])),
+    Formula("bit_moment", (*BENDING, "rss_force"), lambda k: bit_moment(k, k["rss_force"])),
 )
 
 ALONG_THE_HOLE = (

@@ -1,7 +1,8 @@
 """What a run gives: columns over the drilled length, and the files that hold them with their case.
 
-A CSV file is read and written with the standard library alone; its case stands beside it (run.csv, run.case.toml).
-A Parquet file, with the extra [parquet], holds its case in its metadata.
+The case of a CSV file stands beside it (run.csv, run.case.toml), that of a Parquet file, for which pyarrow must be
+installed, in its metadata. With it stand, in its table [run], the engine that computed the run, and why the run stopped
+if it did.
 
 Files of other tools have our columns under longer names: with the path of the component before (OMSimulator and fmpy,
 model.root.borehole.bit_tilt) or what the variable is behind (libcosim up to 0.9, bit_tilt [6 real output]).
@@ -28,7 +29,7 @@ CASE_KEY = b"boreprop.case"
 
 
 def write_trajectory(trajectory: Trajectory, path: str | Path) -> None:
-    """Write a run, and if it is known its case, with why the run stopped if it did, to a .csv or .parquet file.
+    """Write a run to a .csv or .parquet file; if its case is known, that too, with the engine and why the run stopped.
 
     Nothing of that name changes before everything is written.
 
@@ -71,7 +72,7 @@ def read_trajectory(path: str | Path, case: Case | None = None) -> Trajectory:
     if read is None:
         raise InputError(f"{path}: must end in {' or '.join(SUFFIXES)}, got {path.suffix!r}")
     trajectory = read(path, case)
-    if not trajectory.rows:
+    if not trajectory.row_count:
         raise InputError(f"{path}: must have at least one row, got none")
     found = Trajectory(trajectory.columns).n
     if found not in (0, trajectory.n):
@@ -111,8 +112,13 @@ def _ours(path: Path, headings: list[str]) -> dict[str, str]:
 
 def _typed(trajectory: Trajectory) -> dict[str, NDArray[Any]]:
     """The columns, those of FMI's Integer variables as such."""
-    integers = {name for name in trajectory if (v := BY_NAME.get(plain_name(name))) and v.kind == "Integer"}
-    return {k: v.astype(np.int32) if k in integers else v for k, v in trajectory.items()}
+    integers = {name for name in trajectory.columns if (v := BY_NAME.get(plain_name(name))) and v.kind == "Integer"}
+    return {k: v.astype(np.int32) if k in integers else v for k, v in trajectory.columns.items()}
+
+
+def _case_text(trajectory: Trajectory, case: Case) -> str:
+    """The case of a run as a file has it, with what there is to tell of the run."""
+    return dump_case(case, engine=trajectory.engine, stopped=trajectory.stopped)
 
 
 def _write_csv(trajectory: Trajectory, path: Path) -> None:
@@ -139,13 +145,8 @@ def _read_csv(path: Path, case: Case | None) -> Trajectory:
     own = case_path(path)
     if not own.exists():
         return Trajectory(columns, case)
-    run = read_run(own.read_text("utf-8-sig", errors="replace"))
-    return Trajectory(columns, load_case(own) if case is None else case, run.get("stopped"), run.get("engine"))
-
-
-def _case_text(trajectory: Trajectory, case: Case) -> str:
-    """The case of a run, and what is to be told of the run."""
-    return dump_case(case, engine=trajectory.engine, stopped=trajectory.stopped)
+    about = read_run(own.read_text("utf-8-sig", errors="replace"))
+    return Trajectory(columns, load_case(own) if case is None else case, about.get("stopped"), about.get("engine"))
 
 
 def _write_parquet(trajectory: Trajectory, path: Path) -> None:
@@ -167,8 +168,10 @@ def _read_parquet(path: Path, case: Case | None) -> Trajectory:
     if CASE_KEY not in metadata:
         return Trajectory(columns, case)
     own = metadata[CASE_KEY].decode()
-    run = read_run(own)
-    return Trajectory(columns, parse_case(own, path) if case is None else case, run.get("stopped"), run.get("engine"))
+    about = read_run(own)
+    return Trajectory(
+        columns, parse_case(own, path) if case is None else case, about.get("stopped"), about.get("engine")
+    )
 
 
 def _numbers(path: Path, name: str, column: Any) -> NDArray[np.float64]:

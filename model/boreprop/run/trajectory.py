@@ -8,31 +8,24 @@ import numpy as np
 from ..arrays import Floats
 from ..case.case import Case
 from ..core.quantities import BY_NAME
-from ..errors import BorepropError, InputError
-
-
-class NoSuchColumn(InputError, KeyError):
-    """A run has no column of that name."""
-
-    __str__ = Exception.__str__  # that of a KeyError puts quotes around the message
+from ..errors import BorepropError, MissingColumn
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Trajectory(Mapping[str, Floats]):
-    """A run: a mapping from scalar names of the table of quantities to columns, one value for each row.
-
-    ``run["bit_inclination"]``, ``run["stabilizer_force[1]"]``; its length is its number of columns.
+    """A run: a mapping from the names of its columns to their values, all over the same rows.
 
     Parameters
     ----------
     columns
-        Name → values in SI units, shape (rows,).
+        Scalar name of the table of quantities ("drilled_length", "stabilizer_force[1]", …) → values in SI units,
+        shape (rows,).
     case
-        The case that was drilled, if it is known.
+        The case that was run, if it is known.
     stopped
         Why it ended before its end, if it did.
     engine
-        What drilled it, "native" or "python", if that is known.
+        What computed it, "native" or "python", if that is known.
     """
 
     columns: dict[str, Floats]
@@ -41,9 +34,9 @@ class Trajectory(Mapping[str, Floats]):
     engine: str | None = None
 
     def __getitem__(self, name: str) -> Floats:
-        """The column `name`; `InputError`, which is also a `KeyError`, if the run has none."""
+        """The column `name`; `MissingColumn` if the run has none."""
         if name not in self.columns:
-            raise NoSuchColumn(f"the run must have a column {name!r}, got {', '.join(self.columns)}")
+            raise MissingColumn(f"the run must have a column {name!r}, got {', '.join(self.columns)}")
         return self.columns[name]
 
     def __iter__(self) -> Iterator[str]:
@@ -52,24 +45,15 @@ class Trajectory(Mapping[str, Floats]):
     def __len__(self) -> int:
         return len(self.columns)
 
-    def __eq__(self, other: object) -> bool:
-        """Whether columns, case and why it stopped are the same."""
-        return (
-            isinstance(other, Trajectory)
-            and (self.case, self.stopped, list(self)) == (other.case, other.stopped, list(other))
-            and all(np.array_equal(column, other[name]) for name, column in self.items())
-        )
-
-    __hash__ = None  # type: ignore[assignment]  # columns may change
-
     def __repr__(self) -> str:
-        length = f" over {self['drilled_length'][-1]:g} m" if self.rows else ""
-        told = [f"{self.rows} rows{length}", f"{len(self)} columns", "with its case" if self.case else "without a case"]
-        told += [f"{self.engine} engine"] * (self.engine is not None) + ["stopped"] * (self.stopped is not None)
-        return f"<Trajectory: {', '.join(told)}>"
+        length = f" over {self['drilled_length'][-1]:g} m" if self.row_count else ""
+        engine = f", {self.engine} engine" if self.engine else ""
+        case = "" if self.case else ", case not known"
+        stopped = ", stopped before its end" if self.stopped else ""
+        return f"<Trajectory: {len(self)} columns, {self.row_count} rows{length}{engine}{case}{stopped}>"
 
     @property
-    def rows(self) -> int:
+    def row_count(self) -> int:
         """Number of rows."""
         return len(self["drilled_length"])
 
@@ -83,7 +67,7 @@ class Trajectory(Mapping[str, Floats]):
     def stack(self, name: str) -> Floats:
         """The columns ``name[1]``, ``name[2]``, … side by side, shape (rows, n) or (rows, n − 1)."""
         columns = [self[scalar] for scalar in BY_NAME[name].names(self.n)]
-        return np.column_stack(columns) if columns else np.empty((self.rows, 0))
+        return np.column_stack(columns) if columns else np.empty((self.row_count, 0))
 
 
 class Stopped(BorepropError):
@@ -105,5 +89,5 @@ class Stopped(BorepropError):
 
 
 def plain_name(scalar_name: str) -> str:
-    """The name of a quantity, without the number of its component."""
+    """The quantity that a column holds: bit_tilt, or of stabilizer_force[1] stabilizer_force."""
     return scalar_name.partition("[")[0]

@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 from ...analysis.stability.chart import stability_chart, usual_grid
 from ...case.case import Case
 from ...case.paper import LENGTH_SCALE, paper_case
-from ...core.system import eta_pi
 from ...run.simulate import simulate
 from ...run.trajectory import Trajectory
 from . import stability as stability_figure
@@ -59,8 +58,7 @@ def draw(runs: dict[str, Trajectory], title: str) -> Figure:
 def make_figure_6(output: Path) -> None:
     """Draw the stability chart of a vertical hole."""
     case = paper_case()
-    bha, bit = case.bha, case.bit
-    grid = usual_grid(bha, eta_pi(bha, bit, case.active_weight_on_bit))
+    grid = usual_grid(case.bha, case.eta_pi)
     save(stability_figure.draw(stability_chart(case, *grid, inclination=0.0), case), output)
 
 

@@ -15,8 +15,8 @@ from ...analysis.stability.chart import DRIFT, OSCILLATORY, STABLE, Band, Chart,
 from ...analysis.stability.contacts import steady_mode
 from ...arrays import Floats
 from ...case.case import Case
-from ...core.system import eta_pi
 from ..tables.stability import contact_text
+from .drawing import kilonewtons_per_eta_pi, multiple
 
 SHADES = {
     "stable": "#A9DBC8",
@@ -45,9 +45,8 @@ WIDTH, ROW, MARGINS = 10.0, 3.4, 1.4  # of the picture, of a row of panels, and 
 
 def draw(chart: Chart, case: Case) -> Figure:
     """The modes over ηΠ and λ₂, with the point of the case; a row of panels for each contact."""
-    bha, bit, weight = case.bha, case.bit, case.active_weight_on_bit
-    point = eta_pi(bha, bit, weight), lambda_2(bha)
-    kilonewtons = bha.force_scale / bit.lateral_steering_resistance / 1000  # for each ηΠ
+    bha, bit = case.bha, case.bit
+    point = case.eta_pi, lambda_2(bha)
     epsilon = bit.angular_steering_resistance / bit.lateral_steering_resistance
     here = steady_mode(case, case.schedule.rss_force[0], chart.inclination)
     rows = len(chart.panels) // 2
@@ -59,15 +58,17 @@ def draw(chart: Chart, case: Case) -> Figure:
     for axes, panel in zip(panels.flat, chart.panels, strict=True):
         draw_panel(axes, chart, panel, point)
         if (panel.contact, panel.saturated) == here:
-            axes.set_title(f"{axes.get_title()}\n(the case is held here)", fontweight="bold")
+            axes.set_title(f"{axes.get_title()}\n(the case drills in this mode)", fontweight="bold")
     for axes in panels[-1]:
         axes.set_xlabel("ηΠ")
     for axes in panels[0]:
-        axes.secondary_xaxis("top", functions=scaling(kilonewtons)).set_xlabel("active weight on bit (kN)")
+        axes.secondary_xaxis("top", functions=multiple(kilonewtons_per_eta_pi(case))).set_xlabel(
+            "active weight on bit (kN)"
+        )
     for axes in panels[:, 0]:
         axes.set_ylabel("$λ_2$")
     for axes in panels[:, 1]:
-        axes.secondary_yaxis("right", functions=scaling(bha.length_scale)).set_ylabel("stabilizer 1 to 2 (m)")
+        axes.secondary_yaxis("right", functions=multiple(case.length_scale)).set_ylabel("stabilizer 1 to 2 (m)")
     figure.legend(
         handles=[
             *(Patch(facecolor=shade, edgecolor="0.3", label=meaning) for meaning, shade in SHADES.items()),
@@ -78,11 +79,6 @@ def draw(chart: Chart, case: Case) -> Figure:
         ncols=4,
     )
     return figure
-
-
-def scaling(factor: float) -> tuple[Any, Any]:
-    """To another unit and back, for a second axis."""
-    return lambda x: x * factor, lambda x: x / factor
 
 
 def draw_panel(axes: Axes, chart: Chart, panel: Panel, point: tuple[float, float]) -> None:

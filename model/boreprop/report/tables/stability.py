@@ -9,7 +9,7 @@ from ...units import UNITS
 HEADINGS = ("growth, per ℓ₁", "frequency, per ℓ₁", "what it does", "wavelength")
 MODE_HEADINGS = ("in contact", "bit tilt", "verdict", "what it does", "wavelength", "the case")
 NOT_MET = "not met: the case does not come to this contact, in no hole that turns by up to 10° over 30 m"
-MOST_ROWS = 20
+MOST_LINES = 20
 
 
 def as_plain(found: Roots) -> dict[str, object]:
@@ -41,11 +41,11 @@ def mode_line(
 ) -> tuple[str, ...]:
     """A mode in a line, under `MODE_HEADINGS`: its verdict and the root that makes it.
 
-    `here` is the mode that the case is held in, `met` are the contacts that occur.
+    `here` is the mode in which the case drills steadily, `met` are the contacts that occur.
     """
     pairs = [root for root in found.roots if root.imag]
     root = pairs[0] if found.verdict is Verdict.OSCILLATORY else found.roots[0]
-    place = "held here" if (found.contact, found.saturated) == here else "" if found.contact in met else "not met"
+    place = "drills so" if (found.contact, found.saturated) == here else "" if found.contact in met else "not met"
     return (
         ", ".join(map(str, found.contact)) or "none",
         "saturated" if found.saturated else "not saturated",
@@ -66,7 +66,7 @@ def lines(found: Roots, length_scale: float) -> list[tuple[str, str, str, str]]:
     """A line for each of the rightmost roots, under `HEADINGS`; `length_scale` is ℓ₁, m."""
     return [
         (f"{root.real:.6f}", f"{root.imag:.6f}", change(root, length_scale), wavelength(root, length_scale))
-        for root in found.roots[:MOST_ROWS]
+        for root in found.roots[:MOST_LINES]
     ]
 
 
@@ -89,7 +89,7 @@ def metres(length: float) -> str:
 
 def caption(found: Roots) -> str | None:
     """How many roots are not shown."""
-    more = len(found.roots) - MOST_ROWS
+    more = len(found.roots) - MOST_LINES
     return f"{more} more with a growth above {found.roots[-1].real:.2g} per ℓ₁" if more > 0 else None
 
 

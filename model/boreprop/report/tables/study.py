@@ -46,7 +46,7 @@ def _which(results: "Dataset", known: NDArray[np.bool_]) -> str:
     return f", of {known.sum()} of {ran.sum()} cases"
 
 
-def sentence(results: "Dataset") -> str:
+def outcome(results: "Dataset") -> str:
     """How many cases there are, how many failed, and how many ripple: of a sample, the probability."""
     errors = results["error"].values.ravel()
     failed = errors[errors != ""]

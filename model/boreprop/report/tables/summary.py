@@ -1,4 +1,4 @@
-"""A run in a table."""
+"""A run in a table: a dozen numbers."""
 
 from ...analysis.rippling import Rippling, State, Stretch
 from ...analysis.summary import Summary
@@ -34,7 +34,7 @@ def _wave_lines(wave: Rippling) -> list[tuple[str, str]]:
     if wave.state is State.NONE:
         return [("rippling", "no")]
     return [
-        ("rippling", what_becomes_of(wave)),
+        ("rippling", whether_it_ripples(wave)),
         ("ripple of the inclination", f"±{UNITS['rad'].text(wave.amplitude, '.3g')}"),
         ("ripple of the hole axis", f"±{SMALL_LENGTH.text(wave.axis_amplitude)}"),
         ("ripple, from wave to wave", f"length ±{wave.spread:.2f} m"),
@@ -44,7 +44,7 @@ def _wave_lines(wave: Rippling) -> list[tuple[str, str]]:
     ]
 
 
-def what_becomes_of(wave: Rippling) -> str:
+def whether_it_ripples(wave: Rippling) -> str:
     """Whether a run ends rippling, and with what wave."""
     length = f"{wave.wavelength:.2f} m long"
     return {

@@ -1,13 +1,11 @@
-"""Tipping in words."""
+"""Critical doglegs in words."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from math import degrees, inf
 
-from ...analysis.hysteresis import Bracket, Hysteresis
-from ...analysis.rippling import Rippling
 from ...analysis.tipping import FINEST, CriticalDogleg, DoglegMap
 from ...case.case import Case
-from ...units import SMALL_LENGTH, UNITS
+from ...units import UNITS
 
 SIDES = {1: "up", -1: "down"}
 
@@ -16,7 +14,7 @@ def lines(case: Case, found: Mapping[int, CriticalDogleg | str], limit: float) -
     """The lines of a table; `found` by side, or why a run stopped; `limit` the largest turn that was tried, rad."""
     return [
         (
-            f"dogleg that makes it ripple, turning {SIDES[side]}",
+            f"smallest kink that starts rippling, turning {SIDES[side]}",
             f"not known: {one}" if isinstance(one, str) else _amount(one, case.bha.half_length, limit),
         )
         for side, one in found.items()
@@ -44,41 +42,3 @@ def left_out(found: DoglegMap) -> str:
     """Which points a map lacks, as the end of a sentence; empty if it has all."""
     stopped = found.stopped[found.stopped != ""]
     return f"; {stopped.size} of {found.stopped.size} points left out (the first: {stopped[0]})" if stopped.size else ""
-
-
-def loop(case: Case, found: Hysteresis) -> str:
-    """Where the ripple dies out on the way up, and where it comes back on the way down."""
-    amount = amounts(case, found.name)
-    if not any(ripples(wave) for wave in found.up):
-        return f"it ripples nowhere from {amount(found.values[0])} to {amount(found.values[-1])}"
-    lasts = [value for value, wave in zip(found.values, found.up, strict=True) if ripples(wave)]
-    dies = f"dies out {_between(found.dies, amount)}" if found.dies else f"lasts to {amount(lasts[-1])}"
-    dogleg = f"a dogleg of {degrees(found.dogleg):.3g}° over {case.bha.half_length:.4g} m in a straight hole"
-    if found.returns:
-        back = f"{dogleg} brings it back {_between(found.returns, amount)}"
-    elif ripples(found.down[-1]):
-        back = f"{dogleg} brings it back at once, at {amount(found.values[-1])}"
-    else:
-        back = f"{dogleg} does not bring it back"
-    stopped = sum(wave is None for wave in (*found.up, *found.down))
-    left_out = f"; {stopped} of {2 * len(found.values)} values left out, where a run stopped" if stopped else ""
-    return f"on the way up the ripple {dies}; on the way down {back}{left_out}"
-
-
-def ripples(wave: Rippling | None) -> bool:
-    """Whether a run ripples; not if it could not go on."""
-    return wave is not None and wave.ripples
-
-
-def amounts(case: Case, name: str) -> Callable[[float], str]:
-    """How a value of a parameter is told in the units people use."""
-    if name == "eta_pi":
-        per_unit = case.bha.force_scale / case.bit.lateral_steering_resistance
-        return lambda value: f"ηΠ = {value:.4g} ({UNITS['N'].text(value * per_unit, '.4g')})"
-    if name == "active_weight_on_bit":
-        return lambda value: UNITS["N"].text(value, ".4g")
-    return lambda value: SMALL_LENGTH.text(value, ".4g")
-
-
-def _between(bracket: Bracket, amount: Callable[[float], str]) -> str:
-    return f"between {amount(bracket[0])} and {amount(bracket[1])}"

@@ -1,0 +1,57 @@
+"""Applications whose commands are loaded when they are called: help and mistakes cost nothing that a command needs."""
+
+from collections.abc import Mapping
+from importlib import import_module
+from typing import Any
+
+import typer
+from typer.core import TyperGroup
+
+from .options import Version
+
+
+def new_app(description: str) -> typer.Typer:
+    """An application with one command, which is added to it; `console.run` starts it."""
+    return typer.Typer(help=description, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+def new_group(description: str, commands: Mapping[str, tuple[str, str]]) -> typer.Typer:
+    """An application with several commands.
+
+    Parameters
+    ----------
+    description
+        What the application does.
+    commands
+        Name of a command → the module that has it, as the function ``name_command``, and the sentence that says what it
+        does.
+    """
+
+    class Group(TyperGroup):
+        def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+            name, _, rest = super().resolve_command(ctx, args)
+            return name, load_command(name or "", commands), rest
+
+    app = typer.Typer(
+        cls=Group, help=description, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False
+    )
+    app.callback()(_with_version)
+    for name, (_, summary) in commands.items():
+        app.command(name, short_help=summary)(_not_loaded_yet)
+    return app
+
+
+def load_command(name: str, commands: Mapping[str, tuple[str, str]]) -> Any:
+    """The command of this name, with its options, from its module."""
+    module, _ = commands[name]
+    app = new_app("")
+    app.command(name)(getattr(import_module(module), f"{name}_command"))
+    return typer.main.get_command(app)
+
+
+def _with_version(version: Version = False) -> None:
+    pass
+
+
+def _not_loaded_yet() -> None:
+    pass

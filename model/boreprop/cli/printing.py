@@ -1,0 +1,21 @@
+"""Tables on the terminal."""
+
+from collections.abc import Iterable, Sequence
+
+from rich.console import Console
+from rich.table import Table
+
+
+def print_table(
+    lines: Iterable[Sequence[str]],
+    headings: Sequence[str],
+    *,
+    title: str | None = None,
+    caption: str | None = None,
+    width: int | None = None,
+) -> None:
+    """Print `lines`, each with a cell under each heading; `width` in characters, if not that of the terminal."""
+    table = Table(*headings, title=title, caption=caption)
+    for line in lines:
+        table.add_row(*line)
+    Console(width=width).print(table)

@@ -1,0 +1,54 @@
+"""The loop of a ripple that dies out later than it comes back, as a picture."""
+
+from math import degrees, nan
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ...analysis.hysteresis import Hysteresis
+from ...analysis.rippling import Rippling
+from ...case.case import Case
+from .drawing import COLOURS, kilonewtons_per_eta_pi, multiple
+
+
+def draw(case: Case, found: Hysteresis) -> Figure:
+    """The ripple on the way up and on the way down along a parameter."""
+    figure = Figure(figsize=(9, 6.5), layout="constrained")
+    length = case.bha.half_length
+    figure.suptitle(
+        "Where a ripple dies out, and where a dogleg of "
+        f"{degrees(found.dogleg):.3g}° over {length:.4g} m in a straight hole brings it back"
+    )
+    axis, inclination = figure.subplots(2, 1, sharex=True)
+    clearance = found.name != "eta_pi"
+    unit = 1e3 if clearance else 1.0
+    x = unit * np.array(found.values)
+    branches = (
+        (found.up, found.dies, "o-", COLOURS[0], "going up, from a ripple"),
+        (found.down, found.returns, "v--", COLOURS[1], "going down, from straight holes"),
+    )
+    for waves, end, style, colour, name in branches:
+        drawn = {"color": colour, "markersize": 5, "label": name}
+        axis.plot(x, [1e3 * _size(wave, "axis_amplitude") for wave in waves], style, **drawn)
+        inclination.plot(x, [degrees(_size(wave, "amplitude")) for wave in waves], style, **drawn)
+        if end:
+            for panel in (axis, inclination):
+                panel.axvspan(unit * end[0], unit * end[1], color=colour, alpha=0.4, linewidth=0)
+    axis.set_ylabel("ripple of the hole axis (± mm)")
+    inclination.set_ylabel("ripple of the inclination (± °)")
+    inclination.set_xlabel(f"clearance of stabilizer {found.name.partition('[')[2][:-1]} (mm)" if clearance else "ηΠ")
+    if not clearance:
+        weight = axis.secondary_xaxis("top", functions=multiple(kilonewtons_per_eta_pi(case)))
+        weight.set_xlabel("active weight on bit (kN)")
+    for panel in (axis, inclination):
+        panel.grid(alpha=0.3)
+        panel.set_ylim(bottom=0.0)
+    axis.legend(title="the ends lie in the bands" if found.dies or found.returns else None)
+    return figure
+
+
+def _size(wave: Rippling | None, what: str) -> float:
+    """An amplitude; 0 without a ripple, nan where the run stopped."""
+    if wave is None:
+        return nan
+    return float(getattr(wave, what)) if wave.ripples else 0.0

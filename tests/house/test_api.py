@@ -1,0 +1,81 @@
+"""The public names of boreprop: they are all there, they say what they do, and a case or a run comes first."""
+
+import ast
+from inspect import getdoc, isclass, signature
+
+import pytest
+
+import boreprop
+from places import ROOT
+
+SOURCE = ast.parse((ROOT / "model/boreprop/__init__.py").read_text(encoding="utf-8"))
+ANALYSES = (
+    "critical_dogleg",
+    "critical_eta_pi",
+    "find_rippling",
+    "find_roots",
+    "grid",
+    "hysteresis",
+    "sample",
+    "simulate",
+    "stability_chart",
+    "steady_response",
+    "summarize",
+    "vary",
+    "write_trajectory",
+)
+NAMED = (
+    "BitRock",
+    "BorepropError",
+    "BottomHoleAssembly",
+    "Case",
+    "Schedule",
+    "Stopped",
+    "Survey",
+    "Trajectory",
+    "__version__",
+    "engine",
+    "load_case",
+    "paper_case",
+    "read_trajectory",
+    "study",
+)
+
+
+def test_the_api_has_the_names_that_scripts_need() -> None:
+    assert {*ANALYSES, *NAMED} <= set(boreprop.__all__) == set(dir(boreprop))
+
+
+def test_types_and_lazy_names_are_the_same() -> None:
+    """Each name is imported for type checkers from where it is loaded when a script asks for it."""
+    imported = {
+        alias.name: node.module for node in ast.walk(SOURCE) if isinstance(node, ast.ImportFrom) for alias in node.names
+    }
+    for name in boreprop.__all__:
+        if name != "__version__":
+            assert getattr(boreprop, name).__module__ == f"boreprop.{imported[name]}"
+
+
+@pytest.mark.parametrize("name", [name for name in boreprop.__all__ if name != "__version__"])
+def test_a_public_name_says_what_it_is(name: str) -> None:
+    assert len(getdoc(getattr(boreprop, name)) or "") > 20
+
+
+@pytest.mark.parametrize("name", ANALYSES)
+def test_a_case_or_a_run_comes_first(name: str) -> None:
+    first = next(iter(signature(getattr(boreprop, name)).parameters.values()))
+    assert first.annotation in (boreprop.Case, boreprop.Trajectory)
+
+
+def test_what_goes_wrong_is_one_kind_of_error() -> None:
+    from boreprop import errors
+    from boreprop.kernel.binding import KernelError
+
+    own = [kind for kind in (*vars(errors).values(), KernelError) if isclass(kind) and issubclass(kind, Exception)]
+    assert len(own) > 5
+    assert all(issubclass(kind, boreprop.BorepropError) for kind in own)
+
+
+def test_another_name_is_no_attribute() -> None:
+    with pytest.raises(AttributeError, match="'boreprop' has no attribute 'nothing'"):
+        boreprop.nothing  # noqa: B018
