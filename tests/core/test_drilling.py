@@ -9,6 +9,7 @@ from boreprop.case.case import Case
 from boreprop.core.drilling import Drilling
 from boreprop.core.errors import CannotContinue, ParameterError
 from boreprop.core.options import Options
+from boreprop.core.problems import Problem
 
 
 def drilling(case: Case, **options: float) -> Drilling:
@@ -47,7 +48,7 @@ def test_the_place_is_in_metres_from_the_start_of_the_run(case: Case) -> None:
 
 
 def test_the_error_travels_between_processes() -> None:
-    error = CannotContinue.because("no mode", 12.5, 1e-7)
+    error = CannotContinue(Problem("no mode", limit=1e-7, place=12.5))
     there = pickle.loads(pickle.dumps(error))
     assert (str(there), there.code, there.place) == (str(error), "no mode", 12.5)
 

@@ -476,7 +476,7 @@ def test_what_no_run_can_have_saved_is_refused_though_its_checksum_is_right(one:
         checksum = 0xCBF29CE484222325
         for byte in spoilt_body:
             checksum = (checksum ^ byte) * 0x100000001B3 & (2**64 - 1)
-        with refused(one, "state: must be one of "):
+        with refused(one, "state: must be "):
             one.set_state(b"%s%016x\n" % (head[:-16], checksum) + spoilt_body)
         assert one.state() == state
     assert one.step(1.0) == "ok"

@@ -87,9 +87,13 @@ fmi2Status fmi2SetupExperiment(
 ) {
     Component *c = called(instance, "fmi2SetupExperiment", INSTANTIATED);
     char why[LINE];
+    Problem problem;
     (void)tolerance_defined, (void)tolerance;
     if (!c) return fmi2Error;
-    if (!check_finite("startTime", start, why)) return fail(c, fmi2Error, why);
+    if (!check_finite(Q_START_TIME, 0, start, &problem)) {
+        tell(&problem, why);
+        return fail(c, fmi2Error, why);
+    }
     c->time = start;
     c->stop = stop_defined ? stop : (double)INFINITY;
     return fmi2OK;

@@ -64,8 +64,10 @@ static fmi2Status fail(const Component *c, fmi2Status status, const char *why) {
 static Run *new_run(const double value[VARIABLES], char why[LINE]) {
     System system = system_of(STABILIZERS, value + STABILIZER_POSITION); /* where the parameters begin */
     Run *run = calloc(1, sizeof *run);
+    Problem problem;
     if (!run) explain(why, "run: must fit into the memory");
-    else if (run_prepare(run, &system, why) == DONE) return run;
+    else if (run_prepare(run, &system, USUAL_OPTIONS, &problem) == DONE) return run;
+    else tell(&problem, why);
     run_end(run);
     return NULL;
 }
@@ -102,13 +104,15 @@ static void changed(Component *c) {
 static int ready(Component *c, char why[LINE]) {
     Survey survey = {STATIONS, MEASURED_DEPTH, INCLINATION};
     Inputs inputs = {c->value[RSS_FORCE], 0.0, c->value[ACTIVE_WEIGHT_ON_BIT]};
+    Problem problem;
     double *numbers = NULL;
     char fault[LINE];
     if (c->run) return 1;
     if (c->survey_file[0] && !(numbers = read_survey(c->survey_file, &survey, fault)))
         return explain(why, "%.*s (survey_file)", LINE - 32, fault);
     c->run = new_run(c->value, why);
-    if (c->run && run_start(c->run, &survey, inputs, why) != DONE) {
+    if (c->run && run_start(c->run, &survey, inputs, &problem) != DONE) {
+        tell(&problem, why);
         run_end(c->run);
         c->run = NULL;
     }
@@ -116,9 +120,9 @@ static int ready(Component *c, char why[LINE]) {
     return c->run != NULL;
 }
 
-static int check_given(const double input[INPUTS], char why[LINE]) {
+static int check_given(const double input[INPUTS], Problem *problem) {
     for (int i = 0; i < INPUT_COUNT; i++)
-        if (!check_quantity(&INPUT_TABLE[i], 0, input[i], why)) return 0;
+        if (!check_quantity(&INPUT_TABLE[i], 0, input[i], problem)) return 0;
     return 1;
 }
 
@@ -126,12 +130,14 @@ static int check_given(const double input[INPUTS], char why[LINE]) {
 static int compute(Component *c, char why[LINE]) {
     Inputs inputs = {c->value[RSS_FORCE], 0.0, c->value[ACTIVE_WEIGHT_ON_BIT]};
     double outputs[MOST_OUTPUTS];
+    Problem problem;
     if (!ready(c, why)) return 0;
-    if (!c->run_has_inputs && run_advance(c->run, drilling_length(&c->run->drilling), inputs, why) != DONE) return 0;
+    Drilling *drilling = &c->run->drilling;
+    if (!c->run_has_inputs && run_advance(c->run, drilling_length(drilling), inputs, &problem) != DONE)
+        return tell(&problem, why);
     c->run_has_inputs = 1;
-    int count = drilling_outputs(&c->run->drilling, outputs);
-    for (int i = 0; i < count; i++)
-        if (!check_finite(VARIABLE[DRILLED_LENGTH + i].name, outputs[i], why)) return 0;
+    int count = drilling_outputs(drilling, outputs);
+    if (!check_outputs(STABILIZERS, outputs, &problem)) return tell(&problem, why);
     memcpy(c->value + DRILLED_LENGTH, outputs, (size_t)count * sizeof *outputs);
     return 1;
 }
@@ -157,7 +163,8 @@ static int drill_on(Component *c, double to, const double end[INPUTS], char why[
     int stair = 0, done = 1;
     Count size = drilling_state_size(drilling);
     double *before = NULL, accepted = drilling->integrator.now.accepted;
-    if (!check_finite("rss_force_slope", slope, why)) return 0;
+    Problem problem;
+    if (!check_finite(Q_RSS_FORCE_SLOPE, 0, slope, &problem)) return tell(&problem, why);
     if (stairs > 1) {
         before = malloc((size_t)size * sizeof *before);
         if (!before) return explain(why, "step: must fit into the memory");
@@ -167,41 +174,56 @@ static int drill_on(Component *c, double to, const double end[INPUTS], char why[
         double at = drilling_length(drilling);
         Inputs inputs = {force + slope * (at - from), slope, weight + rise * (stair + 0.5) / stairs};
         double next = stair + 1 < stairs ? from + (to - from) * (stair + 1) / stairs : to;
-        done = run_advance(c->run, next, inputs, why) == DONE;
-        if (done && drilling->integrator.now.accepted - accepted > (double)MOST_STEPS) {
-            too_long(why);
-            done = 0;
-        }
+        done = run_advance(c->run, next, inputs, &problem) == DONE;
+        if (done && drilling->integrator.now.accepted - accepted > USUAL_OPTIONS.most_steps)
+            done = too_many(&drilling->integrator, &problem) == DONE;
     }
+    if (!done) tell(&problem, why);
     if (!done && before) drilling_return(drilling, before);
     free(before);
     if (done) c->run_has_inputs = rise == 0.0 && (to > from || end[RSS_FORCE] == force);
     return done;
 }
 
+/* Whether a step may be taken to these inputs at its end, before the run is looked at. */
+static fmi2Status check_step(const Component *c, double time, double size, const double end[INPUTS], char why[LINE]) {
+    double late = c->stop + larger(1e-12 * fabs(c->stop), 1e-3 * size); /* a host may add up rounding errors */
+    Problem problem;
+    if (!check_finite(Q_CURRENT_TIME, 0, time, &problem) || !check_positive(Q_STEP_SIZE, size, &problem)) {
+        tell(&problem, why);
+        return fmi2Discard;
+    }
+    if (time + size > late) {
+        check_at_most(Q_STEP_END, time + size, c->stop, &problem);
+        tell(&problem, why);
+        return fmi2Error;
+    }
+    int now_good = check_given(c->value, &problem);
+    if (now_good && check_given(end, &problem)) return fmi2OK;
+    tell(&problem, why);
+    if (now_good) strcat(why, " at the end of the step");
+    return fmi2Discard;
+}
+
 /* One communication step. The length counts from an anchor, so that rounding does not add up from step to step. */
 static fmi2Status step(Component *c, double time, double size, char why[LINE]) {
     double end[INPUTS], *value = c->value, start_rate = value[RATE_OF_PENETRATION];
     double since = c->since, from = c->from;
+    Problem problem;
     for (int i = 0; i < INPUTS; i++) end[i] = value[i] + c->derivative[i] * size;
     double *end_rate = &end[RATE_OF_PENETRATION];
     if (*end_rate < 0.0 && *end_rate > -1e-12 * start_rate) *end_rate = 0.0; /* rounding */
-    if (!check_finite("current_time", time, why) || !check_positive("step_size", size, why)) return fmi2Discard;
-    if (time + size > c->stop + larger(1e-12 * fabs(c->stop), 1e-3 * size)) { /* a host may add up rounding errors */
-        check_number("current_time + step_size", time + size, -INFINITY, -INFINITY, c->stop, why);
-        return fmi2Error;
-    }
-    if (!check_given(value, why)) return fmi2Discard;
-    if (!check_given(end, why)) {
-        strcat(why, " at the end of the step");
-        return fmi2Discard;
-    }
+    fmi2Status status = check_step(c, time, size, end, why);
+    if (status != fmi2OK) return status;
     if (!ready(c, why)) return fmi2Error;
     double here = drilling_length(&c->run->drilling);
     double close = larger(1e-12 * larger(fabs(time), fabs(c->time)), 1e-9 * size);
     if (start_rate != c->rate || *end_rate != start_rate || fabs(time - c->time) > close) since = time, from = here;
     double length = from + start_rate * (time + size - since) + (*end_rate - start_rate) * size / 2;
-    if (!check_finite("drilled_length", length, why)) return fmi2Discard;
+    if (!check_finite(Q_DRILLED_LENGTH, 0, length, &problem)) {
+        tell(&problem, why);
+        return fmi2Discard;
+    }
     if (!drill_on(c, larger(length, here), end, why)) return fmi2Discard;
     c->time = time + size, c->since = since, c->from = from;
     c->rate = *end_rate == start_rate ? start_rate : -1.0; /* a ramp is no anchor */
@@ -239,6 +261,7 @@ static int restore(Component *c, const Saved *saved, char why[LINE]) {
     const unsigned char *from = saved->bytes;
     size_t size = saved->size;
     double fixed[FIXED], value[VARIABLES];
+    Problem problem;
     if (size < least) return explain(why, "state: must be one of this FMU, got one of %lu bytes", (unsigned long)size);
     for (int i = 0; i < FIXED; i++) fixed[i] = get_double(&from);
     for (int i = 0; i < VARIABLES; i++) value[i] = get_double(&from);
@@ -248,7 +271,7 @@ static int restore(Component *c, const Saved *saved, char why[LINE]) {
         !(text >= 0.0 && text <= (double)(size - least)) || (size - (size_t)text) % 8)
         return explain(why, "state: must be one of this FMU, got one with an impossible phase or length");
     for (int i = 1; i < FIXED; i++)
-        if (!check_finite("state", fixed[i], why)) return 0;
+        if (!check_finite(Q_STATE, 0, fixed[i], &problem)) return tell(&problem, why);
     Count count = (Count)((size - least - (size_t)text) / 8);
     char *survey_file = calloc((size_t)text + 1, 1);
     double *numbers = malloc((size_t)(count + 1) * sizeof *numbers);
@@ -261,7 +284,8 @@ static int restore(Component *c, const Saved *saved, char why[LINE]) {
             count = -1;
         }
         if (count > 0) run = new_run(value, why);
-        if (run && run_restore(run, numbers, count, why) != DONE) {
+        if (run && run_restore(run, numbers, count, &problem) != DONE) {
+            tell(&problem, why);
             run_end(run);
             run = NULL;
         }

@@ -134,10 +134,11 @@ static long read_rows(
 
 /* Read a survey file. Its numbers lie in `*memory`, to be freed; NULL with `why` if it cannot be used. */
 static double *read_survey(const char *path, Survey *survey, char why[LINE]) {
-    char *text = read_text(path, why), *from = text, *blank, fault[MESSAGE];
+    char *text = read_text(path, why), *from = text, *blank, fault[LINE];
     double *numbers = NULL, *columns[COLUMNS];
     int position[COLUMNS], width = 0;
     long lines = 1, line = 2, rows = -1;
+    Problem problem;
     if (!text) return NULL;
     if (!strncmp(text, "\xEF\xBB\xBF", 3)) from += 3;
     for (; *from == '\r' || *from == '\n'; line++) next_field(&from, &blank);
@@ -151,7 +152,8 @@ static double *read_survey(const char *path, Survey *survey, char why[LINE]) {
     }
     if (rows >= 0) {
         survey->count = rows, survey->measured_depth = columns[0], survey->inclination = columns[1];
-        if (!check_survey(survey, fault)) {
+        if (!check_survey(survey, &problem)) {
+            tell(&problem, fault);
             explain(why, "%s: %s", path, fault);
             rows = -1;
         }

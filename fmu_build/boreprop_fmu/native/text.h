@@ -2,7 +2,7 @@
 #ifndef BOREPROP_TEXT_H
 #define BOREPROP_TEXT_H
 
-#include "checks.h"
+#include "sentence.h"
 #include <stdarg.h>
 #include <stdint.h>
 
@@ -58,6 +58,12 @@ static int explain(char why[LINE], const char *format, ...) {
     for (; *why; why++)
         if (*why == '\n' || *why == '\r') *why = '?';
     return 0;
+}
+
+/* A problem as the line that says what it is; gives 0, for `return tell(…)`. */
+static int tell(const Problem *problem, char why[LINE]) {
+    char line[MESSAGE];
+    return explain(why, "%s", sentence(problem, line));
 }
 
 /* Whether the text is a decimal number and nothing else; `value` is it, whatever the locale's decimal point. */

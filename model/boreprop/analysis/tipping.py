@@ -23,12 +23,12 @@ from numpy.typing import NDArray
 from ..arrays import Floats
 from ..case.case import Case
 from ..core.checks import check_number
-from ..core.options import RELATIVE_TOLERANCE
+from ..core.options import RELATIVE_TOLERANCE, Options
 from ..core.quantities import OUTPUTS, scalar_names
 from ..core.survey import Survey
 from ..core.system import eta_pi
 from ..errors import CannotContinue
-from ..run.engines import AnyDrilling, engine, follow, start
+from ..run.engines import Engine, engine, start
 from ..run.trajectory import Stopped, Trajectory
 from ..run.workers import WorkerLost, work
 from .rippling import Rippling, State, find_rippling, last_wave
@@ -100,7 +100,7 @@ class _OpenEndedRun:
     """A case that is drilled further and further, with its rows so far."""
 
     case: Case
-    drilling: AnyDrilling
+    drilling: Engine
     interval: float  # m between two rows
     names: list[str]
     rows: Floats
@@ -109,7 +109,7 @@ class _OpenEndedRun:
     def of(cls, case: Case, relative_tolerance: float) -> "_OpenEndedRun":
         names = scalar_names(OUTPUTS, len(case.bha.stabilizer_positions))
         interval = min(case.bha.half_length / ROWS, LARGEST_INTERVAL)
-        return cls(case, start(case, engine(), relative_tolerance), interval, names, np.empty((0, len(names))))
+        return cls(case, start(case, engine(), Options(relative_tolerance)), interval, names, np.empty((0, len(names))))
 
     def drill_to(self, length: float) -> Trajectory:
         """The run down to a drilled length, m; `Stopped` if the integrator cannot go on."""
@@ -118,7 +118,7 @@ class _OpenEndedRun:
         force = np.full(len(more), self.case.schedule.rss_force[0])
         each = np.arange(len(more), dtype=np.intc)
         try:
-            follow(self.drilling, lengths, force, self.case.active_weight_on_bit, each, more)
+            self.drilling.follow(lengths, force, self.case.active_weight_on_bit, each, more)
         except CannotContinue as error:
             raise Stopped(f"after {self.drilling.drilled_length:g} m: {error}") from error
         self.rows = np.concatenate((self.rows, more))

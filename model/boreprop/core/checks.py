@@ -3,20 +3,23 @@
 from itertools import pairwise
 from math import inf, isfinite
 
-from .errors import ParameterError
+from .errors import error_of
+from .problems import Problem
 from .quantities import BY_NAME
 
 
-def check_number(name: str, value: float, *, above: float = -inf, at_least: float = -inf, at_most: float = inf) -> None:
+def check_number(
+    name: str, value: float, *, index: int = 0, above: float = -inf, at_least: float = -inf, at_most: float = inf
+) -> None:
     """Raise `ParameterError` unless `value` is finite, > above, >= at_least and <= at_most."""
     if not isfinite(value):
-        raise ParameterError(name, "must be a finite number", value)
+        raise error_of(Problem("not a number", name, index, value))
     if value <= above:
-        raise ParameterError(name, f"must be > {above:g}", value)
+        raise error_of(Problem("not above", name, index, value, limit=above))
     if value < at_least:
-        raise ParameterError(name, f"must be >= {at_least:g}", value)
+        raise error_of(Problem("too small", name, index, value, limit=at_least))
     if value > at_most:
-        raise ParameterError(name, f"must be <= {at_most:g}", value)
+        raise error_of(Problem("too large", name, index, value, limit=at_most))
 
 
 def check_quantity(name: str, value: float | tuple[float, ...]) -> None:
@@ -26,8 +29,8 @@ def check_quantity(name: str, value: float | tuple[float, ...]) -> None:
     if not isinstance(value, tuple):
         check_number(name, value, above=above, at_least=at_least, at_most=at_most)
     else:
-        for i, element in enumerate(value, 1):
-            check_number(f"{name}[{i}]", element, above=above, at_least=at_least, at_most=at_most)
+        for index, element in enumerate(value, 1):
+            check_number(name, element, index=index, above=above, at_least=at_least, at_most=at_most)
 
 
 def check_part(part: str, fields: object) -> None:
@@ -43,4 +46,4 @@ def check_increasing(name: str, values: tuple[float, ...]) -> None:
         check_number(name, value)
     for before, after in pairwise(values):
         if after <= before:
-            raise ParameterError(name, "must increase", (before, after))
+            raise error_of(Problem("not increasing", name, value=after, before=before))

@@ -1,20 +1,16 @@
 """A drilling run in SI units: the shell around the integrator that `simulate` and the FMU share."""
 
+from collections.abc import Iterable
 from typing import Any
 
 from .checks import check_number, check_quantity
-from .errors import CannotContinue, ParameterError
+from .errors import CannotContinue, ParameterError, error_of
 from .integrator import Integrator
 from .modes import Modes, bit_tilt, saturation, wall
 from .options import Options, Statistics
+from .problems import Problem
 from .survey import Survey
 from .system import BitRock, BottomHoleAssembly, eta_pi, scale
-
-
-def check_inputs(rss_force: float, active_weight_on_bit: float) -> None:
-    """Raise `ParameterError` unless the force is finite and the weight finite and positive."""
-    check_quantity("rss_force", rss_force)
-    check_quantity("active_weight_on_bit", active_weight_on_bit)
 
 
 class Drilling:
@@ -54,7 +50,6 @@ class Drilling:
         rss_force: float = 0.0,
         options: Options = Options(),  # noqa: B008 - frozen
     ) -> None:
-        check_inputs(rss_force, active_weight_on_bit)
         self._bha, self._bit = bha, bit
         self._length, self._force = bha.length_scale, bha.force_scale
         self.drilled_length = 0.0
@@ -64,11 +59,12 @@ class Drilling:
         except ParameterError:
             raise
         except (CannotContinue, ArithmeticError, ValueError) as error:  # as in `Integrator.drill`
-            why = CannotContinue.because("not finite", 0.0, options.relative_tolerance)
-            raise ParameterError("parameters", "must give a finite state", str(why)) from error
+            raise error_of(Problem("no start", "parameters")) from error
 
     def _scaled_inputs(self, rss_force: float, active_weight_on_bit: float) -> tuple[float, float]:
-        """F_RSS and ηΠ; `ParameterError` if they are no numbers to go on with."""
+        """F_RSS and ηΠ; `ParameterError` if they, or the inputs, are no numbers to go on with."""
+        check_quantity("rss_force", rss_force)
+        check_quantity("active_weight_on_bit", active_weight_on_bit)
         F_rss, own_eta_pi = rss_force / self._force, eta_pi(self._bha, self._bit, active_weight_on_bit)
         check_number("rss_force / F*", F_rss)
         check_number("eta_pi", own_eta_pi, above=0.0)
@@ -92,15 +88,44 @@ class Drilling:
         CannotContinue
             If the integrator cannot drill on. Nothing has changed then, nor after a `ParameterError`.
         """
-        check_inputs(rss_force, active_weight_on_bit)
-        check_number("drilled_length", drilled_length, at_least=self.drilled_length)
         drilled_length, rss_force = float(drilled_length), float(rss_force)  # numpy's own would slow down what follows
-        try:
-            inputs = self._scaled_inputs(rss_force, active_weight_on_bit)
-        except ParameterError as error:
-            raise CannotContinue(str(error), "input", self.drilled_length) from error
+        inputs = self._scaled_inputs(rss_force, active_weight_on_bit)
+        check_number("drilled_length", drilled_length, at_least=self.drilled_length)
         self.integrator.drill(drilled_length / self._length, *inputs)
         self.drilled_length = drilled_length
+
+    def follow(
+        self,
+        lengths: Iterable[float],
+        forces: Iterable[float],
+        active_weight_on_bit: float,
+        rows: Iterable[int],
+        table: Any,
+    ) -> None:
+        """Drill leg after leg, each as by `advance`.
+
+        Parameters
+        ----------
+        lengths
+            Where the legs end, m from the start of the run, (legs,), not decreasing.
+        forces
+            The RSS force along each, N, (legs,).
+        active_weight_on_bit
+            N.
+        rows
+            Which row of `table` the outputs at the end of each leg become, (legs,); −1: none.
+        table
+            (…, outputs), in the order of the table of quantities.
+
+        Raises
+        ------
+        ParameterError, CannotContinue
+            As `advance`, at the leg that fails; the bit is then where the one before ended.
+        """
+        for length, force, row in zip(lengths, forces, rows, strict=True):
+            self.advance(length, force, active_weight_on_bit)
+            if row >= 0:
+                table[row] = tuple(self.outputs().values())
 
     def step(self) -> None:
         """Drill on to the end of the integrator's next step, under the inputs as they are; errors as in `advance`."""

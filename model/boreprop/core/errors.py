@@ -1,6 +1,8 @@
 """What goes wrong in a way that a user can do something about: what travels with the core."""
 
-from math import nan
+from math import isnan
+
+from .problems import CONSTRAINTS, OBSTACLES, Problem
 
 
 class BorepropError(Exception):
@@ -10,11 +12,22 @@ class BorepropError(Exception):
 
 
 class ParameterError(BorepropError, ValueError):
-    """A parameter breaks a constraint. Carries ``name``, ``constraint`` and ``value``."""
+    """A parameter breaks a constraint.
 
-    def __init__(self, name: str, constraint: str, value: object) -> None:
-        super().__init__(f"{name}: {constraint}, got {value!r}")
-        self.name, self.constraint, self.value = name, constraint, value
+    Attributes
+    ----------
+    name, constraint, value
+        What the message says.
+    problem
+        The same as both engines give it; None for a constraint that no engine has.
+    """
+
+    def __init__(self, name: str, constraint: str, value: object, problem: Problem | None = None) -> None:
+        super().__init__(name, constraint, value, problem)
+        self.name, self.constraint, self.value, self.problem = name, constraint, value, problem
+
+    def __str__(self) -> str:
+        return self.problem.sentence if self.problem else f"{self.name}: {self.constraint}, got {self.value!r}"
 
 
 class TableError(BorepropError, ValueError):
@@ -26,43 +39,29 @@ class CannotContinue(BorepropError):
 
     Attributes
     ----------
+    problem
+        What it has met.
     code
-        What it has met: a key of `OBSTACLES`, or "" where the engine gives a line only.
+        The same as a key of `OBSTACLES`.
     place
-        Where, m from the start of the run; nan where the engine gives a line only.
+        Where, m from the start of the run.
     helps
         What a user can do about it.
     """
 
-    def __init__(self, line: str, code: str = "", place: float = nan, helps: str = "") -> None:
-        super().__init__(line, code, place, helps)
-        self.code, self.place, self.helps = code, place, helps
+    def __init__(self, problem: Problem) -> None:
+        super().__init__(problem)
+        self.problem, self.code, self.place = problem, problem.code, problem.place
+        self.helps = problem.tell(OBSTACLES[problem.code][1])
 
     def __str__(self) -> str:
-        return str(self.args[0])
-
-    @classmethod
-    def because(cls, code: str, place: float, limit: float) -> "CannotContinue":
-        """The error for an obstacle met at `place`, m; `limit` is the tolerance, or the number of steps, at hand."""
-        met, helps = OBSTACLES[code]
-        helps = helps.format(limit=limit)
-        return cls(f"{met.format(place=place, limit=limit)}: {helps}", code, place, helps)
+        return self.problem.sentence
 
 
-OBSTACLES = {
-    "not finite": ("the state is not finite at {place:.9g} m", "check inputs and parameters"),
-    "turns over": (
-        "the bit turns over at {place:.9g} m",
-        "its inclination grows beyond a full turn; use a smaller or shorter rss_force, a larger active_weight_on_bit, "
-        "or check the parameters",
-    ),
-    "too short": (
-        "the steps of the integrator become too short at {place:.9g} m",
-        "raise relative_tolerance (--tolerance), now {limit:g}",
-    ),
-    "no mode": (
-        "no contact mode holds at {place:.9g} m",
-        "change relative_tolerance (--tolerance), now {limit:g}",
-    ),
-    "too many": ("step", "must take at most {limit:.0f} steps of the integrator, got more"),
-}
+def error_of(problem: Problem) -> ParameterError | CannotContinue:
+    """The error to raise for a problem."""
+    if problem.code in OBSTACLES:
+        return CannotContinue(problem)
+    constraint = problem.tell(CONSTRAINTS[problem.code][0])
+    value = problem.value if isnan(problem.before) else (problem.before, problem.value)
+    return ParameterError(problem.name, constraint, value, problem)

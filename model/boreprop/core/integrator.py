@@ -20,6 +20,7 @@ from .kinks import MERGE, SMOOTHEST_KINK, Kinks
 from .law import Law, Laws
 from .modes import ROUNDING, Loads, Mode, Modes, Regime, bit_tilt, saturation
 from .options import Options, Statistics
+from .problems import Problem
 from .step import Step, Trial, try_step
 from .survey import Survey
 
@@ -153,11 +154,12 @@ class Integrator:
             raise failure from error
 
     def _take_steps(self, xi: float) -> None:
-        pieces = len(self.hole.starts)  # that there are, and that the kernel in C would keep for the way back
+        most = self.options.most_steps
+        hopeless = xi - self.xi > most * self.options.largest_step
+        last = self._accepted + most
         while xi > self.present.end:
-            pieces += 1
-            if pieces + len(self.hole.starts) > 2 * self.options.most_steps:
-                raise CannotContinue.because("too many", self.present.end * self.length_scale, self.options.most_steps)
+            if hopeless or self._accepted == last:
+                raise CannotContinue(Problem("too many", limit=most, place=self.xi * self.length_scale))
             self._take_step()
 
     def _steer(self, F_rss: float, eta_pi: float) -> None:
@@ -356,7 +358,7 @@ class Integrator:
         return to_kink if to_kink <= min(plan.stretch * h, largest) else to_kink / 2
 
     def _failure(self, code: str, xi: float) -> CannotContinue:
-        return CannotContinue.because(code, xi * self.length_scale, self.options.relative_tolerance)
+        return CannotContinue(Problem(code, limit=self.options.relative_tolerance, place=xi * self.length_scale))
 
 
 def growth(error: float) -> float:

@@ -43,7 +43,7 @@ class Options:
     most_steps: int = 2**18
 
     def __post_init__(self) -> None:
-        check_tolerance(self.relative_tolerance)
+        check_quantity("relative_tolerance", self.relative_tolerance)
         check_number("largest_step", self.largest_step, above=0.0, at_most=1.0)
         check_number("smallest_step", self.smallest_step, at_least=1e-15)
         check_number("layers", self.layers, above=0.0)
@@ -61,8 +61,3 @@ class Statistics(NamedTuple):
     accepted: int = 0  # steps
     rejected: int = 0  # steps that were tried again, since their error was too large
     events: int = 0  # bounds met
-
-
-def check_tolerance(relative_tolerance: float) -> None:
-    """Raise `ParameterError` unless the tolerance is in the range of the table of quantities."""
-    check_quantity("relative_tolerance", relative_tolerance)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from .checks import check_increasing, check_part
 from .errors import ParameterError
+from .problems import CONSTRAINTS
 
 
 @dataclass(frozen=True)
@@ -28,7 +29,7 @@ class Survey:
 
     def __post_init__(self) -> None:
         if not self.measured_depth:
-            raise ParameterError("measured_depth", "must hold at least one station", self.measured_depth)
+            raise ParameterError("measured_depth", CONSTRAINTS["no station"][0], self.measured_depth)
         check_increasing("measured_depth", self.measured_depth)
         if len(self.inclination) != len(self.measured_depth):
             raise ParameterError("inclination", f"must hold {len(self.measured_depth)} values", self.inclination)

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from .checks import check_increasing, check_number, check_part
-from .errors import ParameterError
+from .errors import ParameterError, error_of
+from .problems import CONSTRAINTS, Problem
 from .quantities import MAX_STABILIZERS as MAX_STABILIZERS
 
 LEAST_SPAN = 0.01  # m between stabilizers: none is shorter, and the force between closer ones is rounding
@@ -44,11 +45,8 @@ class BottomHoleAssembly:
     def __post_init__(self) -> None:
         n = len(self.stabilizer_positions)
         if not 1 <= n <= MAX_STABILIZERS:
-            raise ParameterError(
-                "stabilizer_position",
-                f"must hold 1 to {MAX_STABILIZERS} positions",
-                self.stabilizer_positions,
-            )
+            constraint = CONSTRAINTS["wrong count"][0].format(limit=MAX_STABILIZERS)
+            raise ParameterError("stabilizer_position", constraint, self.stabilizer_positions)
         if len(self.stabilizer_clearances) != n - 1:
             raise ParameterError(
                 "stabilizer_clearance",
@@ -59,8 +57,7 @@ class BottomHoleAssembly:
         check_increasing("stabilizer_position", self.stabilizer_positions)
         for before, after in pairwise((0.0, *self.stabilizer_positions)):
             if after - before < LEAST_SPAN * (1 - 1e-9):  # 4.34 and 4.35 are that far apart, but for rounding
-                constraint = f"must be at least {LEAST_SPAN:g} m from each other and from the bit"
-                raise ParameterError("stabilizer_position", constraint, (before, after))
+                raise error_of(Problem("too close", "stabilizer_position", 0, after, before, LEAST_SPAN))
         check_number("rss_position", self.rss_position, at_most=self.length_scale)
 
     @property

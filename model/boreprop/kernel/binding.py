@@ -1,25 +1,25 @@
 """The kernel from Python: the same runs as `core.drilling`, in compiled code, through ctypes."""
 
 import ctypes
-import re
+from dataclasses import astuple, fields
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Floats
-from ..core.checks import check_number
-from ..core.drilling import check_inputs
-from ..core.errors import BorepropError, ParameterError
-from ..core.options import RELATIVE_TOLERANCE, check_tolerance
+from ..core.errors import BorepropError, error_of
+from ..core.options import Options, Statistics
+from ..core.problems import SENTENCES, Problem
 from ..core.quantities import OUTPUTS, scalar_names, values_of
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly
 from .compiler import library_path, sources_digest
-from .generate import SYSTEM, acting, quantities_digest
+from .generate import NAMES, SYSTEM, acting, quantities_digest
 
-MESSAGE = 512
+CODES, QUANTITIES = ("", *SENTENCES), ("", *NAMES.values())  # by their numbers in problems.h
 
 
 class KernelError(BorepropError, RuntimeError):
@@ -30,6 +30,25 @@ class Inputs(ctypes.Structure):
     """What acts from where the bit is, as in quantities.h."""
 
     _fields_ = tuple((name, ctypes.c_double) for name, _, _ in acting())
+
+
+class OptionsInC(ctypes.Structure):
+    """How the integrator takes its steps, as in quantities.h."""
+
+    _fields_ = tuple((field.name, ctypes.c_double) for field in fields(Options))
+
+
+class ProblemInC(ctypes.Structure):
+    """What is wrong, as in checks.h."""
+
+    _fields_ = tuple(
+        (field.name, ctypes.c_double if field.type is float else ctypes.c_int) for field in fields(Problem)
+    )
+
+    def read(self) -> Problem:
+        """The same in Python."""
+        code, quantity, *rest = (getattr(self, field.name) for field in fields(Problem))
+        return Problem(CODES[code], QUANTITIES[quantity], *rest)
 
 
 def numbers(values: Any, kind: Any = np.float64) -> Any:
@@ -65,17 +84,20 @@ def load(path: Path) -> ctypes.CDLL:
     if kernel.boreprop_quantities_digest().decode() != quantities_digest():
         helps = "run: python -m boreprop.kernel.generate, then: python -m boreprop.kernel"
         raise KernelError(f"{path.name} must be made for this table of quantities, got another one's: {helps}")
-    run, reals, whole, text = ctypes.c_void_p, _array(np.float64), ctypes.c_longlong, ctypes.c_char_p
+    run, reals, whole = ctypes.c_void_p, _array(np.float64), ctypes.c_longlong
+    inputs, options, problem = (ctypes.POINTER(struct) for struct in (Inputs, OptionsInC, ProblemInC))
     for name, result, arguments in (
-        ("start", run, (ctypes.c_int, reals, whole, reals, reals, ctypes.POINTER(Inputs), text)),
+        ("sentence", None, (problem, ctypes.c_char_p)),
+        ("start", run, (ctypes.c_int, reals, options, whole, reals, reals, inputs, problem)),
         ("end", None, (run,)),
-        ("follow", whole, (run, whole, reals, reals, ctypes.c_double, _array(np.intc), reals, text)),
+        ("follow", whole, (run, whole, reals, reals, ctypes.c_double, _array(np.intc), reals, problem)),
         ("outputs", ctypes.c_int, (run, reals)),
         ("length", ctypes.c_double, (run,)),
-        ("step", None, (run, reals)),
+        ("step", ctypes.c_int, (run, problem)),
+        ("statistics", None, (run, reals)),
         ("state_size", whole, (run,)),
         ("save", None, (run, reals)),
-        ("restore", ctypes.c_int, (run, reals, whole, text)),
+        ("restore", ctypes.c_int, (run, reals, whole, problem)),
     ):
         function = getattr(kernel, f"boreprop_{name}")
         function.restype, function.argtypes = result, arguments
@@ -84,13 +106,6 @@ def load(path: Path) -> ctypes.CDLL:
 
 def _array(kind: Any) -> Any:
     return np.ctypeslib.ndpointer(kind, flags="C_CONTIGUOUS")
-
-
-def _number(text: str) -> float | str:
-    try:
-        return float(text)
-    except ValueError:
-        return text
 
 
 def available() -> bool:
@@ -103,12 +118,10 @@ def available() -> bool:
 
 
 class NativeDrilling:
-    """A borehole as it is drilled, like `core.drilling.Drilling`: parameters, units and numbers are the same.
+    """A borehole as it is drilled: parameters, numbers, units and errors are those of `core.drilling.Drilling`.
 
     Raises
     ------
-    ParameterError
-        If an input or the tolerance is out of range, or a dimensionless number made of them is not finite.
     KernelError
         If the kernel is not there.
     """
@@ -121,96 +134,78 @@ class NativeDrilling:
         *,
         active_weight_on_bit: float,
         rss_force: float = 0.0,
-        relative_tolerance: float = RELATIVE_TOLERANCE,
+        options: Options = Options(),  # noqa: B008 - frozen
     ) -> None:
-        check_inputs(rss_force, active_weight_on_bit)
-        check_tolerance(relative_tolerance)
         n = len(bha.stabilizer_positions)
-        given = values_of("bha", bha) | values_of("bit", bit) | {"relative_tolerance": relative_tolerance}
-        self.drilled_length = 0.0
+        given = values_of("bha", bha) | values_of("bit", bit) | {"relative_tolerance": options.relative_tolerance}
         self._names = scalar_names(OUTPUTS, n)
-        self._why = ctypes.create_string_buffer(MESSAGE)
+        self._problem = ProblemInC()
         self._library = library()
         self._run = self._library.boreprop_start(
             n,
             numbers([given[name] for name in scalar_names(SYSTEM, n)]),
+            OptionsInC(*astuple(options)),
             len(survey.measured_depth),
             numbers(survey.measured_depth),
             numbers(survey.inclination),
             Inputs(rss_force=rss_force, active_weight_on_bit=active_weight_on_bit),
-            self._why,
+            self._problem,
         )
-        if not self._run:
-            told = re.fullmatch("(.+?): (.+), got (.+)", self._message())
-            if told is None:
-                raise ParameterError("parameters", "must give a finite state", self._message())
-            name, constraint, value = told.groups()
-            raise ParameterError(name, constraint, _number(value))
+        self._check(self._run)
 
     def __del__(self) -> None:
         if getattr(self, "_run", None):
             self._library.boreprop_end(self._run)
 
-    def advance(self, drilled_length: float, rss_force: float, active_weight_on_bit: float) -> str | None:
+    def _check(self, done: object) -> None:
+        """Raise the error for what the kernel has found, unless it is done."""
+        if not done:
+            raise error_of(self._problem.read())
+
+    @property
+    def drilled_length(self) -> float:
+        """Where the bit is, m from the start of the run."""
+        return float(self._library.boreprop_length(self._run))
+
+    @property
+    def statistics(self) -> Statistics:
+        """What the integrator has done since the start of the run."""
+        counts = np.empty(len(Statistics._fields))
+        self._library.boreprop_statistics(self._run, counts)
+        return Statistics(*map(int, counts))
+
+    def advance(self, drilled_length: float, rss_force: float, active_weight_on_bit: float) -> None:
         """Drill on under inputs held from here, as `Drilling.advance`."""
-        check_inputs(rss_force, active_weight_on_bit)
-        check_number("drilled_length", drilled_length, at_least=self.drilled_length)
-        nowhere = np.empty(0)
-        return self.follow(numbers([drilled_length]), numbers([rss_force]), active_weight_on_bit, [-1], nowhere)
+        self.follow([drilled_length], [rss_force], active_weight_on_bit, [-1], np.empty((0, len(self._names))))
 
     def follow(
-        self, lengths: Floats, forces: Floats, active_weight_on_bit: float, rows: Any, table: Floats
-    ) -> str | None:
-        """Drill leg after leg.
-
-        Parameters
-        ----------
-        lengths
-            Where the legs end, m from the start of the run, (legs,), not decreasing.
-        forces
-            The RSS force along each, N, (legs,).
-        active_weight_on_bit
-            N.
-        rows
-            Which row of `table` the outputs at the end of each leg become, (legs,); −1: none.
-        table
-            (…, outputs), C-contiguous, in the order of the table of quantities.
-
-        Returns
-        -------
-        str | None
-            None, or what the next leg met; then the bit is where the one before ended.
-
-        Raises
-        ------
-        ValueError
-            If the arrays do not fit together.
-        """
-        legs, rows = len(lengths), numbers(rows, np.intc)
-        if not len(forces) == len(rows) == legs or (rows >= len(table)).any():
-            raise ValueError(f"forces, rows: must be {legs}, of a table of {len(table)}, got {len(forces)}, {rows}")
-        if len(table) and table.shape != (len(table), len(self._names)):
+        self,
+        lengths: Floats | list[float],
+        forces: Floats | list[float],
+        active_weight_on_bit: float,
+        rows: NDArray[np.intc] | list[int],
+        table: Floats,
+    ) -> None:
+        """Drill leg after leg, as `Drilling.follow`; `ValueError` if the arrays do not fit together."""
+        legs, on_rows = len(lengths), numbers(rows, np.intc)
+        if not len(forces) == len(on_rows) == legs or (on_rows >= len(table)).any():
+            raise ValueError(f"forces, rows: must be {legs}, of a table of {len(table)}, got {len(forces)}, {on_rows}")
+        if table.shape != (len(table), len(self._names)):
             raise ValueError(f"table: must have {len(self._names)} columns, got shape {table.shape}")
         done = self._library.boreprop_follow(
-            self._run, legs, lengths, forces, active_weight_on_bit, rows, table, self._why
+            self._run, legs, numbers(lengths), numbers(forces), active_weight_on_bit, on_rows, table, self._problem
         )
-        if done:
-            self.drilled_length = float(lengths[done - 1])
-        return None if done == legs else self._message()
+        self._check(done == legs)
+
+    def step(self) -> None:
+        """Drill on to the end of the integrator's next step, as `Drilling.step`."""
+        self._check(self._library.boreprop_step(self._run, self._problem))
 
     def outputs(self) -> dict[str, float | int]:
         """Every output where the bit is, as `Drilling.outputs`."""
         row = np.empty(len(self._names))
         self._library.boreprop_outputs(self._run, row)
         return dict(zip(self._names, row.tolist(), strict=True))
-
-    def step(self) -> Floats:
-        """ξ, h and end of the integrator's present step, the part whose bound it meets there (−1: none) and on which
-        side; how many steps were accepted and rejected so far, and how many bounds met.
-        """
-        found = np.empty(8)
-        self._library.boreprop_step(self._run, found)
-        return found
 
     def save(self) -> Floats:
         """The whole evolving state."""
@@ -220,9 +215,4 @@ class NativeDrilling:
 
     def restore(self, state: Floats) -> None:
         """Go back to a state from `save` of a run with the same parameters; `ParameterError` if it cannot be one."""
-        if not self._library.boreprop_restore(self._run, state, len(state), self._why):
-            raise ParameterError("state", "must be one of this system", len(state))
-        self.drilled_length = self._library.boreprop_length(self._run)
-
-    def _message(self) -> str:
-        return self._why.value.decode()
+        self._check(self._library.boreprop_restore(self._run, state, len(state), self._problem))

@@ -3,6 +3,7 @@
 #define BOREPROP_H
 
 #include "run.h"
+#include "sentence.h"
 
 #ifdef _WIN32
 #define EXPORT __declspec(dllexport)
@@ -16,20 +17,27 @@ EXPORT const char *boreprop_sources_digest(void);
 /* Which table of quantities. */
 EXPORT const char *boreprop_quantities_digest(void);
 
+/* A problem in words. */
+EXPORT void boreprop_sentence(const Problem *problem, char line[MESSAGE]);
+
 /* A run of n stabilizers at the end of its survey, with parameters in the order of the table of quantities; NULL, and
-   `why`, where one is bad. To be ended with `boreprop_end`. */
+   the problem, where one is bad. To be ended with `boreprop_end`. The tolerance is that of the parameters; the options
+   are taken as they are. */
 EXPORT Run *boreprop_start(
-    int n, const double *parameters, Count count, const double *measured_depth, const double *inclination,
-    const Inputs *inputs, char why[MESSAGE]
+    int n, const double *parameters, const Options *options, Count count, const double *measured_depth,
+    const double *inclination, const Inputs *inputs, Problem *problem
 );
 EXPORT void boreprop_end(Run *run);
 
 /* Drill leg after leg: to lengths[k] under forces[k]; where rows[k] is not negative the outputs there become that row
-   of the table. Returns how many legs are drilled; if not all, `why` says what the next one met. */
+   of the table. Returns how many legs are drilled; if not all, there is a problem with the next one. */
 EXPORT Count boreprop_follow(
     Run *run, Count count, const double *lengths, const double *forces, double active_weight_on_bit, const int *rows,
-    double *table, char why[MESSAGE]
+    double *table, Problem *problem
 );
+
+/* Drill on to the end of the integrator's next step, under the inputs as they are; 0, and the problem, if that fails. */
+EXPORT int boreprop_step(Run *run, Problem *problem);
 
 /* All outputs where the bit is, in the order of the table of quantities; returns how many. */
 EXPORT int boreprop_outputs(Run *run, double out[MOST_OUTPUTS]);
@@ -37,15 +45,15 @@ EXPORT int boreprop_outputs(Run *run, double out[MOST_OUTPUTS]);
 /* m drilled. */
 EXPORT double boreprop_length(const Run *run);
 
-/* The integrator's own present step: ξ, h, where it ends, the part whose bound it meets there (−1: none), on which
-   side; and how many steps were accepted and rejected, and how many bounds met. */
-EXPORT void boreprop_step(const Run *run, double numbers[8]);
+/* How many steps were accepted and rejected since the start of the run, and how many bounds met. */
+EXPORT void boreprop_statistics(const Run *run, double counts[3]);
 
 /* How many numbers `boreprop_save` writes: the state of the run. */
 EXPORT Count boreprop_state_size(const Run *run);
 EXPORT void boreprop_save(const Run *run, double *state);
 
-/* Go to a state of a run with the same system; 0, and `why`, if these numbers cannot be one: nothing has changed. */
-EXPORT int boreprop_restore(Run *run, const double *state, Count count, char why[MESSAGE]);
+/* Go to a state of a run with the same system; 0, and the problem, if these numbers cannot be one: nothing has
+   changed. */
+EXPORT int boreprop_restore(Run *run, const double *state, Count count, Problem *problem);
 
 #endif

@@ -1,50 +1,66 @@
-/* What a call answers, and the checks of numbers that come from outside. */
+/* What a call answers, what a problem is, and the checks of numbers that come from outside. */
 #ifndef BOREPROP_CHECKS_H
 #define BOREPROP_CHECKS_H
 
 #include "numbers.h"
+#include "problems.h"
 
-enum { MESSAGE = 512 };
-
-/* FAILED: `why` says in one line what is wrong, and nothing has moved. FULL: the memory is too small. */
+/* FAILED: there is a problem, and nothing has moved. FULL: the memory is too small. */
 typedef enum { DONE, FAILED, FULL } Status;
 
-/* Whether the value is finite, > above, >= at_least and <= at_most; `why` says what is not. */
-static inline int check_number(
-    const char *name, double value, double above, double at_least, double at_most, char why[MESSAGE]
-) {
-    char limit[32], got[32];
-    if (isfinite(value) && value > above && value >= at_least && value <= at_most) return 1;
-    represent(value, got);
-    if (!isfinite(value)) snprintf(why, MESSAGE, "%s: must be a finite number, got %s", name, got);
-    else if (value <= above) snprintf(why, MESSAGE, "%s: must be > %s, got %s", name, decimal(above, 6, limit), got);
-    else if (value < at_least)
-        snprintf(why, MESSAGE, "%s: must be >= %s, got %s", name, decimal(at_least, 6, limit), got);
-    else snprintf(why, MESSAGE, "%s: must be <= %s, got %s", name, decimal(at_most, 6, limit), got);
+/* What is wrong: all that its sentence is made of. NaN stands for what it has not. */
+typedef struct {
+    Code code;
+    Name quantity;                      /* what has the wrong value */
+    int index;                          /* which of several values, from 1 on; 0 where there is one */
+    double value, before, limit, place; /* before: the value before it, of a list; place: m from the start of the run */
+} Problem;
+
+/* Note a value that is not as it must be. Gives 0, for `return wrong(…)`. */
+static inline int wrong(Problem *problem, Code code, Name quantity, int index, double value, double limit) {
+    Problem found = {code, quantity, index, value, NAN, limit, NAN};
+    *problem = found;
     return 0;
 }
 
-static inline int check_finite(const char *name, double value, char why[MESSAGE]) {
-    return check_number(name, value, -INFINITY, -INFINITY, INFINITY, why);
+/* Note an obstacle on the way. */
+static inline Status met(Problem *problem, Code code, double limit, double place) {
+    Problem found = {code, Q_NOTHING, 0, NAN, NAN, limit, place};
+    *problem = found;
+    return FAILED;
 }
 
-static inline int check_positive(const char *name, double value, char why[MESSAGE]) {
-    return check_number(name, value, 0.0, -INFINITY, INFINITY, why);
+/* Whether the value is finite, > above, >= at_least and <= at_most. */
+static inline int check_number(
+    Name quantity, int index, double value, double above, double at_least, double at_most, Problem *problem
+) {
+    if (!isfinite(value)) return wrong(problem, NOT_A_NUMBER, quantity, index, value, NAN);
+    if (value <= above) return wrong(problem, NOT_ABOVE, quantity, index, value, above);
+    if (value < at_least) return wrong(problem, TOO_SMALL, quantity, index, value, at_least);
+    if (value > at_most) return wrong(problem, TOO_LARGE, quantity, index, value, at_most);
+    return 1;
 }
 
-static inline int check_at_least(const char *name, double value, double at_least, char why[MESSAGE]) {
-    return check_number(name, value, -INFINITY, at_least, INFINITY, why);
+static inline int check_finite(Name quantity, int index, double value, Problem *problem) {
+    return check_number(quantity, index, value, -INFINITY, -INFINITY, INFINITY, problem);
+}
+
+static inline int check_positive(Name quantity, double value, Problem *problem) {
+    return check_number(quantity, 0, value, 0.0, -INFINITY, INFINITY, problem);
+}
+
+static inline int check_at_most(Name quantity, double value, double at_most, Problem *problem) {
+    return check_number(quantity, 0, value, -INFINITY, -INFINITY, at_most, problem);
 }
 
 /* Whether every value is finite and larger than the one before. */
-static inline int check_increasing(const char *name, Count count, const double *values, char why[MESSAGE]) {
-    char before[32], after[32];
+static inline int check_increasing(Name quantity, Count count, const double *values, Problem *problem) {
     for (Count i = 0; i < count; i++)
-        if (!check_finite(name, values[i], why)) return 0;
+        if (!check_finite(quantity, 0, values[i], problem)) return 0;
     for (Count i = 1; i < count; i++)
         if (values[i] <= values[i - 1]) {
-            represent(values[i - 1], before), represent(values[i], after);
-            snprintf(why, MESSAGE, "%s: must increase, got (%s, %s)", name, before, after);
+            wrong(problem, NOT_INCREASING, quantity, 0, values[i], NAN);
+            problem->before = values[i - 1];
             return 0;
         }
     return 1;

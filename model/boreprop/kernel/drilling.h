@@ -13,21 +13,22 @@ typedef struct {
     Integrator integrator;
 } Drilling;
 
-static inline int check_inputs(Inputs inputs, char why[MESSAGE]) {
-    return check_quantity(&INPUT_TABLE[IN_RSS_FORCE], 0, inputs.rss_force, why) &&
-           check_finite("rss_force_slope", inputs.rss_force_slope, why) &&
-           check_quantity(&INPUT_TABLE[IN_ACTIVE_WEIGHT_ON_BIT], 0, inputs.active_weight_on_bit, why);
+static inline int check_inputs(Inputs inputs, Problem *problem) {
+    return check_quantity(&INPUT_TABLE[IN_RSS_FORCE], 0, inputs.rss_force, problem) &&
+           check_finite(Q_RSS_FORCE_SLOPE, 0, inputs.rss_force_slope, problem) &&
+           check_quantity(&INPUT_TABLE[IN_ACTIVE_WEIGHT_ON_BIT], 0, inputs.active_weight_on_bit, problem);
 }
 
-/* The dimensionless inputs; 0, with `why`, if they are bad, in N or over F*. */
-static inline int scale_inputs(const System *system, Inputs inputs, ScaledInputs *scaled, char why[MESSAGE]) {
+/* The dimensionless inputs; 0, with the problem, if they are bad, in N or over F*. */
+static inline int scale_inputs(const System *system, Inputs inputs, ScaledInputs *scaled, Problem *problem) {
     double F_star = force_scale(system);
     scaled->F_rss = inputs.rss_force / F_star;
     scaled->F_rss_slope = inputs.rss_force_slope * length_scale(system) / F_star;
     scaled->eta_pi = eta_pi(system, inputs.active_weight_on_bit);
-    return check_inputs(inputs, why) && check_finite("rss_force / F*", scaled->F_rss, why) &&
-           check_finite("rss_force_slope / F*", scaled->F_rss_slope, why) &&
-           check_positive("eta_pi", scaled->eta_pi, why) && check_finite("1 / eta_pi", 1 / scaled->eta_pi, why);
+    return check_inputs(inputs, problem) && check_finite(Q_SCALED_FORCE, 0, scaled->F_rss, problem) &&
+           check_finite(Q_SCALED_SLOPE, 0, scaled->F_rss_slope, problem) &&
+           check_positive(Q_ETA_PI, scaled->eta_pi, problem) &&
+           check_finite(Q_INVERSE_ETA_PI, 0, 1 / scaled->eta_pi, problem);
 }
 
 /* Capacity, in pieces of hole, that a run under ordinary inputs needs. */
@@ -49,41 +50,52 @@ static inline void drilling_move(Drilling *d, void *memory, Count capacity) {
     move_rings(&d->integrator, memory, kinks_in(memory, capacity), capacity);
 }
 
-/* A drilling system that has not begun: `drilling_start` or `drilling_restore` is next. The memory must live on. */
+/* A drilling system that has not begun: `drilling_start` or `drilling_restore` is next. The memory must live on. Of the
+   options the tolerance is that of the system. */
 static inline Status drilling_prepare(
-    Drilling *d, const System *system, void *memory, Count capacity, char why[MESSAGE]
+    Drilling *d, const System *system, Options options, void *memory, Count capacity, Problem *problem
 ) {
-    if (!check_system(system, why)) return FAILED;
-    if (!check_positive("F*", force_scale(system), why)) return FAILED;
+    if (!check_system(system, problem)) return FAILED;
+    if (!check_positive(Q_FORCE_SCALE, force_scale(system), problem)) return FAILED;
     Scaled scaled = scale(system);
-    if (!check_finite("s_n / l_1", scaled.s[scaled.n - 1], why) || !check_finite("w l_1 / F*", scaled.w, why) ||
-        !check_positive("epsilon", scaled.epsilon, why) || !check_finite("1 / epsilon", 1 / scaled.epsilon, why))
+    if (!check_finite(Q_SCALED_REACH, 0, scaled.s[scaled.n - 1], problem) ||
+        !check_finite(Q_SCALED_WEIGHT, 0, scaled.w, problem) || !check_positive(Q_EPSILON, scaled.epsilon, problem) ||
+        !check_finite(Q_INVERSE_EPSILON, 0, 1 / scaled.epsilon, problem))
         return FAILED;
     d->system = *system;
     d->drilled_length = 0.0;
-    prepare(&d->integrator, &scaled, length_scale(system), system->relative_tolerance);
+    options.relative_tolerance = system->relative_tolerance;
+    prepare(&d->integrator, &scaled, length_scale(system), options);
     drilling_move(d, memory, capacity);
     return DONE;
 }
 
 /* Start at the end of the survey, which need not live on. */
-static inline Status drilling_start(Drilling *d, const Survey *survey, Inputs inputs, char why[MESSAGE]) {
+static inline Status drilling_start(Drilling *d, const Survey *survey, Inputs inputs, Problem *problem) {
     ScaledInputs scaled_inputs;
-    if (!check_survey(survey, why)) return FAILED;
-    if (!scale_inputs(&d->system, inputs, &scaled_inputs, why)) return FAILED;
+    if (!check_survey(survey, problem)) return FAILED;
+    if (!scale_inputs(&d->system, inputs, &scaled_inputs, problem)) return FAILED;
     if (d->integrator.now.hole.capacity < drilling_capacity(&d->system, survey)) return FULL;
-    return begin(&d->integrator, survey, scaled_inputs, why);
+    return begin(&d->integrator, survey, scaled_inputs, problem);
 }
 
 /* Drill on to a length, m from the start, under inputs from here; where the bit is, only they are taken over.
    After FULL: `drilling_move`, and the same call again, which goes on; or `drilling_cancel`, and nothing has moved. */
-static inline Status drilling_advance(Drilling *d, double drilled_length, Inputs inputs, char why[MESSAGE]) {
+static inline Status drilling_advance(Drilling *d, double drilled_length, Inputs inputs, Problem *problem) {
     ScaledInputs scaled_inputs;
-    if (!scale_inputs(&d->system, inputs, &scaled_inputs, why)) return FAILED;
-    if (!check_at_least("drilled_length", drilled_length, d->drilled_length, why)) return FAILED;
+    if (!scale_inputs(&d->system, inputs, &scaled_inputs, problem)) return FAILED;
+    if (!check_number(Q_DRILLED_LENGTH, 0, drilled_length, -INFINITY, d->drilled_length, INFINITY, problem))
+        return FAILED;
     double xi = drilled_length / length_scale(&d->system);
-    Status status = drill(&d->integrator, xi, scaled_inputs, why);
+    Status status = drill(&d->integrator, xi, scaled_inputs, problem);
     if (status == DONE) d->drilled_length = drilled_length;
+    return status;
+}
+
+/* Drill on to the end of the next step, under the inputs as they are; after FULL as `drilling_advance`. */
+static inline Status drilling_step(Drilling *d, Problem *problem) {
+    Status status = drill_step(&d->integrator, problem);
+    if (status == DONE) d->drilled_length = d->integrator.now.xi * length_scale(&d->system);
     return status;
 }
 
@@ -157,6 +169,14 @@ static inline int drilling_outputs(Drilling *d, double out[MOST_OUTPUTS]) {
     for (int k = 0; k < OUTPUT_COUNT; k++)
         for (int i = 0; i < value_count(OUTPUT_SIZE[k], d->system.n); i++) *next++ = output(d, &at, (Output)k, i);
     return (int)(next - out);
+}
+
+/* Whether the outputs are finite. */
+static inline int check_outputs(int n, const double *outputs, Problem *problem) {
+    for (int k = 0; k < OUTPUT_COUNT; k++)
+        for (int i = 0; i < value_count(OUTPUT_SIZE[k], n); i++)
+            if (!check_finite(OUTPUT_NAME[k], OUTPUT_SIZE[k] == ONE ? 0 : i + 1, *outputs++, problem)) return 0;
+    return 1;
 }
 
 /* m drilled. */

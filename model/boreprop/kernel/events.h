@@ -9,7 +9,7 @@
    bounds are farther away nothing is looked at more closely. */
 #define NEAR 0.3
 #define CLOSE_ENOUGH (ROUNDING / 10) /* to a bound, at a crossing: no closer than values can be told apart */
-#define SMALLEST_STEP 1e-12          /* ℓ₁, and relative to ξ: a few digits above the rounding of ξ */
+#define CLOSEST 1e-12                /* ℓ₁: of the ends of a stretch, a few digits above the rounding of ξ */
 #define MOST_TRIALS 60               /* of a crossing: halving a step forty times makes it the smallest */
 
 /* A bound that is watched along a trial step. */
@@ -38,7 +38,7 @@ static inline double crossing(const Watch *watch, int side, double a, double b, 
     for (int k = 0; k < MOST_TRIALS; k++) {
         c = (a * f_b - b * f_a) / (f_b - f_a);
         double f_c = side * (watched_value(watch, c) - limit);
-        if (fabs(f_c) < CLOSE_ENOUGH || fabs(b - a) < SMALLEST_STEP) break;
+        if (fabs(f_c) < CLOSE_ENOUGH || fabs(b - a) < CLOSEST) break;
         if ((f_c > 0) == (f_b > 0)) {
             double weight = 1 - f_c / f_b;
             f_a *= weight > 0 ? weight : 0.5;

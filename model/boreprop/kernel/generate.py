@@ -1,11 +1,14 @@
 """Writes the C headers that follow from Python: ``python -m boreprop.kernel.generate``. A test compares them."""
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import astuple, fields
 from functools import cache
 from hashlib import sha256
 
 from ..core import radau
-from ..core.quantities import INPUTS, MAX_STABILIZERS, OUTPUTS, PARAMETERS, Quantity
+from ..core.options import Options
+from ..core.problems import SENTENCES
+from ..core.quantities import INPUTS, MAX_STABILIZERS, OUTPUTS, PARAMETERS, QUANTITIES, Quantity
 from ..core.system import LEAST_SPAN
 from ..replacing import replacing
 from .compiler import FOLDER
@@ -17,15 +20,36 @@ SYSTEM = tuple(quantity for quantity in PARAMETERS if quantity.kind == "Real")
 SIZES = {"1": "ONE", "n": "EACH_STABILIZER", "n-1": "EACH_NON_IDEAL"}
 ROOMS = {"1": "", "n": "[MAX_STABILIZERS]", "n-1": "[MAX_STABILIZERS - 1]"}
 
-QUANTITIES = """\
+NAMES = {quantity.name: quantity.name for quantity in QUANTITIES} | {
+    "rss_force_slope": "rss_force_slope",
+    "scaled_force": "rss_force / F*",
+    "scaled_slope": "rss_force_slope / F*",
+    "inverse_eta_pi": "1 / eta_pi",
+    "force_scale": "F*",
+    "scaled_reach": "s_n / l_1",
+    "scaled_weight": "w l_1 / F*",
+    "epsilon": "epsilon",
+    "inverse_epsilon": "1 / epsilon",
+    "station_rate": "l_1 / distance of stations",
+    "parameters": "parameters",
+    "state": "state",
+    "start_time": "startTime",
+    "current_time": "current_time",
+    "step_size": "step_size",
+    "step_end": "current_time + step_size",
+}
+"""What a problem may be about: the names of the table, and of what is made of them or asked by a host of the FMU."""
+
+QUANTITIES_HEADER = """\
 /* The table of quantities, as C needs it. Written from core/quantities.py by `python -m boreprop.kernel.generate`. */
 #ifndef BOREPROP_QUANTITIES_H
 #define BOREPROP_QUANTITIES_H
 
+#include "problems.h"
 #include <math.h>
 #include <stddef.h>
 
-#define QUANTITIES_DIGEST "{digest}" /* of this file, but for this line */
+#define QUANTITIES_DIGEST "{digest}" /* of this file, but for this line, and of problems.h */
 #define LEAST_SPAN {least_span!r} /* m between stabilizers, at least: between closer ones the force is rounding */
 
 enum {{ MAX_STABILIZERS = {most}, PARAMETER_COUNT = {parameters}, INPUT_COUNT = {inputs}, OUTPUT_COUNT = {outputs} }};
@@ -46,7 +70,7 @@ typedef enum {{ {sizes} }} Size;
 
 /* A quantity that is given from outside: its range, above < value, at_least <= value <= at_most. */
 typedef struct {{
-    const char *name;
+    Name name;
     Size size;
     size_t offset; /* of a parameter, in System */
     double above, at_least, at_most;
@@ -68,11 +92,58 @@ typedef enum {{
 static const Size OUTPUT_SIZE[OUTPUT_COUNT] = {{
 {output_sizes}
 }};
+static const Name OUTPUT_NAME[OUTPUT_COUNT] = {{
+{output_table}
+}};
 enum {{ MOST_OUTPUTS = {most_outputs} }}; /* values, of the largest assembly */
+
+/* How the integrator takes its steps: core/options.py says what each is. */
+typedef struct {{
+    double {options};
+}} Options;
+
+static const Options USUAL_OPTIONS = {{{usual}}};
 
 #endif
 """
 
+PROBLEMS_HEADER = """\
+/* What can be wrong, and what is said of it. Written from core/problems.py by `python -m boreprop.kernel.generate`.
+
+   In a sentence stand {{name}}, {{value}}, {{before}}, {{count}} (the value, if it is a whole number), {{limit}} and
+   {{place}} for what a Problem has. */
+#ifndef BOREPROP_PROBLEMS_H
+#define BOREPROP_PROBLEMS_H
+
+typedef enum {{
+    NO_PROBLEM,
+{codes}
+    CODE_COUNT
+}} Code;
+
+/* What a problem is about: of the table of quantities, or made of them. */
+typedef enum {{
+    Q_NOTHING,
+{names}
+    NAME_COUNT
+}} Name;
+
+/* clang-format off */
+
+static const char *const SENTENCE[CODE_COUNT] = {{
+    "",
+{sentences}
+}};
+
+static const char *const NAME[NAME_COUNT] = {{
+    "",
+{texts}
+}};
+
+/* clang-format on */
+
+#endif
+"""
 
 RADAU_TABLES = """\
 /* The numbers of the Radau collocation in radau.h, generated from core/radau.py by python -m boreprop.kernel.generate:
@@ -139,9 +210,23 @@ def quantities_header(system: Table = SYSTEM, inputs: Table = INPUTS, outputs: T
         "input_table": _lines(_range_row(q, "0") for q in inputs),
         "output_names": _lines(f"OUT_{q.name.upper()}, /* {_note(q.unit, q.meaning)} */" for q in outputs),
         "output_sizes": _lines(f"{SIZES[q.size]}, /* {q.name} */" for q in outputs),
+        "output_table": _lines(f"Q_{q.name.upper()}," for q in outputs),
+        "options": ", ".join(field.name for field in fields(Options)),
+        "usual": ", ".join(repr(float(value)) for value in astuple(Options())),
         "most_outputs": sum(q.count(MAX_STABILIZERS) for q in outputs),
     }
-    return QUANTITIES.format(digest=_digest(QUANTITIES.format(digest="", **numbers)), **numbers)
+    text = QUANTITIES_HEADER.format(digest="", **numbers) + problems_header()
+    return QUANTITIES_HEADER.format(digest=_digest(text), **numbers)
+
+
+def problems_header() -> str:
+    """The text of problems.h."""
+    return PROBLEMS_HEADER.format(
+        codes=_lines(f"{code.upper().replace(' ', '_')}," for code in SENTENCES),
+        names=_lines(f"Q_{name.upper()}," for name in NAMES),
+        sentences=_lines(f'"{sentence}",' for sentence in SENTENCES.values()),
+        texts=_lines(f'"{text}",' for text in NAMES.values()),
+    )
 
 
 @cache
@@ -164,7 +249,7 @@ def _note(unit: str, meaning: str) -> str:
 
 def _range_row(quantity: Quantity, offset: str) -> str:
     bounds = ", ".join(_bound(bound) for bound in (quantity.above, quantity.at_least, quantity.at_most))
-    return f'{{"{quantity.name}", {SIZES[quantity.size]}, {offset}, {bounds}}},'
+    return f"{{Q_{quantity.name.upper()}, {SIZES[quantity.size]}, {offset}, {bounds}}},"
 
 
 def _bound(value: float) -> str:
@@ -199,7 +284,11 @@ def _columns(table: Sequence[Sequence[float]]) -> str:
     return _rows(list(zip(*table, strict=True)))
 
 
-HEADERS: dict[str, Callable[[], str]] = {"quantities.h": quantities_header, "radau_tables.h": radau_tables}
+HEADERS: dict[str, Callable[[], str]] = {
+    "problems.h": problems_header,
+    "quantities.h": quantities_header,
+    "radau_tables.h": radau_tables,
+}
 
 if __name__ == "__main__":
     for name, text in HEADERS.items():

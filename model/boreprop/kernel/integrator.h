@@ -8,21 +8,16 @@
 
 #include "events.h"
 
-#define LARGEST_STEP 1.0   /* ℓ₁: the shortest delay, so a step never needs a hole that is not yet drilled */
 #define LOOK_BACK 1.0      /* ℓ₁: how far behind the bit Θ may be asked for */
 #define LARGEST_GROWTH 8.0 /* of the length from step to step: an error that happens to vanish foretells nothing */
 #define LEAST_GROWTH 0.1   /* after an error above the tolerance: far enough, and the next trial tells more */
 #define LEAST_ERROR 1e-12  /* over the tolerance: its growth is beyond the largest, and it is not zero */
 #define SAFETY 0.85        /* of the length at which the error would meet the tolerance: few steps are then rejected */
-#define LAYERS 16.0        /* first step after a kink, in relaxation lengths of θ: the layer has died out by its end */
 #define STRETCH 1.3        /* how much longer than planned a step may be if it then ends on the next kink */
 #define CLOSER 8.0       /* how much shorter a step is tried where each regime meets a bound before its first point, */
 #define MOST_SLACK 1e-6  /* while a value may lie so much farther beyond its bound at the points, at last by this */
 #define ORIGIN_LIMIT 8.0 /* |Y| beyond which the origin of Y is moved to the bit, to keep the digits of differences */
 #define LARGEST_INCLINATION 6.283185307179586
-#define TURNS_OVER                                                                                                     \
-    "its inclination grows beyond a full turn; use a smaller or shorter rss_force, a larger active_weight_on_bit, "    \
-    "or check the parameters"
 
 /* Everything that evolves, but for what the rings of the hole and its kinks hold: a copy of it is the way back. */
 typedef struct {
@@ -42,7 +37,8 @@ typedef struct {
 typedef struct {
     Scaled scaled;
     Modes modes;
-    double length_scale, tolerance;
+    double length_scale;
+    Options options;
     State now;
     Law law;       /* of the present regime and inputs, */
     int law_known; /* once it has been asked for */
@@ -51,29 +47,20 @@ typedef struct {
     Kink last_kink;
 } Integrator;
 
-/* The line that says what the integrator has met at `xi`, and what helps. */
-static inline Status failed(const Integrator *p, const char *what, double xi, const char *helps, char why[MESSAGE]) {
-    char at[32];
-    snprintf(why, MESSAGE, "%s at %s m: %s", what, decimal(xi * p->length_scale, 9, at), helps);
-    return FAILED;
+/* Note what the integrator has met at `xi`. */
+static inline Status failed(const Integrator *p, Code code, double xi, Problem *problem) {
+    return met(problem, code, p->options.relative_tolerance, xi * p->length_scale);
 }
 
-/* The same where another tolerance helps. */
-static inline Status failed_at_tolerance(
-    const Integrator *p, const char *what, double xi, const char *helps, char why[MESSAGE]
-) {
-    char now[32], line[128];
-    snprintf(line, sizeof line, "%s relative_tolerance (--tolerance), now %s", helps, decimal(p->tolerance, 6, now));
-    return failed(p, what, xi, line, why);
-}
-
-/* The line that says that numbers have run away. */
-static inline Status not_finite(const Integrator *p, double xi, char why[MESSAGE]) {
-    return failed(p, "the state is not finite", xi, "check inputs and parameters", why);
+/* Note that the way from where the bit is takes too many steps. */
+static inline Status too_many(const Integrator *p, Problem *problem) {
+    return met(problem, TOO_MANY, p->options.most_steps, p->now.xi * p->length_scale);
 }
 
 /* The shortest step at `xi`: the next position must differ. */
-static inline double shortest_step(double xi) { return SMALLEST_STEP * larger(1.0, xi); }
+static inline double shortest_step(const Integrator *p, double xi) {
+    return p->options.smallest_step * larger(1.0, xi);
+}
 
 static inline const Law *present_law(Integrator *p) {
     if (!p->law_known) p->law = make_law(&p->scaled, &p->modes, p->now.regime, p->now.inputs, p->now.inputs_xi);
@@ -117,7 +104,7 @@ static inline int leave(Integrator *p, const Step *last, double x[COMPONENTS]) {
     forget(&now->hole, xi - LOOK_BACK - p->scaled.s[p->scaled.n - 1]);
     move_cursors(&now->hole, &p->scaled, xi);
     /* half the way to a kink is no shorter than a step may be */
-    int kink = kink_here(&now->kinks, &p->scaled, xi, larger(MERGE, 2 * shortest_step(xi)));
+    int kink = kink_here(&now->kinks, &p->scaled, xi, larger(MERGE, 2 * shortest_step(p, xi)));
     if (last->event == NONE) return kink;
     pass_event(p, last);
     now->events++;
@@ -143,10 +130,10 @@ typedef struct {
 } Plan;
 
 /* The plan of the step after `last`, which ended on a kink of some order. */
-static inline Plan first_plan(const Step *last, int kink, const Law *law) {
+static inline Plan first_plan(const Step *last, int kink, const Law *law, double layers) {
     Plan plan = {last->next_h, last->next_h, STRETCH, ROUNDING, 0, 0.0};
     if (kink <= SMOOTHEST_KINK || last->end == last->xi) {
-        plan.planned = smaller(plan.planned, LAYERS * law->relaxation);
+        plan.planned = smaller(plan.planned, layers * law->relaxation);
         if (last->event != NONE) plan.resumed = plan.planned;
     }
     return plan;
@@ -154,9 +141,9 @@ static inline Plan first_plan(const Step *last, int kink, const Law *law) {
 
 /* Choose the length of the trial: to the next kink if that is near, half the way there if that is not much farther. */
 static inline void choose_length(const Integrator *p, const Law *law, double xi, Plan *plan) {
-    double h = smaller(plan->planned, LARGEST_STEP);
-    double way = next_kink(&p->now.kinks, &p->scaled, law->gains, p->tolerance, xi, 2 * h) - xi;
-    if (way < 2 * h) h = way <= smaller(plan->stretch * h, LARGEST_STEP) ? way : way / 2;
+    double largest = p->options.largest_step, h = smaller(plan->planned, largest);
+    double way = next_kink(&p->now.kinks, &p->scaled, law->gains, p->options.relative_tolerance, xi, 2 * h) - xi;
+    if (way < 2 * h) h = way <= smaller(plan->stretch * h, largest) ? way : way / 2;
     plan->h = h;
 }
 
@@ -167,7 +154,7 @@ static inline void try_step(
     Step step = {xi, h, {{0}}, xi + h, NONE, 0, INFINITY};
     trial->step = step;
     look_up(&p->now.hole, &p->scaled, trial);
-    law_try(law, p->tolerance, x, trial);
+    law_try(law, &p->options, x, trial);
 }
 
 /* Whether numbers have run away in a trial step. */
@@ -180,7 +167,7 @@ static inline int is_finite(const Trial *trial) {
 /* How much longer than a step with this error the next one may be: the error grows as h^(S+1). */
 static inline double growth(double error) { return SAFETY * pow(larger(error, LEAST_ERROR), -1.0 / (S + 1)); }
 
-/* Find the step from the state `x` at `xi` on; `why` says what failed and what helps.
+/* Find the step from the state `x` at `xi` on.
 
    A bound that is met where the step starts switches the regime there. By the rates exactly one regime holds, but
    perhaps for a touch that is over before the first point of the step: then each regime finds itself beyond a bound
@@ -188,17 +175,16 @@ static inline double growth(double error) { return SAFETY * pow(larger(error, LE
    beyond its bound by a slack that grows as h falls; their product, what a wrong regime adds to the state, is the same
    each time. */
 static inline Status find_step(
-    Integrator *p, double xi, const double x[COMPONENTS], Plan *plan, Trial *trial, char why[MESSAGE]
+    Integrator *p, double xi, const double x[COMPONENTS], Plan *plan, Trial *trial, Problem *problem
 ) {
     const Step *step = &trial->step;
-    double shortest = shortest_step(xi);
+    double shortest = shortest_step(p, xi);
     for (;;) {
         const Law *law = present_law(p);
         choose_length(p, law, xi, plan);
-        if (plan->h < shortest)
-            return failed_at_tolerance(p, "the steps of the integrator become too short", xi, "raise", why);
+        if (plan->h < shortest) return failed(p, TOO_SHORT, xi, problem);
         try_step(p, law, xi, plan->h, x, trial);
-        if (!is_finite(trial)) return not_finite(p, xi, why);
+        if (!is_finite(trial)) return failed(p, NOT_FINITE, xi, problem);
         if (trial->error > 1.0) {
             plan->planned = plan->resumed = plan->h * larger(growth(trial->error), LEAST_GROWTH);
             plan->stretch = 1.0;
@@ -214,20 +200,20 @@ static inline Status find_step(
         }
         plan->planned = larger(plan->h / CLOSER, shortest);
         plan->stretch = 1.0, plan->switches = 0, plan->slack *= CLOSER;
-        if (plan->slack >= MOST_SLACK) return failed_at_tolerance(p, "no contact mode holds", xi, "change", why);
+        if (plan->slack >= MOST_SLACK) return failed(p, NO_MODE, xi, problem);
     }
 }
 
-/* Append one step at the end of the last one; `why` says what failed and what helps. */
-static inline Status take_step(Integrator *p, char why[MESSAGE]) {
+/* Append one step at the end of the last one. */
+static inline Status take_step(Integrator *p, Problem *problem) {
     State *now = &p->now;
     const Step last = now->step;
     double x[COMPONENTS], end[COMPONENTS];
     Trial trial;
     if (!has_room(p)) return FULL;
     int kink = leave(p, &last, x);
-    Plan plan = first_plan(&last, kink, present_law(p));
-    Status status = find_step(p, last.end, x, &plan, &trial, why);
+    Plan plan = first_plan(&last, kink, present_law(p), p->options.layers);
+    Status status = find_step(p, last.end, x, &plan, &trial, problem);
     if (status != DONE) return status;
     Step *step = &now->step;
     *step = trial.step;
@@ -235,7 +221,7 @@ static inline Status take_step(Integrator *p, char why[MESSAGE]) {
         larger(plan.h < plan.resumed ? plan.resumed : 0.0, plan.h * smaller(growth(trial.error), LARGEST_GROWTH));
     step_state(step, step->end, end);
     for (int c = ANGLE; c < LATERAL; c++)
-        if (!(fabs(end[c]) <= LARGEST_INCLINATION)) return failed(p, "the bit turns over", step->end, TURNS_OVER, why);
+        if (!(fabs(end[c]) <= LARGEST_INCLINATION)) return failed(p, TURNS_OVER, step->end, problem);
     ScaledInputs inputs = now->inputs;
     inputs.F_rss += now->inputs.F_rss_slope * (last.end - now->inputs_xi);
     append(&now->hole, step, inputs);
@@ -264,9 +250,12 @@ static inline int set_out(Integrator *p) {
 }
 
 /* Take steps until `xi` lies within one. */
-static inline Status integrate(Integrator *p, double xi, char why[MESSAGE]) {
+static inline Status integrate(Integrator *p, double xi, Problem *problem) {
+    double most = p->options.most_steps, last = p->before.accepted + most;
     Status status = DONE;
-    while (status == DONE && xi > p->now.step.end) status = take_step(p, why);
+    if (xi > p->now.step.end && xi - p->now.xi > most * p->options.largest_step) return too_many(p, problem);
+    while (status == DONE && xi > p->now.step.end)
+        status = p->now.accepted < last ? take_step(p, problem) : too_many(p, problem);
     return status;
 }
 

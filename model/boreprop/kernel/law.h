@@ -129,7 +129,6 @@ static inline void linear_frozen(
     add_others(f, n, trial, values);
 }
 
-#define THETA_WEIGHT 0.1 /* of an error in θ, which is forgotten within εηΠ; Y carries it for the length of the BHA */
 #define REST 0.03     /* what may be left of sin⟨Θ⟩_1 beyond its linear part, in tolerances of θ: a small part of one */
 #define ITERATIONS 10 /* on that rest, more than are ever needed: each gains two digits or more */
 
@@ -161,13 +160,13 @@ static inline int sines_agree(
 }
 
 /* Collocation from the state `x` over a trial step, of which the place, the length and the delayed hole are given. */
-static inline void law_try(const Law *law, double tolerance, const double x[COMPONENTS], Trial *trial) {
+static inline void law_try(const Law *law, const Options *options, const double x[COMPONENTS], Trial *trial) {
     const Linear *rate = &law->theta_rate, *Theta = &law->Theta;
     const double theta = x[ANGLE], Y = x[LATERAL], h = trial->step.h, *Y_1 = trial->delayed[0][0];
     double frozen[POINTS], f_theta[POINTS], f_Y[POINTS], parts_theta[S], parts_Y[S];
     Tangent tangent = {Y - Y_1[0], sin(Y - Y_1[0]), cos(Y - Y_1[0])};
     Jacobian J = {rate->theta, rate->Y + rate->g * tangent.cosine, Theta->theta, Theta->Y + Theta->g * tangent.cosine};
-    double allowed = REST * tolerance * (fabs(rate->theta) + 1 / h);
+    double allowed = REST * options->relative_tolerance * (fabs(rate->theta) + 1 / h);
     for (int k = 0; k < POINTS; k++) {
         trial->ahead[k] = trial->step.xi - law->inputs_xi + POINT[k] * h;
         frozen[k] = tangent.sine + tangent.cosine * (Y - Y_1[k] - tangent.near);
@@ -188,7 +187,7 @@ static inline void law_try(const Law *law, double tolerance, const double x[COMP
     radau_error(
         h, J, radau_slope(parts_theta) - h * slope_theta, radau_slope(parts_Y) - h * slope_Y, &error_theta, &error_Y
     );
-    trial->error = larger(THETA_WEIGHT * fabs(error_theta), fabs(error_Y)) / tolerance;
+    trial->error = larger(options->theta_weight * fabs(error_theta), fabs(error_Y)) / options->relative_tolerance;
 }
 
 #define SMALL_TURN 0.05 /* rad: the series below are exact to the last digit up to here */

@@ -5,15 +5,19 @@ const char *boreprop_sources_digest(void) { return BOREPROP_SOURCES_DIGEST; }
 
 const char *boreprop_quantities_digest(void) { return QUANTITIES_DIGEST; }
 
+void boreprop_sentence(const Problem *problem, char line[MESSAGE]) { sentence(problem, line); }
+
 Run *boreprop_start(
-    int n, const double *parameters, Count count, const double *measured_depth, const double *inclination,
-    const Inputs *inputs, char why[MESSAGE]
+    int n, const double *parameters, const Options *options, Count count, const double *measured_depth,
+    const double *inclination, const Inputs *inputs, Problem *problem
 ) {
     Survey survey = {count, measured_depth, inclination};
     System system = system_of(n, parameters);
     Run *run = calloc(1, sizeof *run);
-    strcpy(why, "memory: must have room for a run, got too little");
-    if (run && run_prepare(run, &system, why) == DONE && run_start(run, &survey, *inputs, why) == DONE) return run;
+    met(problem, NO_MEMORY, MOST_PIECES, 0.0);
+    if (run && run_prepare(run, &system, *options, problem) == DONE &&
+        run_start(run, &survey, *inputs, problem) == DONE)
+        return run;
     run_end(run);
     return NULL;
 }
@@ -22,12 +26,12 @@ void boreprop_end(Run *run) { run_end(run); }
 
 Count boreprop_follow(
     Run *run, Count count, const double *lengths, const double *forces, double active_weight_on_bit, const int *rows,
-    double *table, char why[MESSAGE]
+    double *table, Problem *problem
 ) {
     Count width = output_count(run->drilling.system.n);
     for (Count k = 0; k < count; k++) {
         Inputs inputs = {.rss_force = forces[k], .active_weight_on_bit = active_weight_on_bit};
-        if (run_advance(run, lengths[k], inputs, why) != DONE) return k;
+        if (run_advance(run, lengths[k], inputs, problem) != DONE) return k;
         if (rows[k] >= 0) drilling_outputs(&run->drilling, table + rows[k] * width);
     }
     return count;
@@ -37,17 +41,17 @@ int boreprop_outputs(Run *run, double out[MOST_OUTPUTS]) { return drilling_outpu
 
 double boreprop_length(const Run *run) { return drilling_length(&run->drilling); }
 
-void boreprop_step(const Run *run, double numbers[8]) {
+int boreprop_step(Run *run, Problem *problem) { return run_step(run, problem) == DONE; }
+
+void boreprop_statistics(const Run *run, double counts[3]) {
     const State *now = &run->drilling.integrator.now;
-    const Step *step = &now->step;
-    double all[] = {step->xi, step->h, step->end, step->event, step->side, now->accepted, now->rejected, now->events};
-    memcpy(numbers, all, sizeof all);
+    counts[0] = now->accepted, counts[1] = now->rejected, counts[2] = now->events;
 }
 
 Count boreprop_state_size(const Run *run) { return drilling_state_size(&run->drilling); }
 
 void boreprop_save(const Run *run, double *state) { drilling_save(&run->drilling, state); }
 
-int boreprop_restore(Run *run, const double *state, Count count, char why[MESSAGE]) {
-    return run_restore(run, state, count, why) == DONE;
+int boreprop_restore(Run *run, const double *state, Count count, Problem *problem) {
+    return run_restore(run, state, count, problem) == DONE;
 }

@@ -12,10 +12,10 @@ typedef long long Count; /* of stations, and of pieces of hole: 32 bits are not 
 static inline double larger(double a, double b) { return b > a ? b : a; }
 static inline double smaller(double a, double b) { return b < a ? b : a; }
 
-/* The number with so many digits, with a decimal point in every locale. */
-static inline const char *decimal(double value, int digits, char text[32]) {
+/* The number in the format %.*g, or %.*e, with a decimal point in every locale. */
+static inline const char *spell(double value, int exponential, int digits, char text[32]) {
     char *end = text;
-    snprintf(text, 32, "%.*g", digits, value);
+    snprintf(text, 32, exponential ? "%.*e" : "%.*g", digits, value);
     if (!isfinite(value)) return strcpy(text, isnan(value) ? "nan" : value > 0 ? "inf" : "-inf");
     for (const char *from = text; *from; from++)
         if (strchr("0123456789+-e", *from)) *end++ = *from;
@@ -24,13 +24,17 @@ static inline const char *decimal(double value, int digits, char text[32]) {
     return text;
 }
 
-/* A short decimal that reads back as the same number. */
+/* The number with so many digits. */
+static inline const char *decimal(double value, int digits, char text[32]) { return spell(value, 0, digits, text); }
+
+/* The shortest decimal that reads back as the same number, as Python writes it. */
 static inline const char *represent(double value, char text[32]) {
-    int digits = 15;
+    int digits = fabs(value) < 1e15 ? 15 : 16; /* from 1e16 on with an exponent */
     char local[32];
     do snprintf(local, sizeof local, "%.*g", digits, value);
     while (strtod(local, NULL) != value && ++digits < 17);
-    decimal(value, digits, text);
+    if (digits == 17 && fabs(value) >= 1e16) spell(value, 1, 16, text);
+    else decimal(value, digits, text);
     return isfinite(value) && !strpbrk(text, ".e") ? strcat(text, ".0") : text;
 }
 

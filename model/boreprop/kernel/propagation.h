@@ -67,7 +67,7 @@ static inline void position(const State *now, double *x, double *z) {
 /* Start anew under new inputs from the state `x` where the bit is: find the regime, and mark the jump of the inclination,
    which was Θ, that they make. */
 static inline Status restart(
-    Integrator *p, ScaledInputs inputs, const double x[COMPONENTS], double Theta, char why[MESSAGE]
+    Integrator *p, ScaledInputs inputs, const double x[COMPONENTS], double Theta, Problem *problem
 ) {
     State *now = &p->now;
     now->inputs = inputs, now->inputs_xi = now->xi;
@@ -76,7 +76,7 @@ static inline Status restart(
     const Mode *mode = settle(&p->modes, &loads, now->regime.contact);
     double F_0 = row_value(&mode->F_0, &loads, p->scaled.n), psi_star = p->scaled.psi_star;
     double jump = fabs(x[ANGLE] - bit_tilt(F_0, inputs.eta_pi, psi_star) - Theta);
-    if (!isfinite(jump) || !isfinite(F_0)) return not_finite(p, now->xi, why);
+    if (!isfinite(jump) || !isfinite(F_0)) return failed(p, NOT_FINITE, now->xi, problem);
     Regime regime = {mode->contact, side_beyond(F_0 / inputs.eta_pi, -psi_star, psi_star, ROUNDING)};
     change_regime(p, regime);
     add_kink(&now->kinks, p->scaled.n, now->xi, 1, jump);
@@ -84,12 +84,12 @@ static inline Status restart(
 }
 
 /* Take over inputs where the bit is. */
-static inline Status steer(Integrator *p, ScaledInputs inputs, char why[MESSAGE]) {
+static inline Status steer(Integrator *p, ScaledInputs inputs, Problem *problem) {
     State *now = &p->now;
     double Theta = inclination(p), bend = inputs.F_rss_slope - now->inputs.F_rss_slope, x[COMPONENTS];
     move_path(now, now->xi);
     step_state(&now->step, now->xi, x);
-    Status status = restart(p, inputs, x, Theta, why);
+    Status status = restart(p, inputs, x, Theta, problem);
     if (status != DONE || bend == 0 || now->regime.saturation) return status;
     const Mode *mode = mode_of(&p->modes, now->regime.contact);
     add_kink(&now->kinks, p->scaled.n, now->xi, 2, fabs(bend * mode->F_0.rss / inputs.eta_pi));
@@ -97,14 +97,14 @@ static inline Status steer(Integrator *p, ScaledInputs inputs, char why[MESSAGE]
 }
 
 /* Drill on to `xi` under inputs that act from where the bit is. After FULL the same call goes on in larger rings. */
-static inline Status drill(Integrator *p, double xi, ScaledInputs inputs, char why[MESSAGE]) {
+static inline Status drill(Integrator *p, double xi, ScaledInputs inputs, Problem *problem) {
     State *now = &p->now;
     int changed = inputs.F_rss != present_force(now) || inputs.F_rss_slope != now->inputs.F_rss_slope ||
                   inputs.eta_pi != now->inputs.eta_pi;
     if (changed || xi > now->step.end) {
         if (!set_out(p)) return FULL;
-        Status status = changed ? steer(p, inputs, why) : DONE;
-        if (status == DONE) status = integrate(p, xi, why);
+        Status status = changed ? steer(p, inputs, problem) : DONE;
+        if (status == DONE) status = integrate(p, xi, problem);
         if (status == FAILED) go_back(p);
         if (status != DONE) return status;
         p->under_way = 0;
@@ -113,24 +113,37 @@ static inline Status drill(Integrator *p, double xi, ScaledInputs inputs, char w
     return DONE;
 }
 
+/* Drill on to the end of the next step, under the inputs as they are. After FULL the same call goes on. */
+static inline Status drill_step(Integrator *p, Problem *problem) {
+    if (!set_out(p)) return FULL;
+    Status status = take_step(p, problem);
+    if (status == FAILED) go_back(p);
+    if (status != DONE) return status;
+    p->under_way = 0;
+    p->now.xi = p->now.step.end;
+    return DONE;
+}
+
 /* What does not evolve; before `begin`, or before a state is restored. */
-static inline void prepare(Integrator *p, const Scaled *scaled, double length_scale, double relative_tolerance) {
+static inline void prepare(Integrator *p, const Scaled *scaled, double length_scale, Options options) {
     memset(p, 0, sizeof *p);
     p->scaled = *scaled;
     p->modes.beam = make_beam(scaled);
     memcpy(p->modes.y_star, scaled->y_star, sizeof p->modes.y_star);
-    p->length_scale = length_scale, p->tolerance = relative_tolerance;
+    p->length_scale = length_scale, p->options = options;
 }
 
 /* Start at the end of a survey; the rings must have room for it. */
-static inline Status begin(Integrator *p, const Survey *survey, ScaledInputs inputs, char why[MESSAGE]) {
+static inline Status begin(Integrator *p, const Survey *survey, ScaledInputs inputs, Problem *problem) {
     State *now = &p->now;
     double reach = LOOK_BACK + p->scaled.s[p->scaled.n - 1], x[COMPONENTS] = {0};
     x[ANGLE] = take_survey(&now->hole, survey, p->length_scale, reach);
     take_kinks(&now->hole, &now->kinks, survey, p->length_scale, reach);
     for (Count k = 0; k < now->hole.end; k++)
-        if (!check_finite("l_1 / distance of stations", piece(&now->hole, k)->rate, why)) return FAILED;
-    return restart(p, inputs, x, x[ANGLE], why);
+        if (!check_finite(Q_STATION_RATE, 0, piece(&now->hole, k)->rate, problem)) return FAILED;
+    if (restart(p, inputs, x, x[ANGLE], problem) == DONE) return DONE;
+    wrong(problem, NO_START, Q_PARAMETERS, 0, NAN, NAN);
+    return FAILED;
 }
 
 #endif

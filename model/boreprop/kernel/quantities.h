@@ -2,10 +2,11 @@
 #ifndef BOREPROP_QUANTITIES_H
 #define BOREPROP_QUANTITIES_H
 
+#include "problems.h"
 #include <math.h>
 #include <stddef.h>
 
-#define QUANTITIES_DIGEST "719775283b845d8c" /* of this file, but for this line */
+#define QUANTITIES_DIGEST "4c4fa2ac651df49c" /* of this file, but for this line, and of problems.h */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: between closer ones the force is rounding */
 
 enum { MAX_STABILIZERS = 6, PARAMETER_COUNT = 9, INPUT_COUNT = 3, OUTPUT_COUNT = 15 };
@@ -36,29 +37,29 @@ typedef enum { ONE, EACH_STABILIZER, EACH_NON_IDEAL } Size;
 
 /* A quantity that is given from outside: its range, above < value, at_least <= value <= at_most. */
 typedef struct {
-    const char *name;
+    Name name;
     Size size;
     size_t offset; /* of a parameter, in System */
     double above, at_least, at_most;
 } Quantity;
 
 static const Quantity PARAMETER_TABLE[PARAMETER_COUNT] = {
-    {"stabilizer_position", EACH_STABILIZER, offsetof(System, stabilizer_position), 0.0, -INFINITY, INFINITY},
-    {"stabilizer_clearance", EACH_NON_IDEAL, offsetof(System, stabilizer_clearance), -INFINITY, 0.0, INFINITY},
-    {"rss_position", ONE, offsetof(System, rss_position), -INFINITY, 0.0, INFINITY},
-    {"distributed_weight", ONE, offsetof(System, distributed_weight), -INFINITY, 0.0, INFINITY},
-    {"flexural_stiffness", ONE, offsetof(System, flexural_stiffness), 0.0, -INFINITY, INFINITY},
-    {"lateral_steering_resistance", ONE, offsetof(System, lateral_steering_resistance), 0.0, -INFINITY, INFINITY},
-    {"angular_steering_resistance", ONE, offsetof(System, angular_steering_resistance), 0.0, -INFINITY, INFINITY},
-    {"bit_tilt_limit", ONE, offsetof(System, bit_tilt_limit), 0.0, -INFINITY, 1.5707963267948966},
-    {"relative_tolerance", ONE, offsetof(System, relative_tolerance), -INFINITY, 1e-12, 0.01},
+    {Q_STABILIZER_POSITION, EACH_STABILIZER, offsetof(System, stabilizer_position), 0.0, -INFINITY, INFINITY},
+    {Q_STABILIZER_CLEARANCE, EACH_NON_IDEAL, offsetof(System, stabilizer_clearance), -INFINITY, 0.0, INFINITY},
+    {Q_RSS_POSITION, ONE, offsetof(System, rss_position), -INFINITY, 0.0, INFINITY},
+    {Q_DISTRIBUTED_WEIGHT, ONE, offsetof(System, distributed_weight), -INFINITY, 0.0, INFINITY},
+    {Q_FLEXURAL_STIFFNESS, ONE, offsetof(System, flexural_stiffness), 0.0, -INFINITY, INFINITY},
+    {Q_LATERAL_STEERING_RESISTANCE, ONE, offsetof(System, lateral_steering_resistance), 0.0, -INFINITY, INFINITY},
+    {Q_ANGULAR_STEERING_RESISTANCE, ONE, offsetof(System, angular_steering_resistance), 0.0, -INFINITY, INFINITY},
+    {Q_BIT_TILT_LIMIT, ONE, offsetof(System, bit_tilt_limit), 0.0, -INFINITY, 1.5707963267948966},
+    {Q_RELATIVE_TOLERANCE, ONE, offsetof(System, relative_tolerance), -INFINITY, 1e-12, 0.01},
 };
 
 enum { IN_RSS_FORCE, IN_ACTIVE_WEIGHT_ON_BIT, IN_RATE_OF_PENETRATION };
 static const Quantity INPUT_TABLE[INPUT_COUNT] = {
-    {"rss_force", ONE, 0, -INFINITY, -INFINITY, INFINITY},
-    {"active_weight_on_bit", ONE, 0, 0.0, -INFINITY, INFINITY},
-    {"rate_of_penetration", ONE, 0, -INFINITY, 0.0, INFINITY},
+    {Q_RSS_FORCE, ONE, 0, -INFINITY, -INFINITY, INFINITY},
+    {Q_ACTIVE_WEIGHT_ON_BIT, ONE, 0, 0.0, -INFINITY, INFINITY},
+    {Q_RATE_OF_PENETRATION, ONE, 0, -INFINITY, 0.0, INFINITY},
 };
 
 /* The outputs, in their order. */
@@ -96,6 +97,30 @@ static const Size OUTPUT_SIZE[OUTPUT_COUNT] = {
     ONE, /* true_vertical_depth */
     ONE, /* eta_pi */
 };
+static const Name OUTPUT_NAME[OUTPUT_COUNT] = {
+    Q_DRILLED_LENGTH,
+    Q_BIT_INCLINATION,
+    Q_BOREHOLE_INCLINATION,
+    Q_BIT_TILT,
+    Q_AVERAGE_INCLINATION,
+    Q_STABILIZER_DEFLECTION,
+    Q_STABILIZER_FORCE,
+    Q_STABILIZER_CONTACT,
+    Q_BIT_TILT_SATURATION,
+    Q_BIT_LATERAL_FORCE,
+    Q_BIT_MOMENT,
+    Q_BOREHOLE_CURVATURE,
+    Q_DISPLACEMENT,
+    Q_TRUE_VERTICAL_DEPTH,
+    Q_ETA_PI,
+};
 enum { MOST_OUTPUTS = 32 }; /* values, of the largest assembly */
+
+/* How the integrator takes its steps: core/options.py says what each is. */
+typedef struct {
+    double relative_tolerance, largest_step, smallest_step, layers, theta_weight, most_steps;
+} Options;
+
+static const Options USUAL_OPTIONS = {1e-07, 1.0, 1e-12, 16.0, 0.1, 262144.0};
 
 #endif

@@ -5,8 +5,6 @@
 #include "drilling.h"
 #include "state.h"
 
-enum { MOST_STEPS = MOST_PIECES / 2 }; /* in one step of a host */
-
 typedef struct {
     Drilling drilling;
     void *memory;
@@ -17,18 +15,10 @@ static inline void run_end(Run *run) {
     free(run);
 }
 
-static inline Status too_long(char why[MESSAGE]) {
-    snprintf(why, MESSAGE, "step: must take at most %d steps of the integrator, got more", MOST_STEPS);
-    return FAILED;
-}
-
 /* Take memory of a capacity; what the run held stays. */
-static inline Status grow(Run *run, Count capacity, char why[MESSAGE]) {
+static inline Status grow(Run *run, Count capacity, Problem *problem) {
     void *memory = capacity <= MOST_PIECES ? malloc(drilling_memory(capacity)) : NULL;
-    if (!memory) {
-        snprintf(why, MESSAGE, "memory: must have room for %lld pieces of hole, got at most %d", capacity, MOST_PIECES);
-        return FAILED;
-    }
+    if (!memory) return met(problem, NO_MEMORY, MOST_PIECES, 0.0);
     if (run->memory) drilling_move(&run->drilling, memory, capacity);
     free(run->memory);
     run->memory = memory;
@@ -36,36 +26,47 @@ static inline Status grow(Run *run, Count capacity, char why[MESSAGE]) {
 }
 
 /* A drilling system that has not begun: `run_start` or `run_restore` is next. */
-static inline Status run_prepare(Run *run, const System *system, char why[MESSAGE]) {
-    if (grow(run, LEAST_CAPACITY, why) != DONE) return FAILED;
-    return drilling_prepare(&run->drilling, system, run->memory, LEAST_CAPACITY, why);
+static inline Status run_prepare(Run *run, const System *system, Options options, Problem *problem) {
+    if (grow(run, LEAST_CAPACITY, problem) != DONE) return FAILED;
+    return drilling_prepare(&run->drilling, system, options, run->memory, LEAST_CAPACITY, problem);
 }
 
-static inline Status run_start(Run *run, const Survey *survey, Inputs inputs, char why[MESSAGE]) {
-    if (!check_survey(survey, why)) return FAILED;
+static inline Status run_start(Run *run, const Survey *survey, Inputs inputs, Problem *problem) {
+    if (!check_survey(survey, problem)) return FAILED;
     Count capacity = drilling_capacity(&run->drilling.system, survey);
-    if (capacity > LEAST_CAPACITY && grow(run, capacity, why) != DONE) return FAILED;
-    return drilling_start(&run->drilling, survey, inputs, why);
+    if (capacity > LEAST_CAPACITY && grow(run, capacity, problem) != DONE) return FAILED;
+    return drilling_start(&run->drilling, survey, inputs, problem);
 }
 
-static inline Status run_advance(Run *run, double drilled_length, Inputs inputs, char why[MESSAGE]) {
+/* Twice the memory for the way under way; where there is none that takes too many steps, and is taken back. */
+static inline Status grow_on_the_way(Run *run, Problem *problem) {
+    Drilling *drilling = &run->drilling;
+    if (grow(run, 2 * drilling->integrator.now.hole.capacity, problem) == DONE) return DONE;
+    drilling_cancel(drilling);
+    return too_many(&drilling->integrator, problem);
+}
+
+static inline Status run_advance(Run *run, double drilled_length, Inputs inputs, Problem *problem) {
     Status status;
-    double way = (drilled_length - drilling_length(&run->drilling)) / length_scale(&run->drilling.system);
-    if (isfinite(drilled_length) && way > (double)MOST_STEPS * LARGEST_STEP) return too_long(why);
-    while ((status = drilling_advance(&run->drilling, drilled_length, inputs, why)) == FULL)
-        if (grow(run, 2 * run->drilling.integrator.now.hole.capacity, why) != DONE) {
-            drilling_cancel(&run->drilling);
-            return too_long(why);
-        }
+    while ((status = drilling_advance(&run->drilling, drilled_length, inputs, problem)) == FULL)
+        if (grow_on_the_way(run, problem) != DONE) return FAILED;
     return status;
 }
 
-static inline Status run_restore(Run *run, const double *state, Count count, char why[MESSAGE]) {
+/* To the end of the integrator's next step. */
+static inline Status run_step(Run *run, Problem *problem) {
+    Status status;
+    while ((status = drilling_step(&run->drilling, problem)) == FULL)
+        if (grow_on_the_way(run, problem) != DONE) return FAILED;
+    return status;
+}
+
+static inline Status run_restore(Run *run, const double *state, Count count, Problem *problem) {
     Count wanted;
-    Status status = drilling_restore(&run->drilling, state, count, &wanted, why);
+    Status status = drilling_restore(&run->drilling, state, count, &wanted, problem);
     if (status != FULL) return status;
-    if (grow(run, wanted, why) != DONE) return FAILED;
-    return drilling_restore(&run->drilling, state, count, &wanted, why);
+    if (grow(run, wanted, problem) != DONE) return FAILED;
+    return drilling_restore(&run->drilling, state, count, &wanted, problem);
 }
 
 #endif

@@ -6,6 +6,8 @@
 
 #include "drilling.h"
 
+#define ROUNDING_OF_XI 1e-15 /* relative, where ξ is a length over ℓ₁ or the length ξ times ℓ₁ */
+
 /* Numbers are written `to` it or read `from` it; if it is neither, they are only counted. */
 typedef struct {
     double *to;
@@ -114,7 +116,7 @@ static inline int is_consistent(const Drilling *d, const Snapshot *snapshot) {
     const State *now = &snapshot->now;
     const Step *step = &now->step;
     double xi = now->xi, eta_pi = now->inputs.eta_pi;
-    if (snapshot->drilled_length < 0 || snapshot->drilled_length / length_scale(&d->system) != xi) return 0;
+    if (!(fabs(snapshot->drilled_length / length_scale(&d->system) - xi) <= ROUNDING_OF_XI * xi)) return 0;
     if (!(eta_pi > 0) || !isfinite(1 / eta_pi) || now->inputs_xi > xi) return 0;
     if (step->xi > xi || xi > step->end || !(step->h > 0) || !(step->next_h > 0)) return 0;
     return snapshot->passed[d->system.n - 1] == 0; /* the last stabilizer is the last to pass a kink */
@@ -189,11 +191,11 @@ static inline void drilling_return(Drilling *d, const double *state) {
 }
 
 /* Go to a state of a run with the same system, if it can be one; FULL if that needs the capacity `wanted`. */
-static inline Status drilling_restore(Drilling *d, const double *state, Count count, Count *wanted, char why[MESSAGE]) {
+static inline Status drilling_restore(Drilling *d, const double *state, Count count, Count *wanted, Problem *problem) {
     Tape tape = {NULL, state, 0, 1};
     Snapshot snapshot = {0};
     if (!read_state(d, count, &tape, &snapshot)) {
-        snprintf(why, MESSAGE, "state: must be one of this system, got %lld numbers that are none", count);
+        wrong(problem, NO_STATE, Q_STATE, 0, (double)count, NAN);
         return FAILED;
     }
     *wanted = snapshot_capacity(&snapshot);

@@ -11,14 +11,11 @@ typedef struct {
     const double *measured_depth, *inclination;
 } Survey;
 
-static inline int check_survey(const Survey *survey, char why[MESSAGE]) {
-    if (survey->count < 1) {
-        snprintf(why, MESSAGE, "measured_depth: must hold at least one station, got ()");
-        return 0;
-    }
-    if (!check_increasing("measured_depth", survey->count, survey->measured_depth, why)) return 0;
+static inline int check_survey(const Survey *survey, Problem *problem) {
+    if (survey->count < 1) return wrong(problem, NO_STATION, Q_MEASURED_DEPTH, 0, NAN, NAN);
+    if (!check_increasing(Q_MEASURED_DEPTH, survey->count, survey->measured_depth, problem)) return 0;
     for (Count k = 0; k < survey->count; k++)
-        if (!check_finite("inclination", survey->inclination[k], why)) return 0;
+        if (!check_finite(Q_INCLINATION, (int)k + 1, survey->inclination[k], problem)) return 0;
     return 1;
 }
 

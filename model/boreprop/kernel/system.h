@@ -20,27 +20,23 @@ typedef struct {
 static inline int value_count(Size size, int n) { return size == ONE ? 1 : size == EACH_STABILIZER ? n : n - 1; }
 
 /* Whether stabilizers, in order, are far enough from each other and from the bit. */
-static inline int check_spans(const char *name, int count, const double *positions, char why[MESSAGE]) {
-    char least[32], below[32], above[32];
+static inline int check_spans(Name quantity, int count, const double *positions, Problem *problem) {
     for (int i = 0; i < count; i++) {
         double before = i ? positions[i - 1] : 0.0, after = positions[i];
         if (!(after - before < LEAST_SPAN * (1 - 1e-9))) continue; /* 4.34 and 4.35 are, but for rounding */
-        decimal(LEAST_SPAN, 6, least), represent(before, below), represent(after, above);
-        snprintf(
-            why, MESSAGE, "%s: must be at least %s m from each other and from the bit, got (%s, %s)", name, least,
-            below, above
-        );
+        wrong(problem, TOO_CLOSE, quantity, 0, after, LEAST_SPAN);
+        problem->before = before;
         return 0;
     }
     return 1;
 }
 
 /* Whether a value, the one with this index where there are several, is in the range of the table of quantities. */
-static inline int check_quantity(const Quantity *quantity, int index, double value, char why[MESSAGE]) {
-    char name[64];
-    if (quantity->size == ONE) snprintf(name, sizeof name, "%s", quantity->name);
-    else snprintf(name, sizeof name, "%s[%d]", quantity->name, index + 1);
-    return check_number(name, value, quantity->above, quantity->at_least, quantity->at_most, why);
+static inline int check_quantity(const Quantity *quantity, int index, double value, Problem *problem) {
+    int shown = quantity->size == ONE ? 0 : index + 1;
+    return check_number(
+        quantity->name, shown, value, quantity->above, quantity->at_least, quantity->at_most, problem
+    );
 }
 
 /* The system of n stabilizers with these parameters, one after the other in the order of the table; none are read for
@@ -56,21 +52,19 @@ static inline System system_of(int n, const double *values) {
     return system;
 }
 
-static inline int check_system(const System *system, char why[MESSAGE]) {
+static inline int check_system(const System *system, Problem *problem) {
     const double *positions = system->stabilizer_position;
-    if (system->n < 1 || system->n > MAX_STABILIZERS) {
-        snprintf(why, MESSAGE, "stabilizer_position: must hold 1 to %d positions, got %d", MAX_STABILIZERS, system->n);
-        return 0;
-    }
+    if (system->n < 1 || system->n > MAX_STABILIZERS)
+        return wrong(problem, WRONG_COUNT, Q_STABILIZER_POSITION, 0, system->n, MAX_STABILIZERS);
     for (int k = 0; k < PARAMETER_COUNT; k++) {
         const Quantity *quantity = &PARAMETER_TABLE[k];
         const double *values = (const double *)(const void *)((const char *)system + quantity->offset);
         for (int i = 0; i < value_count(quantity->size, system->n); i++)
-            if (!check_quantity(quantity, i, values[i], why)) return 0;
+            if (!check_quantity(quantity, i, values[i], problem)) return 0;
     }
-    return check_increasing("stabilizer_position", system->n, positions, why) &&
-           check_spans("stabilizer_position", system->n, positions, why) &&
-           check_number("rss_position", system->rss_position, -INFINITY, -INFINITY, positions[0], why);
+    return check_increasing(Q_STABILIZER_POSITION, system->n, positions, problem) &&
+           check_spans(Q_STABILIZER_POSITION, system->n, positions, problem) &&
+           check_at_most(Q_RSS_POSITION, system->rss_position, positions[0], problem);
 }
 
 /* ℓ₁, m: the distance from the bit to the first stabilizer. */

@@ -1,4 +1,7 @@
-"""The engines that drill a case, behind one face: the model in Python, and the same as compiled code."""
+"""The engines that drill a case, behind one protocol: the model in Python, and the same as compiled code."""
+
+from collections.abc import Callable
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -6,13 +9,49 @@ from numpy.typing import NDArray
 from ..arrays import Floats
 from ..case.case import Case
 from ..core.drilling import Drilling
-from ..core.errors import CannotContinue, ParameterError
-from ..core.options import Options
+from ..core.errors import ParameterError
+from ..core.options import Options, Statistics
 from ..kernel.binding import NativeDrilling, available
 
-AnyDrilling = Drilling | NativeDrilling
 
-ENGINES = ("auto", "native", "python")
+class Engine(Protocol):
+    """A borehole as it is drilled. `core.drilling.Drilling` says what each method does.
+
+    Bad inputs raise `ParameterError`, an obstacle on the way `CannotContinue`; nothing has changed then. The same
+    problem has the same code, quantity, index, value, place and sentence with every engine.
+    """
+
+    @property
+    def drilled_length(self) -> float:
+        """Where the bit is, m from the start of the run."""
+
+    @property
+    def statistics(self) -> Statistics:
+        """What the integrator has done since the start of the run."""
+
+    def advance(self, drilled_length: float, rss_force: float, active_weight_on_bit: float) -> None:
+        """Drill on under inputs held from here."""
+
+    def follow(
+        self, lengths: Floats, forces: Floats, active_weight_on_bit: float, rows: NDArray[np.intc], table: Floats
+    ) -> None:
+        """Drill leg after leg, and write outputs into rows of a table."""
+
+    def step(self) -> None:
+        """Drill on to the end of the integrator's next step."""
+
+    def outputs(self) -> dict[str, float | int]:
+        """Every output where the bit is."""
+
+    def save(self) -> Any:
+        """The whole evolving state, for `restore` of a run with the same parameters and the same engine."""
+
+    def restore(self, state: Any) -> None:
+        """Go back to a state."""
+
+
+DRILLING: dict[str, Callable[..., Engine]] = {"native": NativeDrilling, "python": Drilling}
+ENGINES = ("auto", *DRILLING)
 
 
 def engine() -> str:
@@ -27,26 +66,13 @@ def chosen(choice: str) -> str:
     return engine() if choice == "auto" else choice
 
 
-def start(case: Case, choice: str, relative_tolerance: float) -> AnyDrilling:
+def start(case: Case, choice: str, options: Options) -> Engine:
     """A case before its first step, under its first force; errors as in `simulate`."""
-    system, weight, force = (case.bha, case.bit, case.survey), case.active_weight_on_bit, case.schedule.rss_force[0]
-    if chosen(choice) == "native":
-        return NativeDrilling(
-            *system, active_weight_on_bit=weight, rss_force=force, relative_tolerance=relative_tolerance
-        )
-    return Drilling(*system, active_weight_on_bit=weight, rss_force=force, options=Options(relative_tolerance))
-
-
-def follow(
-    drilling: AnyDrilling, lengths: Floats, forces: Floats, weight: float, rows: NDArray[np.intc], table: Floats
-) -> None:
-    """Drill leg after leg, as `NativeDrilling.follow`, on either engine; `CannotContinue` at the leg that fails."""
-    if isinstance(drilling, NativeDrilling):
-        failure = drilling.follow(lengths, forces, weight, rows, table)
-        if failure:
-            raise CannotContinue(failure)
-        return
-    for length, force, row in zip(lengths.tolist(), forces.tolist(), rows.tolist(), strict=True):
-        drilling.advance(length, force, weight)
-        if row >= 0:
-            table[row] = tuple(drilling.outputs().values())
+    return DRILLING[chosen(choice)](
+        case.bha,
+        case.bit,
+        case.survey,
+        active_weight_on_bit=case.active_weight_on_bit,
+        rss_force=case.schedule.rss_force[0],
+        options=options,
+    )

@@ -9,9 +9,9 @@ from ..arrays import Floats
 from ..case.case import Case, Schedule
 from ..core.checks import check_number
 from ..core.errors import CannotContinue
-from ..core.options import RELATIVE_TOLERANCE
+from ..core.options import RELATIVE_TOLERANCE, Options
 from ..core.quantities import OUTPUTS, scalar_names
-from .engines import chosen, follow, start
+from .engines import chosen, start
 from .trajectory import Stopped, Trajectory
 
 SAMPLE_INTERVAL = 0.1  # m between the rows of a run, unless told otherwise: some 50 for each wave of a rippling hole
@@ -67,7 +67,7 @@ def simulate(
     check_number("sample_interval", sample_interval, above=0.0)
     weight = case.active_weight_on_bit
     engine = chosen(engine)
-    drilling = start(case, engine, relative_tolerance)
+    drilling = start(case, engine, Options(relative_tolerance))
     names = scalar_names(OUTPUTS, len(case.bha.stabilizer_positions))
     table = np.full((int(length / sample_interval + ROUNDING) + 1, len(names)), np.nan)
     legs = _legs(case.schedule, len(table), sample_interval)
@@ -77,7 +77,7 @@ def simulate(
     for first in range(0, len(lengths), batch):
         part = slice(first, first + batch)
         try:
-            follow(drilling, lengths[part], forces[part], weight, rows[part], table)
+            drilling.follow(lengths[part], forces[part], weight, rows[part], table)
         except CannotContinue as error:
             stopped = f"after {drilling.drilled_length:g} m of {length:g} m: {error}"
             break
