@@ -27,11 +27,17 @@ def reference(name: str) -> np.ndarray:
     return np.genfromtxt(FOLDER / f"{name}.csv", delimiter=",", names=True)
 
 
+def reference_system(name: str) -> tuple[Scaled, Survey]:
+    """The drilling system and the existing hole of a reference case, in units of ℓ₁."""
+    p = CASES[name]
+    scaled = Scaled(tuple(accumulate(p["lambda"])), tuple(p["y_star"]), p["delta"], p["w"], p["epsilon"], p["psi_star"])
+    return scaled, Survey(tuple(xi - p["survey_xi"][0] for xi in p["survey_xi"]), tuple(p["survey_inc"]))
+
+
 def start(name: str, relative_tolerance: float = RELATIVE_TOLERANCE, **options: Any) -> Integrator:
     """The model at the start of a reference case."""
     p = CASES[name]
-    scaled = Scaled(tuple(accumulate(p["lambda"])), tuple(p["y_star"]), p["delta"], p["w"], p["epsilon"], p["psi_star"])
-    survey = Survey(tuple(xi - p["survey_xi"][0] for xi in p["survey_xi"]), tuple(p["survey_inc"]))
+    scaled, survey = reference_system(name)
     return begin(scaled, survey, p["force_values"][0], p["eta_pi"], relative_tolerance, **options)
 
 
@@ -44,19 +50,3 @@ def at_the_bit(model: Integrator) -> dict[str, float]:
     psi = bit_tilt(F_0, model.eta_pi, model.scaled.psi_star)
     forces = {f"F_{i}": row(loads) for i, row in enumerate(mode.F, 1)}
     return {"theta": theta, "Theta": theta - psi, "psi": psi, "Y": Y, "F_0": F_0, **forces}
-
-
-def drilled_rows(name: str, relative_tolerance: float = RELATIVE_TOLERANCE) -> dict[str, np.ndarray]:
-    """What the model drills of a reference case, at the rows of the reference."""
-    p = CASES[name]
-    changes = list(zip(p["force_breaks"], p["force_values"], strict=True))[1:]
-    model = start(name, relative_tolerance)
-    rows = []
-    for xi in reference(name)["xi"]:
-        while changes and changes[0][0] <= xi:
-            at, force = changes.pop(0)
-            model.advance(at)
-            model.steer(force, p["eta_pi"])
-        model.advance(float(xi))
-        rows.append(at_the_bit(model))
-    return {column: np.array([row[column] for row in rows]) for column in rows[0]}

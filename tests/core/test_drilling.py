@@ -1,56 +1,26 @@
-"""The SI shell: options in, steps and statistics out, errors that name the place."""
+"""The options that are refused, and errors between processes; tests/engines drills."""
 
 import pickle
 from math import nan
 
 import pytest
 
-from boreprop.case.case import Case
-from boreprop.core.drilling import Drilling
-from boreprop.core.errors import CannotContinue, ParameterError
+from boreprop.core.errors import CannotContinue, ParameterError, error_of
 from boreprop.core.options import Options
 from boreprop.core.problems import Problem
 
 
-def drilling(case: Case, **options: float) -> Drilling:
-    weight = case.active_weight_on_bit
-    return Drilling(case.bha, case.bit, case.survey, active_weight_on_bit=weight, options=Options(**options))  # type: ignore[arg-type]
-
-
-def test_steps_of_the_integrator_lead_where_one_advance_does(case: Case) -> None:
-    stepping, straight = drilling(case), drilling(case)
-    while stepping.drilled_length < 10.0:
-        stepping.step()
-    straight.advance(stepping.drilled_length, 0.0, case.active_weight_on_bit)
-    assert straight.outputs() == stepping.outputs()
-    assert straight.statistics == stepping.statistics
-    assert straight.statistics.accepted > 10
-
-
-def test_what_cannot_go_on_says_where_why_and_what_helps(case: Case) -> None:
-    short = drilling(case, smallest_step=0.5)
-    with pytest.raises(CannotContinue) as caught:
-        short.advance(5.0, 0.0, case.active_weight_on_bit)
-    error = caught.value
-    assert str(error) == f"the steps of the integrator become too short at 0 m: {error.helps}"
-    assert error.helps == "raise relative_tolerance (--tolerance), now 1e-07"
-    assert (error.code, error.place, short.drilled_length) == ("too short", 0.0, 0.0)
-
-
-def test_the_place_is_in_metres_from_the_start_of_the_run(case: Case) -> None:
-    pushed = drilling(case)
-    pushed.advance(10.0, 0.0, case.active_weight_on_bit)
-    with pytest.raises(CannotContinue, match="the bit turns over at 10") as caught:
-        pushed.advance(20.0, 1e9, case.active_weight_on_bit)
-    assert 10.0 <= caught.value.place < 20.0
-    assert pushed.drilled_length == 10.0
-    pushed.advance(20.0, 0.0, case.active_weight_on_bit)
-
-
-def test_the_error_travels_between_processes() -> None:
-    error = CannotContinue(Problem("no mode", limit=1e-7, place=12.5))
+@pytest.mark.parametrize(
+    "error",
+    [
+        CannotContinue(Problem("no mode", limit=1e-7, place=12.5)),
+        error_of(Problem("not increasing", "measured_depth", value=1.0, before=2.0)),
+        ParameterError("engine", "must be auto, native or python", "fortran"),
+    ],
+)
+def test_an_error_travels_between_processes(error: CannotContinue | ParameterError) -> None:
     there = pickle.loads(pickle.dumps(error))
-    assert (str(there), there.code, there.place) == (str(error), "no mode", 12.5)
+    assert (type(there), str(there), repr(there.problem)) == (type(error), str(error), repr(error.problem))
 
 
 @pytest.mark.parametrize(

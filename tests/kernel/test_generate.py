@@ -1,18 +1,20 @@
 """What is generated for C is fresh, and C that does not keep up with the table of quantities is refused."""
 
-import ctypes
 import shutil
-from math import inf, isfinite
+from dataclasses import astuple, replace
+from math import inf, isfinite, nan
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from boreprop.case.case import Case
 from boreprop.case.parameters import parameters
 from boreprop.core.checks import check_number
 from boreprop.core.errors import ParameterError
+from boreprop.core.options import Options
+from boreprop.core.problems import Problem
 from boreprop.core.quantities import OUTPUTS, Quantity, scalar_names
+from boreprop.core.survey import Survey
 from boreprop.kernel import binding
 from boreprop.kernel.binding import KernelError
 from boreprop.kernel.compiler import FOLDER, CompilerError, NoCompilerError, compile_library, sources_digest
@@ -49,18 +51,68 @@ def test_a_library_for_another_table_is_refused(tmp_path: Path) -> None:
         binding.load(compiled(tmp_path / "other", OUTPUTS[::-1]))
 
 
+def started(
+    case: Case, changed: dict[str, float], survey: tuple[list[float], list[float]] = ([0.0], [0.0])
+) -> Problem | None:
+    """The problem that C has with a case in which some parameters are others."""
+    given = parameters(case) | {"relative_tolerance": 1e-7} | changed
+    problem, library = binding.ProblemInC(), binding.library()
+    depths, inclinations = (binding.numbers(values) for values in survey)
+    run = library.boreprop_start(
+        len(case.bha.stabilizer_positions),
+        binding.numbers([given[name] for name in scalar_names(SYSTEM, len(case.bha.stabilizer_positions))]),
+        binding.OptionsInC(*astuple(Options())),
+        len(depths),
+        depths,
+        inclinations,
+        binding.Inputs(rss_force=0.0, active_weight_on_bit=1e3),
+        problem,
+    )
+    library.boreprop_end(run)
+    return None if run else problem.read()
+
+
 @pytest.mark.usefixtures("kernel")
 @pytest.mark.parametrize("quantity", SYSTEM, ids=lambda quantity: quantity.name)
-def test_c_refuses_what_python_refuses_in_the_same_words(case: Case, quantity: Quantity) -> None:
-    given = parameters(case) | {"relative_tolerance": 1e-7}
-    name = quantity.names(2)[-1]
+def test_c_refuses_a_parameter_that_python_refuses_with_the_same_problem(case: Case, quantity: Quantity) -> None:
+    scalar, index = quantity.names(2)[-1], quantity.count(2) if quantity.size != "1" else 0
     bounds = {"above": quantity.above, "at_least": quantity.at_least, "at_most": quantity.at_most}
-    outside = [quantity.above, quantity.at_least - 1e-9, quantity.at_most + 1e-9]
-    for value in (inf, *filter(isfinite, outside)):
-        why = ctypes.create_string_buffer(binding.MESSAGE)
-        values = np.array([(given | {name: value})[scalar] for scalar in scalar_names(SYSTEM, 2)])
-        inputs = binding.Inputs(rss_force=0.0, active_weight_on_bit=1e3)
-        assert not binding.library().boreprop_start(2, values, 1, np.zeros(1), np.zeros(1), inputs, why)
+    outside = [quantity.above, quantity.at_least - 1e-9, quantity.at_most + 1e-9, -1e300]
+    for value in (inf, -inf, nan, *filter(isfinite, outside)):
         with pytest.raises(ParameterError) as refused:
-            check_number(name, float(value), **bounds)
-        assert why.value.decode() == str(refused.value)
+            check_number(quantity.name, float(value), index=index, **bounds)
+        assert repr(started(case, {scalar: value})) == repr(refused.value.problem)
+
+
+@pytest.mark.usefixtures("kernel")
+@pytest.mark.parametrize("positions", [(3.66, 3.66), (7.32, 3.66), (3.66, 3.669), (0.005, 7.32)])
+def test_c_refuses_positions_that_python_refuses_with_the_same_problem(
+    case: Case, positions: tuple[float, float]
+) -> None:
+    with pytest.raises(ParameterError) as refused:
+        replace(case.bha, stabilizer_positions=positions, rss_position=0.0)
+    first, second = positions
+    changed = {"stabilizer_position[1]": first, "stabilizer_position[2]": second, "rss_position": 0.0}
+    assert repr(started(case, changed)) == repr(refused.value.problem)
+
+
+@pytest.mark.usefixtures("kernel")
+@pytest.mark.parametrize(
+    ("depths", "inclinations"),
+    [([1.0, 1.0], [0.0, 0.0]), ([1.0, nan], [0.0, 0.0]), ([0.0, 1.0], [0.0, inf]), ([1.0, 0.0], [0.0, 0.0])],
+)
+def test_c_refuses_a_survey_that_python_refuses_with_the_same_problem(
+    case: Case, depths: list[float], inclinations: list[float]
+) -> None:
+    with pytest.raises(ParameterError) as refused:
+        Survey(tuple(depths), tuple(inclinations))
+    assert repr(started(case, {}, (depths, inclinations))) == repr(refused.value.problem)
+
+
+@pytest.mark.usefixtures("kernel")
+def test_c_refuses_an_empty_survey_in_the_words_of_python(case: Case) -> None:
+    problem = started(case, {}, ([], []))
+    assert problem
+    with pytest.raises(ParameterError) as refused:
+        Survey((), ())
+    assert problem.sentence == str(refused.value)

@@ -53,9 +53,9 @@ class Drilling:
         self._bha, self._bit = bha, bit
         self._length, self._force = bha.length_scale, bha.force_scale
         self.drilled_length = 0.0
-        modes, inputs = Modes(scale(bha, bit)), self._scaled_inputs(rss_force, active_weight_on_bit)
+        scaled, inputs = scale(bha, bit), self._scaled_inputs(rss_force, active_weight_on_bit)
         try:
-            self.integrator = Integrator(modes, survey, self._length, *inputs, options)
+            self.integrator = Integrator(Modes(scaled), survey, self._length, *inputs, options)
         except ParameterError:
             raise
         except (CannotContinue, ArithmeticError, ValueError) as error:  # as in `Integrator.drill`

@@ -2,6 +2,7 @@
 #ifndef BOREPROP_NUMBERS_H
 #define BOREPROP_NUMBERS_H
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -29,7 +30,7 @@ static inline const char *decimal(double value, int digits, char text[32]) { ret
 
 /* The shortest decimal that reads back as the same number, as Python writes it. */
 static inline const char *represent(double value, char text[32]) {
-    int digits = fabs(value) < 1e15 ? 15 : 16; /* from 1e16 on with an exponent */
+    int digits = fabs(value) < DBL_MIN ? 1 : fabs(value) < 1e15 ? 15 : 16; /* from 1e16 on with an exponent */
     char local[32];
     do snprintf(local, sizeof local, "%.*g", digits, value);
     while (strtod(local, NULL) != value && ++digits < 17);
