@@ -168,7 +168,7 @@ def compare(case: Case, tolerance: float, found: Finding) -> None:
 
 def differing(one: Trajectory, other: Trajectory, share: float) -> NDArray[np.bool_]:
     """Which of the rows that both have differ by more than a share of the largest value of a column."""
-    rows = min(len(one), len(other))
+    rows = min(one.row_count, other.row_count)
     bad = np.zeros(rows, dtype=bool)
     for name, column in other.columns.items():
         if name.startswith(("stabilizer_contact", "bit_tilt_saturation")):

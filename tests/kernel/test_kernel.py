@@ -25,7 +25,6 @@ from conftest import Command
 from places import ROOT
 
 AGREEMENT = 1e-9  # relative
-Legs = list[tuple[float, float, float]]  # to this ξ, under this F_RSS and this ηΠ
 
 
 pytestmark = pytest.mark.usefixtures("kernel")

@@ -9,11 +9,13 @@ static Component *called(fmi2Component instance, const char *function, int phase
     Component *c = instance;
     char why[LINE];
     if (!c || (int)c->phase & phases) return c;
-    explain(why, "%s: must be called in another phase, got %s", function,
-            c->phase == INSTANTIATED     ? "instantiated"
-            : c->phase == INITIALIZATION ? "initialization"
-            : c->phase == STEPPING       ? "stepping"
-                                         : "terminated");
+    explain(
+        why, "%s: must be called in another phase, got %s", function,
+        c->phase == INSTANTIATED     ? "instantiated"
+        : c->phase == INITIALIZATION ? "initialization"
+        : c->phase == STEPPING       ? "stepping"
+                                     : "terminated"
+    );
     fail(c, fmi2Error, why);
     return NULL;
 }

@@ -194,7 +194,7 @@ static fmi2Status check_step(const Component *c, double time, double size, const
         return fmi2Discard;
     }
     if (time + size > late) {
-        check_at_most(Q_STEP_END, time + size, c->stop, &problem);
+        wrong(&problem, TOO_LARGE, Q_STEP_END, 0, time + size, c->stop);
         tell(&problem, why);
         return fmi2Error;
     }
@@ -240,7 +240,7 @@ static fmi2Status save(Component *c, Saved *saved) {
     size_t text = strlen(c->survey_file), size = ((size_t)count + FIXED + VARIABLES) * 8 + text;
     unsigned char *bytes = malloc(size), *to = bytes;
     double *numbers = malloc((size_t)(count + 1) * sizeof *numbers);
-    double fixed[FIXED] = {c->phase,   c->time,          c->since,         c->from,          c->rate,
+    double fixed[FIXED] = {c->phase,          c->time,          c->since,         c->from,          c->rate,
                            c->run_has_inputs, c->derivative[0], c->derivative[1], c->derivative[2], (double)text};
     if (bytes && numbers) {
         for (int i = 0; i < FIXED; i++) to = put_double(to, fixed[i]);
@@ -299,7 +299,8 @@ static int restore(Component *c, const Saved *saved, char why[LINE]) {
     run_end(c->run);
     free(c->survey_file);
     c->run = run, c->survey_file = survey_file, c->phase = (Phase)phase, c->outputs = STALE, c->discarded = 0;
-    c->time = fixed[1], c->since = fixed[2], c->from = fixed[3], c->rate = fixed[4], c->run_has_inputs = fixed[5] != 0.0;
+    c->time = fixed[1], c->since = fixed[2], c->from = fixed[3], c->rate = fixed[4],
+    c->run_has_inputs = fixed[5] != 0.0;
     memcpy(c->derivative, fixed + 6, sizeof c->derivative);
     memcpy(c->value, value, sizeof value);
     return 1;

@@ -135,22 +135,23 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
     double l1 = at->l1, F_star = at->F_star;
     int n = scaled->n;
     switch (which) {
-    case OUT_DRILLED_LENGTH: return d->drilled_length;
-    case OUT_BIT_INCLINATION: return at->theta;
-    case OUT_BOREHOLE_INCLINATION: return at->Theta;
-    case OUT_BIT_TILT: return at->psi;
-    case OUT_AVERAGE_INCLINATION: /* λ_i (⟨Θ⟩_i − θ) = e_i − e_{i−1} */
-        return at->theta + (loads->e[i] - (i ? loads->e[i - 1] : 0.0)) / lambda_(scaled, i);
-    case OUT_STABILIZER_DEFLECTION: return row_value(&at->mode->delta[i], loads, n) * l1;
-    case OUT_STABILIZER_FORCE: return at->F[i] * F_star;
-    case OUT_STABILIZER_CONTACT: return wall(at->F[i]);
-    case OUT_BIT_TILT_SATURATION: return side_beyond(at->F_0 / inputs->eta_pi, -scaled->psi_star, scaled->psi_star, ROUNDING);
-    case OUT_BIT_LATERAL_FORCE: return at->F_0 * F_star;
-    case OUT_BIT_MOMENT: return -row_value(&at->mode->M, loads, n) * F_star * l1;
-    case OUT_BOREHOLE_CURVATURE: return (at->Theta - at->earlier) / l1;
-    case OUT_DISPLACEMENT: return at->x * l1;
-    case OUT_TRUE_VERTICAL_DEPTH: return at->z * l1;
-    case OUT_ETA_PI: return inputs->eta_pi;
+        case OUT_DRILLED_LENGTH: return d->drilled_length;
+        case OUT_BIT_INCLINATION: return at->theta;
+        case OUT_BOREHOLE_INCLINATION: return at->Theta;
+        case OUT_BIT_TILT: return at->psi;
+        case OUT_AVERAGE_INCLINATION: /* λ_i (⟨Θ⟩_i − θ) = e_i − e_{i−1} */
+            return at->theta + (loads->e[i] - (i ? loads->e[i - 1] : 0.0)) / lambda_(scaled, i);
+        case OUT_STABILIZER_DEFLECTION: return row_value(&at->mode->delta[i], loads, n) * l1;
+        case OUT_STABILIZER_FORCE: return at->F[i] * F_star;
+        case OUT_STABILIZER_CONTACT: return wall(at->F[i]);
+        case OUT_BIT_TILT_SATURATION:
+            return side_beyond(at->F_0 / inputs->eta_pi, -scaled->psi_star, scaled->psi_star, ROUNDING);
+        case OUT_BIT_LATERAL_FORCE: return at->F_0 * F_star;
+        case OUT_BIT_MOMENT: return -row_value(&at->mode->M, loads, n) * F_star * l1;
+        case OUT_BOREHOLE_CURVATURE: return (at->Theta - at->earlier) / l1;
+        case OUT_DISPLACEMENT: return at->x * l1;
+        case OUT_TRUE_VERTICAL_DEPTH: return at->z * l1;
+        case OUT_ETA_PI: return inputs->eta_pi;
     }
     return NAN;
 }

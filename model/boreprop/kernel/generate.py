@@ -49,6 +49,8 @@ QUANTITIES_HEADER = """\
 #include <math.h>
 #include <stddef.h>
 
+/* clang-format off */
+
 #define QUANTITIES_DIGEST "{digest}" /* of this file, but for this line, and of problems.h */
 #define LEAST_SPAN {least_span!r} /* m between stabilizers, at least: between closer ones the force is rounding */
 
@@ -104,6 +106,8 @@ typedef struct {{
 
 static const Options USUAL_OPTIONS = {{{usual}}};
 
+/* clang-format on */
+
 #endif
 """
 
@@ -114,6 +118,8 @@ PROBLEMS_HEADER = """\
    {{place}} for what a Problem has. */
 #ifndef BOREPROP_PROBLEMS_H
 #define BOREPROP_PROBLEMS_H
+
+/* clang-format off */
 
 typedef enum {{
     NO_PROBLEM,
@@ -127,8 +133,6 @@ typedef enum {{
 {names}
     NAME_COUNT
 }} Name;
-
-/* clang-format off */
 
 static const char *const SENTENCE[CODE_COUNT] = {{
     "",

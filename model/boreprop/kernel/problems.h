@@ -5,6 +5,8 @@
 #ifndef BOREPROP_PROBLEMS_H
 #define BOREPROP_PROBLEMS_H
 
+/* clang-format off */
+
 typedef enum {
     NO_PROBLEM,
     NOT_A_NUMBER,
@@ -82,8 +84,6 @@ typedef enum {
     Q_STEP_END,
     NAME_COUNT
 } Name;
-
-/* clang-format off */
 
 static const char *const SENTENCE[CODE_COUNT] = {
     "",

@@ -6,7 +6,9 @@
 #include <math.h>
 #include <stddef.h>
 
-#define QUANTITIES_DIGEST "4c4fa2ac651df49c" /* of this file, but for this line, and of problems.h */
+/* clang-format off */
+
+#define QUANTITIES_DIGEST "4e67b18b36a446fb" /* of this file, but for this line, and of problems.h */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: between closer ones the force is rounding */
 
 enum { MAX_STABILIZERS = 6, PARAMETER_COUNT = 9, INPUT_COUNT = 3, OUTPUT_COUNT = 15 };
@@ -122,5 +124,7 @@ typedef struct {
 } Options;
 
 static const Options USUAL_OPTIONS = {1e-07, 1.0, 1e-12, 16.0, 0.1, 262144.0};
+
+/* clang-format on */
 
 #endif

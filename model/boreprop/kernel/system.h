@@ -34,9 +34,7 @@ static inline int check_spans(Name quantity, int count, const double *positions,
 /* Whether a value, the one with this index where there are several, is in the range of the table of quantities. */
 static inline int check_quantity(const Quantity *quantity, int index, double value, Problem *problem) {
     int shown = quantity->size == ONE ? 0 : index + 1;
-    return check_number(
-        quantity->name, shown, value, quantity->above, quantity->at_least, quantity->at_most, problem
-    );
+    return check_number(quantity->name, shown, value, quantity->above, quantity->at_least, quantity->at_most, problem);
 }
 
 /* The system of n stabilizers with these parameters, one after the other in the order of the table; none are read for
