@@ -13,7 +13,6 @@ may differ by.
 """
 
 import argparse
-import re
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -30,6 +29,7 @@ from numpy.typing import NDArray
 
 from boreprop.case.case import Case, Schedule
 from boreprop.case.file import dump_case
+from boreprop.core.errors import CannotContinue
 from boreprop.core.options import RELATIVE_TOLERANCE
 from boreprop.core.survey import Survey
 from boreprop.core.system import LEAST_SPAN, BitRock, BottomHoleAssembly
@@ -117,10 +117,10 @@ def examine(space: str, seed: int, number: int, compared: bool) -> Finding:
     """Run one case natively; compare it with Python if asked, or if it stops."""
     case, tolerance = draw(space, seed, number)
     try:
-        run = drilled(case, tolerance, "native", case.length / 10)
+        run, failure = drilled(case, tolerance, "native", case.length / 10)
         found = Finding(number, run.stopped)
-        if run.stopped and "turns over" not in run.stopped:
-            found.fault = run.stopped
+        if failure and failure.code != "turns over":
+            found.fault = str(failure)
         elif not all(np.isfinite(column).all() for column in run.columns.values()):
             found.fault = "a column is not finite"
         if (compared or run.stopped) and not found.fault:
@@ -135,31 +135,34 @@ def draw(space: str, seed: int, number: int) -> tuple[Case, float]:
     return SPACES[space](Random(f"{space} {seed} {number}"))
 
 
-def drilled(case: Case, tolerance: float, engine: str, interval: float) -> Trajectory:
-    """A run, or what there is of it."""
+def drilled(case: Case, tolerance: float, engine: str, interval: float) -> tuple[Trajectory, CannotContinue | None]:
+    """A run, or what there is of it and why it ended."""
     try:
-        return simulate(case, sample_interval=interval, relative_tolerance=tolerance, engine=engine)
+        return simulate(case, sample_interval=interval, relative_tolerance=tolerance, engine=engine), None
     except Stopped as stopped:
-        if stopped.trajectory is None:
+        if stopped.trajectory is None or not isinstance(stopped.__cause__, CannotContinue):
             raise
-        return stopped.trajectory
+        return stopped.trajectory, stopped.__cause__
 
 
 def compare(case: Case, tolerance: float, found: Finding) -> None:
     """Drill with both engines, and note where they differ more than they may."""
     interval = min(case.length, COMPARED) / 100
-    python, native = (drilled(case, tolerance, engine, interval) for engine in ("python", "native"))
+    (python, end_of_python), (native, end_of_native) = (
+        drilled(case, tolerance, engine, interval) for engine in ("python", "native")
+    )
     bad = differing(python, native, AGREEMENT)
     sure = native.row_count
-    if bad.any() or not same_end(python, native):
+    if bad.any() or not same_end(end_of_python, end_of_native):
         bha, positions = case.bha, case.bha.stabilizer_positions
         longer = tuple(position * (1 + i * HAIR) for i, position in enumerate(positions))
         moved_bha = replace(bha, flexural_stiffness=bha.flexural_stiffness * (1 + HAIR), stabilizer_positions=longer)
-        other = drilled(replace(case, bha=moved_bha), tolerance, "native", interval)
+        other, end_of_other = drilled(replace(case, bha=moved_bha), tolerance, "native", interval)
         moved = differing(other, native, AGREEMENT / 10)
         sure = int(np.argmax(moved)) if moved.any() else len(moved)
-        if sure == native.row_count and same_end(other, native) and not same_end(python, native):
-            found.fault = f"python: {python.stopped or 'no stop'}; native: {native.stopped or 'no stop'}"
+        same = same_end(end_of_python, end_of_native)
+        if sure == native.row_count and same_end(end_of_other, end_of_native) and not same:
+            found.fault = f"python: {end_of_python or 'no stop'}; native: {end_of_native or 'no stop'}"
     found.rows, found.uncompared = min(sure, len(bad)), native.row_count - min(sure, len(bad))
     if bad[:sure].any():
         row = int(np.argmax(bad))
@@ -177,18 +180,11 @@ def differing(one: Trajectory, other: Trajectory, share: float) -> NDArray[np.bo
     return bad
 
 
-def same_end(one: Trajectory, other: Trajectory) -> bool:
+def same_end(one: CannotContinue | None, other: CannotContinue | None) -> bool:
     """Whether both went to the end, or stopped at the same place for the same reason."""
-    if one.stopped is None or other.stopped is None:
-        return one.stopped == other.stopped
-    (reason, place), (same, there) = (told(run.stopped or "") for run in (one, other))
-    return reason == same and abs(place - there) <= AGREEMENT * max(place, 1.0)
-
-
-def told(stopped: str) -> tuple[str, float]:
-    """The reason and the place in a message."""
-    match = re.search(r": (.+) at ([-+.e\d]+) m: ", stopped)
-    return (match[1], float(match[2])) if match else (stopped, 0.0)
+    if one is None or other is None:
+        return one is other
+    return one.code == other.code and abs(one.place - other.place) <= AGREEMENT * max(one.place, 1.0)
 
 
 def findings(space: str, seed: int, numbers: Iterator[int], python: int, until: float) -> Iterator[Finding]:

@@ -58,7 +58,7 @@ def simulate(
     ParameterError
         If a value is out of range.
     Stopped
-        If the integrator cannot go on; its `trajectory` holds the rows so far.
+        If the integrator cannot go on; its `trajectory` holds the rows so far, its cause is the `CannotContinue`.
     KernelError
         If the native engine is not there.
     """
@@ -73,22 +73,23 @@ def simulate(
     legs = _legs(case.schedule, len(table), sample_interval)
     lengths, forces, rows = _in_parts(*legs, LONGEST_LEG * case.bha.length_scale)
     batch = len(lengths) // PARTS + 1 if progress else len(lengths)
-    stopped = None
+    failure = None
     for first in range(0, len(lengths), batch):
         part = slice(first, first + batch)
         try:
             drilling.follow(lengths[part], forces[part], weight, rows[part], table)
         except CannotContinue as error:
-            stopped = f"after {drilling.drilled_length:g} m of {length:g} m: {error}"
+            failure = error
             break
         if progress:
             progress(drilling.drilled_length)
     drilled = np.count_nonzero(~np.isnan(table[:, 0]))
     outputs = np.ascontiguousarray(table[:drilled].T)  # whoever reads a run reads it by columns
     columns = {"rss_force": forces[rows >= 0][:drilled], "active_weight_on_bit": np.full(drilled, weight)}
+    stopped = f"after {drilling.drilled_length:g} m of {length:g} m: {failure}" if failure else None
     trajectory = Trajectory(columns | dict(zip(names, outputs, strict=True)), case, stopped, engine)
     if stopped:
-        raise Stopped(stopped, trajectory)
+        raise Stopped(stopped, trajectory) from failure
     return trajectory
 
 
