@@ -86,14 +86,10 @@ fmi2Status fmi2SetupExperiment(
     fmi2Real stop
 ) {
     Component *c = called(instance, "fmi2SetupExperiment", INSTANTIATED);
-    char why[LINE];
     Problem problem;
     (void)tolerance_defined, (void)tolerance;
     if (!c) return fmi2Error;
-    if (!check_finite(Q_START_TIME, 0, start, &problem)) {
-        tell(&problem, why);
-        return fail(c, fmi2Error, why);
-    }
+    if (!check_finite(Q_START_TIME, 0, start, &problem)) return fail_by(c, fmi2Error, &problem);
     c->time = start;
     c->stop = stop_defined ? stop : (double)INFINITY;
     return fmi2OK;

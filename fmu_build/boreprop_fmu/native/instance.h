@@ -58,6 +58,12 @@ static fmi2Status fail(const Component *c, fmi2Status status, const char *why) {
     return status;
 }
 
+static fmi2Status fail_by(const Component *c, fmi2Status status, const Problem *problem) {
+    char why[LINE];
+    tell(problem, why);
+    return fail(c, status, why);
+}
+
 /* The drilling system */
 
 /* A drilling system that has not begun; NULL with `why` if the parameters are bad. */

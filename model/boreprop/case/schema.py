@@ -141,7 +141,7 @@ def _out_of_range(error: ParameterError, document: Document) -> str:
 
 def _in_degrees(quantity: Quantity, value: Any) -> str:
     """What the range of an angle asks of a value in degrees; empty if it is met."""
-    bounds = {bound: degrees(getattr(quantity, bound)) for bound in ("above", "at_least", "at_most")}
+    bounds: dict[str, Any] = {bound: degrees(getattr(quantity, bound)) for bound in ("above", "at_least", "at_most")}
     try:
         if isinstance(value, (int, float)):
             check_number(quantity.key, value, **bounds)
