@@ -131,6 +131,16 @@ def test_steps_end_on_the_images_of_a_force_jump() -> None:
         assert min(abs(end - xi) for end in ends) < 1e-8
 
 
+def test_a_bend_of_the_existing_hole_comes_back_as_a_jump_of_the_second_derivative() -> None:
+    """Y' = Θ is continuous at a station, its slope goes from 0.1 to −0.3 there."""
+    survey = Survey((0.0, 1.0, 1.5), (0.4, 0.5, 0.35))
+    kinks = begin(Scaled((1.0, 1.7), (1e-3,), 0.16, 2.4e-3, 0.1, 0.03), survey, 0.0, 0.1).kinks.ahead
+    assert {(kink.xi, kink.order, kink.i, round(kink.jump, 12)) for kink in kinks} >= {
+        (0.5, 2, 0, 0.4),
+        (1.2, 2, 1, 0.4),
+    }
+
+
 def test_a_small_step_of_force_does_not_cut_the_steps_of_its_images() -> None:
     """A controller changes the force often and little: steps may pass over kinks below the tolerance."""
     model = start("steering_two_stabilizers", 1e-6)
@@ -221,6 +231,13 @@ def test_statistics_count_the_steps_and_the_bounds_met() -> None:
     assert model.statistics.accepted == 300
     assert model.statistics.events == sum(step.event is not None for step in steps[:-1])
     assert 0 < model.statistics.rejected < 300
+
+
+def test_a_step_that_is_tried_a_second_time_counts_as_rejected_once() -> None:
+    """A trial whose error is too large is shortened to 0.85 of its length at most: above 0.85² it was one."""
+    model = begin(ONE, VERTICAL, 1e-3, 0.05, 1.4e-5, layers=1e6, largest_step=0.3)
+    assert 0.85**2 < model.step().h / 0.3 <= 0.85
+    assert model.statistics.rejected == 1
 
 
 @pytest.mark.parametrize("F_rss", [1e2, 1e6, 1e12, 1e300])

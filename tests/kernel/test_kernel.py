@@ -10,7 +10,7 @@ from ast import literal_eval
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import accumulate
-from math import pi
+from math import pi, sin
 from pathlib import Path
 from typing import Any
 
@@ -131,6 +131,16 @@ def test_a_hole_of_many_pieces_is_kept_whole(case: Case) -> None:
     assert_same_runs(agitated, 0.05)
 
 
+def test_a_survey_of_more_stations_than_a_memory_usually_holds_is_taken_whole() -> None:
+    """One every 5 mm beside the whole BHA, which is twenty times as long as its first span."""
+    depths = tuple(0.005 * k for k in range(4400))
+    survey = Survey(depths, tuple(0.5 + 0.1 * sin(depth) for depth in depths))
+    run = Drilled(Scaled((1.0, 20.0), (1e-3,), 0.2, 2e-3, 0.1, 0.03), survey, 0.0, 0.05)
+    run.assert_same()
+    assert run.advance(0.02, 0.001, 0.05) is None
+    run.assert_same()
+
+
 def test_a_long_way_down_an_inclined_hole_moves_the_origin_alike(case: Case) -> None:
     horizontal = replace(case, survey=Survey((0.0,), (pi / 2,)), length=600.0)
     assert_same_runs(horizontal, 3.0)
@@ -237,6 +247,36 @@ def test_numbers_that_are_no_state_are_refused_and_change_nothing(case: Case, da
         with pytest.raises(ParameterError, match=r"^state: must be one of this system, got "):
             run.restore(state)
         np.testing.assert_array_equal(run.save(), good)
+
+
+def test_each_number_of_a_state_counts(case: Case) -> None:
+    """A state with one number changed is refused, or taken over with that number."""
+    run = NativeDrilling(case.bha, case.bit, case.survey, active_weight_on_bit=case.active_weight_on_bit)
+    run.advance(9.0, 300.0, 5e4)
+    good = run.save()
+    for where in range(60):
+        changed = good.copy()
+        changed[where] = np.nextafter(good[where], np.inf)
+        try:
+            run.restore(changed)
+        except ParameterError:
+            continue
+        np.testing.assert_array_equal(run.save(), changed)
+
+
+def test_a_bha_too_long_for_a_double_is_refused_by_both_engines() -> None:
+    bha, bit = BottomHoleAssembly((0.01, 1e307), (1e-3,), 0.0, 1.0, 1.0), BitRock(1.0, 0.1, 0.02)
+    for engine in (Drilling, NativeDrilling):
+        with pytest.raises(ParameterError, match=r"^s_n / l_1: must be a finite number, got inf$"):
+            engine(bha, bit, Survey((0.0,), (0.0,)), active_weight_on_bit=1.0)
+
+
+def test_two_stations_that_do_not_increase_are_refused() -> None:
+    given = parameters(paper_case()) | {"relative_tolerance": 1e-7}
+    values, depths = np.array([given[name] for name in scalar_names(SYSTEM, 2)]), np.array([1.0, 0.0])
+    why = ctypes.create_string_buffer(binding.MESSAGE)
+    assert not binding.library().boreprop_start(2, values, 2, depths, np.zeros(2), binding.Inputs(0.0, 0.0, 1.0), why)
+    assert why.value.decode().startswith("measured_depth: must increase, got (1.0, 0.0)")
 
 
 @given(st.floats(max_value=-1e-300, allow_infinity=False))
