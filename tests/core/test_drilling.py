@@ -1,6 +1,7 @@
 """The SI shell: options in, steps and statistics out, errors that name the place."""
 
 import pickle
+from dataclasses import replace
 from math import nan
 
 import pytest
@@ -9,6 +10,7 @@ from boreprop.case.case import Case
 from boreprop.core.drilling import Drilling
 from boreprop.core.errors import CannotContinue, ParameterError
 from boreprop.core.options import Options
+from boreprop.core.quantities import OUTPUTS
 
 
 def drilling(case: Case, **options: float) -> Drilling:
@@ -24,6 +26,28 @@ def test_steps_of_the_integrator_lead_where_one_advance_does(case: Case) -> None
     assert straight.outputs() == stepping.outputs()
     assert straight.statistics == stepping.statistics
     assert straight.statistics.accepted > 10
+
+
+def test_a_system_twice_as_large_drills_a_hole_twice_as_large(case: Case) -> None:
+    """Lengths doubled, forces kept: w is a force over a length, EI a force times a length squared."""
+    bha = replace(
+        case.bha,
+        stabilizer_positions=tuple(2 * s for s in case.bha.stabilizer_positions),
+        stabilizer_clearances=tuple(2 * y for y in case.bha.stabilizer_clearances),
+        rss_position=2 * case.bha.rss_position,
+        distributed_weight=case.bha.distributed_weight / 2,
+        flexural_stiffness=4 * case.bha.flexural_stiffness,
+    )
+    survey = replace(case.survey, measured_depth=tuple(2 * depth for depth in case.survey.measured_depth))
+    small, large = drilling(case), drilling(replace(case, bha=bha, survey=survey))
+    small.advance(9.0, 700.0, case.active_weight_on_bit)
+    large.advance(18.0, 700.0, case.active_weight_on_bit)
+    found = large.outputs()
+    grown = {"m": 2.0, "N.m": 2.0, "rad/m": 0.5}
+    for quantity in OUTPUTS:
+        for name in quantity.names(len(bha.stabilizer_positions)):
+            expected = small.outputs()[name] * grown.get(quantity.unit, 1.0)
+            assert found[name] == pytest.approx(expected, rel=1e-9), name
 
 
 def test_what_cannot_go_on_says_where_why_and_what_helps(case: Case) -> None:

@@ -119,6 +119,15 @@ def step_ends(model: Integrator, to: float) -> list[float]:
     return ends
 
 
+def test_the_sine_of_a_bha_that_weight_bends_much_is_solved_to_the_tolerance() -> None:
+    """What is left of sin⟨Θ⟩_1 in a step counts by the weight, here w = 20."""
+    heavy, places = replace(ONE, w=20.0, Delta=0.0), np.arange(0.1, 3.0, 0.1)
+    rough, fine = (
+        states(begin(heavy, Survey((0.0,), (0.6,)), 0.0, 0.5, tolerance), places) for tolerance in (1e-6, 1e-11)
+    )
+    assert np.abs(rough - fine)[:, 1].max() <= 1e-6
+
+
 def test_steps_end_on_the_images_of_a_force_jump() -> None:
     scaled = Scaled((1.0, 1.7, 2.9), (1e-3, 1e-3), 0.16, 2.4e-3, 0.1, 0.03)
     model = begin(scaled, Survey((0.0,), (0.5,)), 0.0, 0.1, 1e-7)
