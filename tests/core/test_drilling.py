@@ -92,3 +92,10 @@ def test_options_out_of_range_are_refused(options: dict[str, float], told: str) 
     with pytest.raises(ParameterError) as caught:
         Options(**options)  # type: ignore[arg-type]
     assert str(caught.value) == told
+
+
+@pytest.mark.parametrize(
+    "option", [{"largest_step": 1e-3}, {"smallest_step": 1e-15}, {"layers": 1e-3}, {"most_steps": 1}]
+)
+def test_options_at_the_edge_of_their_range_are_taken(option: dict[str, float]) -> None:
+    assert vars(Options(**option)).items() >= option.items()  # type: ignore[arg-type]

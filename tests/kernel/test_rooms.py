@@ -43,6 +43,14 @@ int joined(double Y_at_the_end, double Y_of_the_next) {
     piece.x[LATERAL][1] = Y_at_the_end, next[LATERAL][0] = Y_of_the_next;
     return is_joined(&piece, 1.0, next);
 }
+
+double origin_moved(double Y) {
+    static State now;
+    double x[COMPONENTS + 1] = {0};
+    x[LATERAL] = Y, x[COMPONENTS] = 1e9; /* which is no component */
+    keep_origin_near(&now, x);
+    return Y - x[LATERAL];
+}
 """
 
 
@@ -94,3 +102,11 @@ def test_the_lowest_derivative_of_the_kinks_at_one_place_counts(
 @pytest.mark.parametrize(("step", "whole"), [(0.0, 1), (1e-6, 0), (-1e-6, 0)])
 def test_a_hole_that_jumps_to_either_side_is_not_in_one_piece(rooms: ctypes.CDLL, step: float, whole: int) -> None:
     assert rooms.joined(ctypes.c_double(0.3), ctypes.c_double(0.3 + step)) == whole
+
+
+@pytest.mark.parametrize(("Y", "moved"), [(7.9, 0.0), (-7.9, 0.0), (8.1, 8.1), (-8.1, -8.1)])
+def test_the_origin_moves_to_the_bit_where_that_is_far_and_not_before(
+    rooms: ctypes.CDLL, Y: float, moved: float
+) -> None:
+    rooms.origin_moved.restype = ctypes.c_double
+    assert rooms.origin_moved(ctypes.c_double(Y)) == moved
