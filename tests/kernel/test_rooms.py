@@ -11,6 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from boreprop.core.events import extremes
+from boreprop.core.law import Laws
+from boreprop.core.modes import Modes
+from boreprop.core.system import Scaled
 from boreprop.kernel.compiler import FOLDER, NoCompilerError, compile_library
 
 SOURCE = """
@@ -42,6 +45,17 @@ int joined(double Y_at_the_end, double Y_of_the_next) {
     double next[COMPONENTS][S + 1] = {{0}};
     piece.x[LATERAL][1] = Y_at_the_end, next[LATERAL][0] = Y_of_the_next;
     return is_joined(&piece, 1.0, next);
+}
+
+void gains_of(int n, const double *s, const double *y_star, double w, double epsilon, double eta_pi, double *gains) {
+    static Integrator p;
+    Scaled scaled = {.n = n, .w = w, .epsilon = epsilon, .psi_star = 0.03};
+    ScaledInputs inputs = {.eta_pi = eta_pi};
+    Regime free = {{{0}}, 0};
+    memcpy(scaled.s, s, (size_t)n * sizeof *s), memcpy(scaled.y_star, y_star, (size_t)(n - 1) * sizeof *s);
+    prepare(&p, &scaled, 1.0, 1e-7);
+    Law law = make_law(&p.scaled, &p.modes, free, inputs, 0.0);
+    memcpy(gains, law.gains, (size_t)n * sizeof *gains);
 }
 
 double origin_moved(double Y) {
@@ -110,3 +124,12 @@ def test_the_origin_moves_to_the_bit_where_that_is_far_and_not_before(
 ) -> None:
     rooms.origin_moved.restype = ctypes.c_double
     assert rooms.origin_moved(ctypes.c_double(Y)) == moved
+
+
+def test_a_jump_at_a_stabilizer_counts_as_much_as_in_the_core(rooms: ctypes.CDLL) -> None:
+    """Also where weight makes sin⟨Θ⟩_1, and with it the first stabilizer, count most."""
+    scaled = Scaled((1.0, 1.7, 2.9), (1e-3, 2e-3), 0.0, 5.0, 0.1, 0.03)
+    modes, gains = Modes(scaled), doubles([0.0] * 3)
+    numbers = map(ctypes.c_double, (scaled.w, scaled.epsilon, 0.05))
+    rooms.gains_of(3, doubles(scaled.s), doubles(scaled.y_star), *numbers, gains)
+    assert list(gains) == pytest.approx(Laws(modes, 0.0, 0.05)[modes.free()].gains, rel=1e-12)
