@@ -15,6 +15,10 @@ def test_the_extreme_of_a_parabola_between_two_points_is_found(a: float, b: floa
     assert found
 
 
+def test_a_function_that_only_rises_has_no_extremes() -> None:
+    assert extremes([(0.0, 0.0), (1.0, 1.0), (2.0, 3.0), (3.0, 7.0)]) == []
+
+
 def test_a_crossing_is_found_to_rounding() -> None:
     assert crossing(lambda x: x**3 - 0.1, 0.0, 1.0, 0.9) == pytest.approx(0.1 ** (1 / 3), abs=1e-12)
     assert crossing(lambda x: 1e-9 * (np.exp(20 * x) - 2.0), 0.0, 1.0, 1e-9 * (np.exp(20) - 2)) == pytest.approx(

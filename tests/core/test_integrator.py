@@ -3,6 +3,7 @@
 import gc
 import json
 import sys
+from dataclasses import replace
 from math import radians
 
 import numpy as np
@@ -14,6 +15,8 @@ from boreprop.core.survey import Survey
 from boreprop.core.system import Scaled
 from reference_cases import at_the_bit, start
 from systems import begin, scaled_systems
+
+ONE = Scaled(s=(1.0,), y_star=(), Delta=0.16, w=0.0, epsilon=0.1, psi_star=1.0)
 
 
 def test_a_saved_state_runs_on_bit_by_bit_also_through_json() -> None:
@@ -31,6 +34,37 @@ def test_each_step_that_ends_on_a_bound_is_counted_once() -> None:
     model = start("fig7_psi_2deg", 1e-5)
     steps = [model.step() for _ in range(300)]
     assert model.statistics.events == sum(step.event is not None for step in steps[:-1])
+
+
+def test_the_sine_of_a_bha_that_weight_bends_much_is_solved_to_the_tolerance() -> None:
+    """What is left of sin⟨Θ⟩_1 in a step counts by the weight, here w = 20."""
+    heavy, places = replace(ONE, w=20.0, Delta=0.0), np.arange(0.1, 3.0, 0.1)
+
+    def lateral(tolerance: float) -> list[float]:
+        model, found = begin(heavy, Survey((0.0,), (0.6,)), 0.0, 0.5, tolerance), []
+        for xi in places.tolist():
+            model.advance(xi)
+            found.append(model.state()[1])
+        return found
+
+    assert lateral(1e-6) == pytest.approx(lateral(1e-11), abs=1e-6)
+
+
+def test_a_bend_of_the_existing_hole_comes_back_as_a_jump_of_the_second_derivative() -> None:
+    """Y' = Θ is continuous at a station, its slope goes from 0.1 to −0.3 there."""
+    survey = Survey((0.0, 1.0, 1.5), (0.4, 0.5, 0.35))
+    kinks = begin(Scaled((1.0, 1.7), (1e-3,), 0.16, 2.4e-3, 0.1, 0.03), survey, 0.0, 0.1).kinks.ahead
+    assert {(kink.xi, kink.order, kink.i, round(kink.jump, 12)) for kink in kinks} >= {
+        (0.5, 2, 0, 0.4),
+        (1.2, 2, 1, 0.4),
+    }
+
+
+def test_a_step_that_is_tried_a_second_time_counts_as_rejected_once() -> None:
+    """A trial whose error is too large is shortened to 0.85 of its length at most: above 0.85² it was one."""
+    model = begin(ONE, Survey((0.0,), (0.0,)), 1e-3, 0.05, 1.4e-5, layers=1e6, largest_step=0.3)
+    assert 0.85**2 < model.step().h / 0.3 <= 0.85
+    assert model.statistics.rejected == 1
 
 
 @settings(max_examples=40, deadline=None)

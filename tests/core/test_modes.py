@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from boreprop.analysis.complementarity import lcp, residual
 from boreprop.core.beam import Beam
-from boreprop.core.modes import Loads, Modes, Regime, bit_tilt
+from boreprop.core.modes import Loads, Modes, Regime, bit_tilt, side_beyond
 from boreprop.core.system import Scaled
 from lemke import lemke
 from systems import loads, scaled_systems
@@ -152,3 +152,8 @@ def test_residual_is_large_where_z_does_not_solve_the_lcp() -> None:
 def test_lemke_reports_a_problem_without_a_solution() -> None:
     with pytest.raises(ArithmeticError, match="secondary ray"):
         lemke([[-1.0]], [-1.0])
+
+
+@pytest.mark.parametrize(("value", "side"), [(-1.25, 0), (-1.26, -1), (2.25, 0), (2.26, 1)])
+def test_a_value_may_lie_beyond_its_bounds_by_the_slack(value: float, side: int) -> None:
+    assert side_beyond(value, -1.0, 2.0, 0.25) == side

@@ -1,0 +1,50 @@
+"""What the kernel refuses, number by number."""
+
+import ctypes
+
+import numpy as np
+import pytest
+
+from boreprop.case.case import Case
+from boreprop.case.paper import paper_case
+from boreprop.case.parameters import parameters
+from boreprop.core.drilling import Drilling
+from boreprop.core.errors import ParameterError
+from boreprop.core.quantities import scalar_names
+from boreprop.core.survey import Survey
+from boreprop.core.system import BitRock, BottomHoleAssembly
+from boreprop.kernel import binding
+from boreprop.kernel.binding import NativeDrilling
+from boreprop.kernel.generate import SYSTEM
+
+pytestmark = pytest.mark.usefixtures("kernel")
+
+
+def test_each_number_of_a_state_counts(case: Case) -> None:
+    """A state with one number changed is refused, or taken over with that number."""
+    run = NativeDrilling(case.bha, case.bit, case.survey, active_weight_on_bit=case.active_weight_on_bit)
+    run.advance(9.0, 300.0, 5e4)
+    good = run.save()
+    for where in range(60):
+        changed = good.copy()
+        changed[where] = np.nextafter(good[where], np.inf)
+        try:
+            run.restore(changed)
+        except ParameterError:
+            continue
+        np.testing.assert_array_equal(run.save(), changed)
+
+
+def test_a_bha_too_long_for_a_double_is_refused_by_both_engines() -> None:
+    bha, bit = BottomHoleAssembly((0.01, 1e307), (1e-3,), 0.0, 1.0, 1.0), BitRock(1.0, 0.1, 0.02)
+    for engine in (Drilling, NativeDrilling):
+        with pytest.raises(ParameterError, match=r"^s_n / l_1: must be a finite number, got inf$"):
+            engine(bha, bit, Survey((0.0,), (0.0,)), active_weight_on_bit=1.0)
+
+
+def test_two_stations_that_do_not_increase_are_refused() -> None:
+    given = parameters(paper_case()) | {"relative_tolerance": 1e-7}
+    values, depths = np.array([given[name] for name in scalar_names(SYSTEM, 2)]), np.array([1.0, 0.0])
+    why = ctypes.create_string_buffer(binding.MESSAGE)
+    assert not binding.library().boreprop_start(2, values, 2, depths, np.zeros(2), binding.Inputs(0.0, 0.0, 1.0), why)
+    assert why.value.decode().startswith("measured_depth: must increase, got (1.0, 0.0)")
