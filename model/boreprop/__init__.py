@@ -1,4 +1,4 @@
-"""Borehole propagation of a directional drilling system: a delay complementarity model, and what it says of a hole.
+"""Borehole propagation of a directional drilling system: a delay complementarity model, and analyses of its holes.
 
 Start with a case and simulate it::
 
@@ -7,7 +7,7 @@ Start with a case and simulate it::
     run = simulate(load_case("case.toml"))
     print(summarize(run).build_rate)
 
-Everything a script needs has a name here. The rest of the package is private and may move.
+Everything that a script needs can be imported from here. The rest of the package is private and may move.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -76,7 +76,7 @@ __all__ = [*_HOMES, "__version__"]
 
 
 def __getattr__(name: str) -> Any:
-    """Load a public name when it is first asked for: a command pays for what it uses."""
+    """Load a public name when it is first used, so that a command imports only what it needs."""
     from importlib import import_module
 
     if name == "__version__":

@@ -348,7 +348,7 @@ def test_a_run_is_told_in_a_line(trajectory: Trajectory) -> None:
         f"<Trajectory: {len(trajectory)} columns, {trajectory.row_count} rows over {length:g} m, native engine, "
         "stopped before its end>"
     )
-    assert repr(Trajectory(trajectory.columns)).endswith(" m, case not known>")
+    assert repr(Trajectory(trajectory.columns)).endswith(" m, without its case>")
 
 
 @pytest.mark.parametrize("name", ["run.csv", "run.parquet"])
@@ -388,7 +388,7 @@ def test_a_csv_write_that_fails_changes_nothing(trajectory: Trajectory, tmp_path
 def test_a_case_that_cannot_be_written_leaves_the_old_run(
     trajectory: Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fail(*_: object) -> str:
+    def fail(*_: object, **__: object) -> str:
         raise OSError("disk full")
 
     write_trajectory(trajectory, tmp_path / "run.csv")

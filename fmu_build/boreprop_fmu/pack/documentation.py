@@ -1,4 +1,4 @@
-"""documentation/index.html of the borehole FMU: the page documentation.html, filled in."""
+"""Fills in the page documentation.html to make the documentation/index.html of an FMU."""
 
 from html import escape
 from importlib.resources import files
@@ -10,7 +10,7 @@ from boreprop.core.quantities import VARIABLES, Quantity
 
 DISCARDED = """A bad input is logged (status fmi2Error, category logStatusError) with its variable, its constraint and
 its value, and the step is discarded (fmi2Discard): nothing has moved, and the next step with good values works."""
-TEXTS = {  # where the flavours differ
+TEXTS = {  # the passages in which the flavours differ
     "python": {
         "inputs": "",
         "errors": f"""{DISCARDED} After a bad parameter the instance must be reset (fmi2Reset). After a state that is
@@ -38,7 +38,7 @@ def documentation(case: Case, runtime: str) -> bytes:
     Parameters
     ----------
     case
-        What the FMU starts from.
+        The case from which the FMU starts.
     runtime
         "python" or "native".
 
