@@ -43,17 +43,17 @@ def test_examples_give_what_they_show(module: str) -> None:
 
 @pytest.mark.parametrize("name", WITH_EXAMPLE)
 def test_the_main_names_have_an_example(name: str) -> None:
-    assert f"import {name}" in str(getdoc(getattr(boreprop, name))).replace(", ", "\nimport ")
+    assert ">>> " in str(getdoc(getattr(boreprop, name))).partition("\nExamples\n--------\n")[2]
 
 
-@pytest.mark.parametrize("name", PUBLIC)
+@pytest.mark.parametrize("name", [name for name in PUBLIC if name != "BorepropError"])
 def test_a_docstring_has_its_sections(name: str) -> None:
     """Numpydoc sections for parameters, and for what a function returns."""
     thing = getattr(boreprop, name)
     text, takes = str(getdoc(thing)), signature(thing).parameters
-    if takes and thing is not boreprop.BorepropError:
+    if takes:
         assert "\nParameters\n----------\n" in text
         described = text.partition("\nParameters\n")[2].replace(",", "\n").split()
         assert set(takes) <= set(described)
-    if not isclass(thing) and signature(thing).return_annotation is not None and takes:
+    if takes and not isclass(thing) and signature(thing).return_annotation is not None:
         assert "\nReturns\n-------\n" in text

@@ -23,6 +23,11 @@ def paper_case(tilt_limit: float = radians(2.0), clearance: float = 1e-3) -> Cas
     clearance
         y*, the clearance of the first stabilizer over ℓ₁, dimensionless.
 
+    Returns
+    -------
+    Case
+        The case, 60 ℓ₁ long.
+
     Raises
     ------
     ParameterError
