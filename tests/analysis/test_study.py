@@ -23,9 +23,9 @@ import scipy.stats
 import xarray
 
 import study_functions
+from boreprop.analysis.study.compute import probability, quantiles, study
 from boreprop.analysis.study.design import Study, grid, sample, vary
 from boreprop.analysis.study.figures import FIGURES, key_figures
-from boreprop.analysis.study.run import probability, quantiles, study
 from boreprop.analysis.study.table import Line
 from boreprop.analysis.summary import summarize
 from boreprop.case.paper import paper_case

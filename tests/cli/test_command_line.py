@@ -228,7 +228,7 @@ def run_raising(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
         raise error
 
     monkeypatch.setattr(sys, "argv", ["fails"])
-    console.run(one)
+    console.execute(one)
 
 
 @pytest.mark.parametrize(

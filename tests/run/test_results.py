@@ -267,7 +267,7 @@ def test_two_boreholes_in_a_file_are_refused_by_name(tmp_path: Path, names: list
     found = ", ".join(name for name in names if "drilled_length" in name)
     with pytest.raises(InputError) as caught:
         read_trajectory(file)
-    assert str(caught.value) == f"{file}: must have drilled_length of one borehole, got {found}"
+    assert str(caught.value) == f"{file}: must have a single borehole with all its outputs, got several: {found}"
 
 
 def test_columns_of_other_components_may_hold_anything(tmp_path: Path) -> None:

@@ -31,7 +31,7 @@ app = new_app("Show runs in Rerun: vertical section, bit frame, ripple, plots ov
 
 def main() -> NoReturn:
     """Run the command `boreprop-view`."""
-    console.run(app)
+    console.execute(app)
 
 
 @app.command()

@@ -42,7 +42,7 @@ def record(
     plan
         The planned hole, with measured depths as in the survey.
     save
-        The .rrd file to write. An existing file is replaced only at the end, or by what there is at Ctrl-C.
+        The .rrd file to write. An existing file is replaced only at the end, or at Ctrl-C by the data up to then.
     spawn, serve, connect
         Show the runs in a new viewer, in the browser, or in the viewer at an address rerun+http://HOST:PORT/proxy.
     progress

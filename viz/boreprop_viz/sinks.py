@@ -134,7 +134,7 @@ class Viewer:
     options
         Options of the command `rerun`.
     stays
-        Whether the process goes on, until it is closed, when it has all data.
+        Whether the process, once it has all data, runs until the user closes it.
     """
 
     def __init__(self, path: Path, *options: str, stays: bool) -> None:

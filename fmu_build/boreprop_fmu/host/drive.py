@@ -114,7 +114,9 @@ class FmuRun:
         Raises `Stopped`, with the rows up to there, if a call fails after the first row.
         """
         if len(self) > MAX_ROWS:
-            raise InputError(f"step: must give at most {MAX_ROWS} rows up to {self.stop:g} s, got {self.step:g} s")
+            raise InputError(
+                f"step: must give at most {MAX_ROWS} rows up to {self.stop:g} s, got {self.step:g} s; raise --step"
+            )
         rows, done, stopped = np.empty((len(self), len(self.columns))), 0, None
         try:
             for row in self:

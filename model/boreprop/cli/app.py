@@ -25,7 +25,7 @@ app = new_group("Borehole propagation of a directional drilling system.", COMMAN
 
 def main() -> NoReturn:
     """Run the command `boreprop`."""
-    console.run(app)
+    console.execute(app)
 
 
 if __name__ == "__main__":

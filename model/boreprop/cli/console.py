@@ -27,7 +27,7 @@ EXTRAS = {  # package → the extra that installs it
 }
 
 
-def run(app: typer.Typer) -> NoReturn:
+def execute(app: typer.Typer) -> NoReturn:
     """Execute `app` with the arguments of the process, and exit."""
     try:
         sys.exit(app(standalone_mode=False))

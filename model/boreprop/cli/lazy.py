@@ -11,7 +11,7 @@ from .options import Version
 
 
 def new_app(description: str) -> typer.Typer:
-    """An application to which one command is to be added; `console.run` starts it."""
+    """An application to which one command is to be added; `console.execute` starts it."""
     return typer.Typer(help=description, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 

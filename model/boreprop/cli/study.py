@@ -7,9 +7,9 @@ from typing import Annotated
 import typer
 
 from ..analysis.study.cluster import on_cluster
+from ..analysis.study.compute import study
 from ..analysis.study.design import Study, grid, sample
 from ..analysis.study.figures import key_figures
-from ..analysis.study.run import study
 from ..case.file import load_case
 from ..core.checks import check_number
 from ..errors import InputError

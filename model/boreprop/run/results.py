@@ -129,7 +129,7 @@ def _ours(path: Path, headings: list[str]) -> dict[str, str]:
     ours = [names for names, own in zip(drilling, outputs, strict=True) if own >= set().union(*outputs)]
     if len(ours) != 1:
         found = ", ".join(names["drilled_length"] for names in drilling)
-        raise InputError(f"{path}: must have drilled_length of one borehole, got {found}")
+        raise InputError(f"{path}: must have a single borehole with all its outputs, got several: {found}")
     times = [heading for heading in headings if heading.lower() == "time"]
     return dict(zip(("time",), times, strict=False)) | ours[0]
 

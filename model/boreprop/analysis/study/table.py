@@ -1,4 +1,4 @@
-"""The table of a study, a line for each case, and the Parquet file that keeps it while the study goes on."""
+"""The table of a study, with a line for each case, and the Parquet file to which it is saved meanwhile."""
 
 import json
 import tomllib

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ...analysis.study.run import probability, quantiles
+from ...analysis.study.compute import probability, quantiles
 from ...units import UNITS, Unit
 
 if TYPE_CHECKING:
