@@ -26,8 +26,8 @@ Array = NDArray[np.float64]
 
 POINTS_ALONG_BHA = 48  # of the drawn BHA and hole: a smooth curve with little data
 POINTS_OF_PLAN = 1000  # of the drawn plan: at most a pixel apart
-REACH_ABOVE_BHA = 1.15  # how far up the hole is drawn in the bit frame, over the length of the BHA
-AHEAD = 0.2  # how far ahead of the bit the directions of bit and hole are drawn, over the length of the BHA
+REACH_ABOVE_BHA = 1.15  # lengths of the BHA up to which the bit frame shows the hole, so that its top can be seen
+AHEAD = 0.2  # lengths of the BHA ahead of the bit over which the bit frame shows the directions of bit and hole
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from .archive import digest, identify
 from .contents import IDENTIFIER, describe, pack_manual, start_values
 
 RUNTIME_MODULES = ("default_experiment", "enums", "fmi2slave", "logmsg", "variables", "_version")
-SCRIPT = '''"""What pythonfmu starts. It compiles this for every instance, and wants a class with methods of its own."""
+SCRIPT = '''"""The script that pythonfmu compiles for every instance; it needs a class with methods of its own."""
 
 from {package}.slave import Borehole as Slave
 
