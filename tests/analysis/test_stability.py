@@ -233,7 +233,7 @@ TIGHT = replace(LOOSE, y_star=(0.0,))  # always touches
     [(LOOSE, 0.17, 1), (LOOSE, 1.5, 1), (TIGHT, 0.1, 3), (TIGHT, 0.17, 3)],
     ids=["decays", "drifts", "oscillates and grows", "oscillates and decays"],
 )
-def test_small_perturbations_grow_and_oscillate_as_the_roots_say(scaled: Scaled, eta_pi: float, order: int) -> None:
+def test_small_disturbances_grow_and_oscillate_as_the_roots_say(scaled: Scaled, eta_pi: float, order: int) -> None:
     step = 0.25
     signal, modes = simulated(scaled, eta_pi, 1e-4, 0.0, np.arange(15.0, 30.0, step))
     contact = int(scaled is TIGHT)

@@ -11,7 +11,7 @@ from boreprop.analysis.axis import AXIS_REACH, axis_ripple
 from boreprop.core.quantities import BY_NAME
 from boreprop.units import UNITS
 
-from .scene import AHEAD, HolePath, Shapes, bit_positions
+from .scene import AHEAD, HoleAxis, Shapes, bit_positions
 from .source import Stretch
 from .style import LANES, PLOTS
 from .track import Track, points, send, send_arrows, send_curve, send_strips
@@ -22,7 +22,7 @@ BIT_LENGTH = 0.04  # length of the drawn bit over that of the BHA
 # The vertical section
 
 
-def log_existing_hole(track: Track, hole: HolePath, start: float) -> None:
+def log_existing_hole(track: Track, hole: HoleAxis, start: float) -> None:
     """The existing hole, up from where drilling starts, for at least the length of the BHA."""
     bha = track.case.bha.stabilizer_positions[-1]
     surveyed = track.case.survey.measured_depth[-1] - track.case.survey.measured_depth[0]

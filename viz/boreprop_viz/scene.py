@@ -19,7 +19,7 @@ from boreprop.core.beam import Beam
 from boreprop.core.survey import Survey
 from boreprop.core.system import scale
 from boreprop.errors import InputError
-from boreprop.run.completion import path
+from boreprop.run.completion import axis_of
 from boreprop.run.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -31,7 +31,7 @@ AHEAD = 0.2  # lengths of the BHA ahead of the bit over which the bit frame show
 
 
 @dataclass(frozen=True)
-class HolePath:
+class HoleAxis:
     """The axis of the hole in the vertical plane, straight between points."""
 
     length: Array  # drilled length of each point, negative in the existing hole, increasing, (N,)
@@ -41,10 +41,10 @@ class HolePath:
         """Positions at the given lengths, shape (..., 2)."""
         return np.stack([np.interp(length, self.length, self.position[:, axis]) for axis in (0, 1)], axis=-1)
 
-    def followed_by(self, length: Array, position: Array) -> "HolePath":
+    def followed_by(self, length: Array, position: Array) -> "HoleAxis":
         """The hole extended through further points, without those that are not ahead of its end."""
         ahead = length > self.length[-1]
-        return HolePath(np.append(self.length, length[ahead]), np.concatenate((self.position, position[ahead])))
+        return HoleAxis(np.append(self.length, length[ahead]), np.concatenate((self.position, position[ahead])))
 
     def chord_inclination(self, length: Array, chord: float) -> Array:
         """Inclination of the chord over the last `chord` metres before each of the given lengths, (m,)."""
@@ -52,22 +52,22 @@ class HolePath:
         inclination: Array = np.arctan2(x, z)
         return inclination
 
-    def since(self, length: float) -> "HolePath":
+    def since(self, length: float) -> "HoleAxis":
         """The part of this hole from the last point at or before `length` on."""
         first = max(int(np.searchsorted(self.length, length, side="right")) - 1, 0)
-        return HolePath(self.length[first:], self.position[first:])
+        return HoleAxis(self.length[first:], self.position[first:])
 
 
-def existing_hole(survey: Survey, reach: float, spacing: float) -> HolePath:
+def existing_hole(survey: Survey, reach: float, spacing: float) -> HoleAxis:
     """The existing hole, above the survey straight until it is `reach` long, with a point every `spacing` metres."""
     station = np.asarray(survey.measured_depth) - survey.measured_depth[-1]
     top = min(float(station[0]), -reach)
     length = np.union1d(station, np.linspace(top, 0.0, int(np.ceil(-top / spacing)) + 1))
-    position = path(length, np.interp(length, station, np.asarray(survey.inclination)))
-    return HolePath(length, position - position[-1])
+    position = axis_of(length, np.interp(length, station, np.asarray(survey.inclination)))
+    return HoleAxis(length, position - position[-1])
 
 
-def planned_hole(plan: Survey, start: float) -> HolePath:
+def planned_hole(plan: Survey, start: float) -> HoleAxis:
     """The planned hole, moved so that it passes through the bit at the start of the run.
 
     Raises
@@ -83,11 +83,11 @@ def planned_hole(plan: Survey, start: float) -> HolePath:
         )
     length = np.union1d(depth - start, np.linspace(depth[0] - start, depth[-1] - start, POINTS_OF_PLAN))
     length = np.union1d(length, 0.0)
-    hole = HolePath(length, path(length, np.interp(length, depth - start, np.asarray(plan.inclination))))
-    return HolePath(length, hole.position - hole.at(np.array(0.0)))
+    hole = HoleAxis(length, axis_of(length, np.interp(length, depth - start, np.asarray(plan.inclination))))
+    return HoleAxis(length, hole.position - hole.at(np.array(0.0)))
 
 
-def turning(hole: HolePath, length: Array, over: float, chord: float) -> Array:
+def turning(hole: HoleAxis, length: Array, over: float, chord: float) -> Array:
     """Change of inclination over the last `over` metres, per length, rad/m, (m,); inclinations are those of chords."""
     change = hole.chord_inclination(length, chord) - hole.chord_inclination(length - over, chord)
     return change / over
@@ -133,12 +133,12 @@ class BitFrame:
         load_scales = np.array([bha.length_scale] + [bha.force_scale] * self.stabilizer.size + [1.0])
         self._shape_per_load = bha.length_scale * np.array(shapes) / load_scales[:, None]
 
-    def shapes(self, rows: Trajectory, hole: HolePath) -> "Shapes":
+    def shapes(self, rows: Trajectory, hole: HoleAxis) -> "Shapes":
         """The shapes at each row; `hole` must reach from the bit of the last row to the top of the first row's BHA."""
         mean = rows.stack("average_inclination") @ np.diff(self.stabilizer, prepend=0.0) / self.stabilizer[-1]
         return Shapes(self, rows, mean, self._hole_axis(rows, hole, mean), self._bha_axis(rows, mean))
 
-    def _hole_axis(self, rows: Trajectory, hole: HolePath, mean: Array) -> Array:
+    def _hole_axis(self, rows: Trajectory, hole: HoleAxis, mean: Array) -> Array:
         """The axis of the hole in the bit frame, (m, k').
 
         It is corrected for the errors of the small angles and of the spacing of the rows, so that at the stabilizers it

@@ -16,7 +16,7 @@ from boreprop.run.completion import case_of, complete
 from boreprop.run.trajectory import Trajectory
 from boreprop.units import BUILD_LENGTH
 
-from .scene import REACH_ABOVE_BHA, Array, HolePath, bit_positions, existing_hole, turning
+from .scene import REACH_ABOVE_BHA, Array, HoleAxis, bit_positions, existing_hole, turning
 
 BATCH = 1000  # rows drawn at once, which limits memory
 PATIENCE = 0.1  # s after which the rows of a live run are drawn though there are fewer: longer would look like stalling
@@ -45,7 +45,7 @@ class Stretch:
     """Consecutive rows of a run, and the hole behind the bit."""
 
     rows: Trajectory  # has the columns of `hole_columns`, too
-    hole: HolePath  # reaches as far behind the first row as drawing it needs
+    hole: HoleAxis  # reaches as far behind the first row as drawing it needs
 
 
 @dataclass(frozen=True)
@@ -166,7 +166,7 @@ def stretches(runs: Iterable[Trajectory], case: Case, plan: Survey | None) -> It
         hole = hole.since(float(length[-1]) - reach)
 
 
-def hole_columns(length: Array, hole: HolePath, case: Case, plan: Survey | None) -> dict[str, Array]:
+def hole_columns(length: Array, hole: HoleAxis, case: Case, plan: Survey | None) -> dict[str, Array]:
     """Build rate and dogleg severity of the hole behind the bit, rad/m, and with a plan its inclination there, rad."""
     half = case.bha.half_length
     columns = {

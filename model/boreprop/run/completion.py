@@ -263,8 +263,8 @@ class Stations:
         return np.append(0.0, np.cumsum(pieces))[station] + (length - self.length[station]) * mean
 
 
-def path(length: Array, inclination: Array) -> Array:
-    """Positions (x, z) of the stations of a hole, m, shape (N, 2), the first one at the origin.
+def axis_of(length: Array, inclination: Array) -> Array:
+    """The axis of a hole: positions (x, z) of its stations, m, shape (N, 2), the first one at the origin.
 
     Between stations the inclination, shape (N,), is linear in the length, shape (N,). So each piece of the hole is an
     arc of a circle, and the positions are exact.
@@ -278,7 +278,7 @@ def path(length: Array, inclination: Array) -> Array:
 def drilled(columns: Columns) -> Array:
     """Positions (x, z) of the bit, (rows, 2), from where the run starts."""
     at = Stations(columns)
-    return path(at.length[at.start :], at.inclination[at.start :])[1:]
+    return axis_of(at.length[at.start :], at.inclination[at.start :])[1:]
 
 
 def average_inclination(columns: Columns) -> Array:
