@@ -151,7 +151,7 @@ def grid(case: Case, axes: Mapping[str, ArrayLike]) -> Study:
     (4, [[0.01, 0.0], [0.01, 5000.0], [0.1, 0.0], [0.1, 5000.0]])
     """
     if not axes:
-        raise InputError("axes: a grid must have at least one, got none")
+        raise InputError("axes: a grid must have at least one axis, got none")
     values = {name: np.asarray(axis, dtype=np.float64) for name, axis in axes.items()}
     for name, axis in values.items():
         if axis.ndim != 1 or not axis.size:
