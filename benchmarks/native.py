@@ -21,9 +21,9 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from boreprop.analysis.study.compute import study
 from boreprop.analysis.study.design import grid
 from boreprop.analysis.study.figures import key_figures
-from boreprop.analysis.study.run import study
 from boreprop.case.case import Case
 from boreprop.case.paper import LENGTH_SCALE, paper_case
 from boreprop.core.drilling import Drilling

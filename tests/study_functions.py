@@ -6,8 +6,8 @@ import sys
 import time
 from pathlib import Path
 
+from boreprop.analysis.study.compute import study
 from boreprop.analysis.study.design import Study, grid
-from boreprop.analysis.study.run import study
 from boreprop.case.case import Case
 from boreprop.case.paper import paper_case
 

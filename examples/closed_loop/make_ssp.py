@@ -49,4 +49,4 @@ def build_controller(directory: Path) -> Path:
 
 
 if __name__ == "__main__":
-    console.run(app)
+    console.execute(app)

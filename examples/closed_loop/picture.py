@@ -58,4 +58,4 @@ def picture(
 
 
 if __name__ == "__main__":
-    console.run(app)
+    console.execute(app)

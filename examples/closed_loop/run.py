@@ -218,4 +218,4 @@ def step_libcosim(system: System, weights: list[float]) -> Iterator[list[float]]
 
 
 if __name__ == "__main__":
-    console.run(app)
+    console.execute(app)

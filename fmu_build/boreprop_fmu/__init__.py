@@ -1,1 +1,1 @@
-"""The model as an FMI 2.0 co-simulation FMU, and FMUs driven through fmpy."""
+"""Packs the model as an FMI 2.0 co-simulation FMU, and drives FMUs through fmpy."""

@@ -1,4 +1,4 @@
-"""The case file inside our FMUs: packing writes it, whoever drives or shows an FMU reads it."""
+"""The case file inside the FMUs of this package, which is written when a case is packed."""
 
 import zipfile
 from pathlib import Path
@@ -20,12 +20,12 @@ def read_packed_case(fmu: str | Path) -> Case | None:
 
     Returns
     -------
-    The case; None if the FMU holds none, as one of another maker.
+    The case; None if the FMU holds none, since another tool made it.
 
     Raises
     ------
     InputError
-        If the file is not a ZIP archive, or its case is bad.
+        If the file is not a ZIP archive, or its case breaks a constraint.
     """
     try:
         with zipfile.ZipFile(fmu) as archive:

@@ -1,4 +1,4 @@
-"""Borehole propagation of a directional drilling system: a delay complementarity model, and what it says of a hole.
+"""Borehole propagation of a directional drilling system: a delay complementarity model, and analyses of its holes.
 
 Start with a case and simulate it::
 
@@ -7,7 +7,7 @@ Start with a case and simulate it::
     run = simulate(load_case("case.toml"))
     print(summarize(run).build_rate)
 
-Everything a script needs has a name here. The rest of the package is private and may move.
+Everything that a script needs can be imported from here. The rest of the package is private and may move.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from .analysis.stability.roots import critical_eta_pi as critical_eta_pi
     from .analysis.stability.roots import find_roots as find_roots
     from .analysis.steering import steady_response as steady_response
+    from .analysis.study.compute import probability as probability
+    from .analysis.study.compute import quantiles as quantiles
+    from .analysis.study.compute import study as study
     from .analysis.study.design import grid as grid
     from .analysis.study.design import sample as sample
     from .analysis.study.design import vary as vary
-    from .analysis.study.run import probability as probability
-    from .analysis.study.run import quantiles as quantiles
-    from .analysis.study.run import study as study
     from .analysis.summary import summarize as summarize
     from .analysis.tipping import critical_dogleg as critical_dogleg
     from .case.case import Case as Case
@@ -60,14 +60,14 @@ _HOMES = {  # public name → module
     "hysteresis": "analysis.hysteresis",
     "load_case": "case.file",
     "paper_case": "case.paper",
-    "probability": "analysis.study.run",
-    "quantiles": "analysis.study.run",
+    "probability": "analysis.study.compute",
+    "quantiles": "analysis.study.compute",
     "read_trajectory": "run.results",
     "sample": "analysis.study.design",
     "simulate": "run.simulate",
     "stability_chart": "analysis.stability.chart",
     "steady_response": "analysis.steering",
-    "study": "analysis.study.run",
+    "study": "analysis.study.compute",
     "summarize": "analysis.summary",
     "vary": "analysis.study.design",
     "write_trajectory": "run.results",
@@ -76,7 +76,7 @@ __all__ = [*_HOMES, "__version__"]
 
 
 def __getattr__(name: str) -> Any:
-    """Load a public name when it is first asked for: a command pays for what it uses."""
+    """Load a public name when it is first used, so that a command imports only what it needs."""
     from importlib import import_module
 
     if name == "__version__":

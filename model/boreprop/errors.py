@@ -1,4 +1,4 @@
-"""What goes wrong in a way that a user can do something about."""
+"""Errors that a user can do something about. All are `BorepropError`."""
 
 from reprlib import Repr
 
@@ -9,21 +9,21 @@ from .core.errors import TableError as TableError
 
 
 class InputError(BorepropError, ValueError):
-    """What a user gave cannot be used. The message is one line: file, key, constraint, value."""
+    """A file, option or argument cannot be used. The message is one line: file, key, constraint, value."""
 
 
 class MissingColumn(InputError, KeyError):
-    """A run lacks a column. The message names it, and those that there are."""
+    """A run lacks a column. The message names the missing column and those that the run has."""
 
-    __str__ = Exception.__str__  # that of a KeyError puts the message in quotes
+    __str__ = Exception.__str__  # KeyError.__str__ would put the message in quotes
 
 
 class RootsNotFound(BorepropError):
-    """Some of the roots of a mode could not be found. The message says how many, and what helps."""
+    """Some of the roots of a mode could not be found. The message says how many, and what to do."""
 
 
 def shown(value: object) -> str:
-    """`value` for an error message: a table by its keys, anything long by its beginning."""
+    """The text of `value` in an error message: of a table its keys, of anything long its beginning."""
     short = Repr()
     short.maxlist = short.maxtuple = 8
     short.maxstring = short.maxother = 80

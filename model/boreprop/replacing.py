@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all."""
+"""Writes files that appear complete or not at all."""
 
 import os
 from collections.abc import Iterator
@@ -8,7 +8,7 @@ from pathlib import Path
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Yield a name beside `path` to write to; it takes its place at the end, or vanishes if something goes wrong."""
+    """Yield the path of a draft beside `path`. At the end the draft replaces `path`; after an error it is removed."""
     draft = path.with_name(f".{os.getpid()}.{path.name}")
     try:
         yield draft

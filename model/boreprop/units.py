@@ -1,12 +1,12 @@
-"""Units: what SI units are made of, and the units and formats in which people read a quantity. Their one home.
+"""For each SI unit: its base units, and the unit and number format in which people read it.
 
-A quantity is in SI units everywhere; only what is shown to people is in the unit, and with the digits, given here.
+A quantity is in SI units everywhere else. Whatever is shown to people is converted and formatted here.
 """
 
 from dataclasses import dataclass
 from math import pi
 
-BUILD_LENGTH = 30.0  # m: build rates are told in degrees per 30 m
+BUILD_LENGTH = 30.0  # m: build rates are given in degrees per 30 m
 
 
 @dataclass(frozen=True)
@@ -16,15 +16,15 @@ class Unit:
     Parameters
     ----------
     base
-        Base units of the SI unit → exponents.
+        The SI unit as a product of base units: base unit → exponent.
     shown
-        The unit to show values in.
+        The unit in which values are shown.
     factor
-        How many of that unit the SI unit is.
+        The value in the shown unit is this factor times the SI value.
     digits
-        Format of a number in that unit.
+        Format specification of a value in the shown unit.
     ascii
-        The unit to show values in as FMI spells it; empty: the SI unit itself.
+        The shown unit as FMI spells it; empty if it is the SI unit itself.
     """
 
     base: dict[str, int]
@@ -34,11 +34,11 @@ class Unit:
     ascii: str = ""
 
     def number(self, value: float, digits: str = "") -> str:
-        """An SI value as a number of the shown unit, in this format or the usual one."""
+        """An SI value converted to the shown unit, formatted with `digits` or, if that is empty, as usual."""
         return f"{self.factor * value:{digits or self.digits}}"
 
     def text(self, value: float, digits: str = "") -> str:
-        """The same with the unit."""
+        """The text of `number`, followed by the unit."""
         return f"{self.number(value, digits)} {self.shown}".rstrip()
 
 
@@ -55,4 +55,4 @@ UNITS = {  # SI unit, as the table of quantities spells it
         {"rad": 1, "m": -1}, f"°/{BUILD_LENGTH:g} m", BUILD_LENGTH * 180 / pi, "+.2f", ascii=f"deg/{BUILD_LENGTH:g}m"
     ),
 }
-SMALL_LENGTH = Unit({"m": 1}, "mm", 1e3, ".3g")  # of clearances, and of the hole axis beside a straight line
+SMALL_LENGTH = Unit({"m": 1}, "mm", 1e3, ".3g")  # for clearances and for the ripple of the hole axis

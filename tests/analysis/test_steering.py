@@ -112,7 +112,7 @@ def test_a_long_run_under_frozen_gravity_ends_on_the_response(scaled: Scaled, ps
     """There a constant curvature is exact: with contacts on each side and none, the tilt saturated and not."""
     inclination, scaled = 1.2, replace(scaled, psi_star=psi_star)
     end = drilled(FrozenGravity(scaled, inclination), F, 0.5, inclination, 300.0)
-    line = Steady(scaled, 0.5, inclination).settle(F)
+    line = Steady(scaled, 0.5, inclination).line_at(F)
     kappa, psi = line.at(F)
     assert end.regime == line.regime
     assert end.curvature == pytest.approx(kappa, rel=1e-6)
@@ -123,7 +123,7 @@ def test_a_long_run_under_frozen_gravity_ends_on_the_response(scaled: Scaled, ps
 
 def test_those_runs_meet_every_kind_of_mode() -> None:
     lines = [
-        Steady(replace(s, psi_star=p), 0.5, 1.2).settle(F) for s in (TWO, THREE) for p in (0.03, 2e-3) for F in FORCES
+        Steady(replace(s, psi_star=p), 0.5, 1.2).line_at(F) for s in (TWO, THREE) for p in (0.03, 2e-3) for F in FORCES
     ]
     met = {(line.regime.contact[0], line.regime.saturation) for line in lines}
     assert met >= {(1, 0), (0, 0), (-1, 0), (1, 1), (0, -1)}
@@ -137,7 +137,7 @@ def test_under_real_gravity_the_error_of_the_response_is_what_it_says(
 ) -> None:
     """To a twentieth of the error, itself below a hundredth: together within 1e-6 of the run's curvature."""
     end = drilled(Modes(scaled), F, 0.5, inclination, 30.0)
-    line = Steady(scaled, 0.5, end.mean).settle(F)
+    line = Steady(scaled, 0.5, end.mean).line_at(F)
     kappa = line.at(F)[0]
     error = end.curvature - kappa
     assert error == pytest.approx(line.error_rate * kappa, rel=0.05)
@@ -168,7 +168,7 @@ def test_a_hole_under_its_holding_force_stays_straight(case: Case, saturated: bo
 def test_reference_runs_that_die_out_end_on_the_response(name: str) -> None:
     rows, p = reference(name), CASES[name]
     mean = rows["Y"][-1] - np.interp(rows["xi"][-1] - 1.0, rows["xi"], rows["Y"])
-    line = Steady(start(name).scaled, p["eta_pi"], mean).settle(0.0)
+    line = Steady(start(name).scaled, p["eta_pi"], mean).line_at(0.0)
     kappa, psi = line.at(0.0)
     assert (rows["Theta"][-1] - rows["Theta"][-3]) / (rows["xi"][-1] - rows["xi"][-3]) == pytest.approx(kappa, abs=1e-6)
     assert rows["psi"][-1] == pytest.approx(psi, abs=1e-6)
@@ -181,7 +181,7 @@ def test_the_steered_reference_run_comes_close_to_each_response(length: float) -
     rows = rows[rows["xi"] < length - 1e-9]
     F = [f for at, f in zip(p["force_breaks"], p["force_values"], strict=True) if at < length][-1]
     mean = rows["Y"][-1] - np.interp(rows["xi"][-1] - 1.0, rows["xi"], rows["Y"])
-    line = Steady(start("steering_two_stabilizers").scaled, p["eta_pi"], mean).settle(F)
+    line = Steady(start("steering_two_stabilizers").scaled, p["eta_pi"], mean).line_at(F)
     kappa, psi = line.at(F)
     curvature = (rows["Theta"][-1] - rows["Theta"][-3]) / (rows["xi"][-1] - rows["xi"][-3])
     assert curvature == pytest.approx(kappa, rel=6e-3)
@@ -219,7 +219,7 @@ forces = st.floats(-0.02, 0.02)
 def test_the_response_solves_the_model(steady: Steady, F: float) -> None:
     """(17), and the LCP (15) by its definition, in a hole Θ(−s) = −κ s made of its average inclinations."""
     scaled, beam = steady.scaled, Beam(steady.scaled)
-    line = steady.settle(F)
+    line = steady.line_at(F)
     kappa, psi = line.at(F)
     averages = [-kappa * (before + after) / 2 for before, after in pairwise((0.0, *scaled.s))]
     e = np.cumsum([lambda_ * (mean - psi) for lambda_, mean in zip(scaled.lambda_, averages, strict=True)]).tolist()
@@ -251,14 +251,14 @@ def test_no_other_mode_has_a_response(steady: Steady, F: float) -> None:
     ]
     assert holding
     for line in holding:
-        assert line.at(F) == pytest.approx(steady.settle(F).at(F), abs=1e-8)
+        assert line.at(F) == pytest.approx(steady.line_at(F).at(F), abs=1e-8)
 
 
 @settings(max_examples=200, deadline=None)
 @given(steadies(), forces)
 def test_without_gravity_the_opposite_force_gives_the_opposite_response(steady: Steady, F: float) -> None:
     light = Steady(replace(steady.scaled, w=0.0), steady.eta_pi, 0.0)
-    there, back = light.settle(F).at(F), light.settle(-F).at(-F)
+    there, back = light.line_at(F).at(F), light.line_at(-F).at(-F)
     assert there == pytest.approx([-value for value in back], abs=1e-12)
 
 
@@ -269,8 +269,8 @@ def test_without_contact_saturation_and_gravity_the_response_is_proportional(
 ) -> None:
     free = replace(scaled, w=0.0, y_star=(1e6,) * len(scaled.y_star), psi_star=1e6)
     steady = Steady(free, eta_pi, 0.0)
-    expected = [factor * value for value in steady.settle(F).at(F)]
-    assert steady.settle(factor * F).at(factor * F) == pytest.approx(expected, rel=1e-9, abs=1e-15)
+    expected = [factor * value for value in steady.line_at(F).at(F)]
+    assert steady.line_at(factor * F).at(factor * F) == pytest.approx(expected, rel=1e-9, abs=1e-15)
 
 
 @settings(max_examples=200, deadline=None)
@@ -286,7 +286,7 @@ def test_the_curve_is_continuous_and_is_the_response_to_each_force(
         assert line.regime != next_line.regime
     for F in [limit * part for part in parts]:
         line = next(line for line, _, end in curve if F <= end)
-        assert line.at(F) == pytest.approx(steady.settle(F).at(F), abs=1e-9)
+        assert line.at(F) == pytest.approx(steady.line_at(F).at(F), abs=1e-9)
 
 
 @settings(max_examples=200, deadline=None)
@@ -315,7 +315,7 @@ def test_free_stabilizers_and_no_gravity_have_the_response_of_a_propped_cantilev
     numerator = M_rss * (eta_pi + 1 / lambda_**2) - F0_rss / lambda_
     kappa = F * numerator / (eta_pi * (epsilon * eta_pi + epsilon / lambda_**2 + 0.5))
     scaled = Scaled((1.0, lambda_), (10.0,), Delta, 0.0, epsilon, 1.0)
-    assert Steady(scaled, eta_pi, 0.0).settle(F).at(F)[0] == pytest.approx(kappa, rel=1e-12)
+    assert Steady(scaled, eta_pi, 0.0).line_at(F).at(F)[0] == pytest.approx(kappa, rel=1e-12)
 
 
 def test_the_reversal_of_free_stabilizers() -> None:

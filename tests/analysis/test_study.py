@@ -23,9 +23,9 @@ import scipy.stats
 import xarray
 
 import study_functions
+from boreprop.analysis.study.compute import probability, quantiles, study
 from boreprop.analysis.study.design import Study, grid, sample, vary
 from boreprop.analysis.study.figures import FIGURES, key_figures
-from boreprop.analysis.study.run import probability, quantiles, study
 from boreprop.analysis.study.table import Line
 from boreprop.analysis.summary import summarize
 from boreprop.case.paper import paper_case
@@ -235,7 +235,7 @@ def test_a_function_that_no_worker_could_import_is_refused() -> None:
 
 
 def test_a_result_must_not_be_called_like_a_parameter(thread: Executor) -> None:
-    with pytest.raises(InputError, match="must call no result 'active_weight_on_bit'"):
+    with pytest.raises(InputError, match="must name its results otherwise than the study's own columns, got 'active"):
         study(numbered(3), study_functions.named_like_a_parameter, executor=thread)
 
 
@@ -304,7 +304,7 @@ def test_a_study_that_grows_computes_what_is_new(tmp_path: Path) -> None:
             study_functions.divided,
             r"function: .*study_functions\.weight.*study_functions\.divided",
         ),
-        (lambda: grid(paper_case(), {"active_weight_on_bit": [1.0, 2.5]}), weight, "of case 1: must be 2.0, .*got 2.5"),
+        (lambda: grid(paper_case(), {"active_weight_on_bit": [1.0, 2.5]}), weight, "of case 1: must be 2.0 .*got 2.5"),
         (lambda: grid(paper_case(), {"rss_force": [1.0]}), weight, "varied parameters: .*got 'rss_force'"),
         (lambda: grid(paper_case(1.0), {"active_weight_on_bit": [1.0]}), weight, r"bit.tilt_limit_deg: must be 2.0"),
     ],
@@ -521,11 +521,11 @@ def test_the_command_of_uncertain_parameters(command: Command, tmp_path: Path, p
 @pytest.mark.parametrize(
     ("arguments", "named"),
     [
-        ([], ("--vary or --uncertain", "neither")),
-        (["--vary", "eta_pi=1", "--uncertain", "rss_force=normal(0,1)"], ("--vary or --uncertain", "both")),
+        ([], ("--vary, --uncertain: exactly one", "neither")),
+        (["--vary", "eta_pi=1", "--uncertain", "rss_force=normal(0,1)"], ("--vary, --uncertain: exactly one", "both")),
         (["--vary", "eta_pi=1:2"], ("--vary", "START:STOP:COUNT", "'eta_pi=1:2'")),
         (["--vary", "eta_pi"], ("--vary", "START:STOP:COUNT", "'eta_pi'")),
-        (["--vary", "eta_pi=1", "--vary", "eta_pi=2"], ("eta_pi: must be varied once", "'eta_pi=2'")),
+        (["--vary", "eta_pi=1", "--vary", "eta_pi=2"], ("eta_pi: must be given once", "'eta_pi=2'")),
         (["--vary", "weight=1"], ("must be one of", "active_weight_on_bit", "'weight'")),
         (["--uncertain", "eta_pi=gauss(1,2)"], ("--uncertain", "normal(", "'eta_pi=gauss(1,2)'")),
         (["--uncertain", "eta_pi=normal(1)"], ("--uncertain", "normal(", "'eta_pi=normal(1)'")),

@@ -228,7 +228,7 @@ def run_raising(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
         raise error
 
     monkeypatch.setattr(sys, "argv", ["fails"])
-    console.run(one)
+    console.execute(one)
 
 
 @pytest.mark.parametrize(
@@ -237,7 +237,7 @@ def run_raising(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
         InputError("x: must be y, got z"),
         ParameterError("x", "must be y", 5),
         TableError("x: must be y, got z"),
-        RootsNotFound("x: 2 zeros more were counted than found"),
+        RootsNotFound("x: 2 more zeros lie in the strip than were found"),
         FileNotFoundError(2, "no such file", "x"),
         ModuleNotFoundError("No module named 'rerun.x'", name="rerun.x"),
         InputError("x: must be y,\ngot z"),

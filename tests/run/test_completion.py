@@ -245,5 +245,5 @@ def test_what_must_be_there_is_named(runs: dict[int, Trajectory], gone: list[str
 
 
 def test_without_a_case_nothing_can_be_said(runs: dict[int, Trajectory]) -> None:
-    with pytest.raises(InputError, match="must have its case, got none: give it with --case or --fmu"):
+    with pytest.raises(InputError, match="must come with its case, got none: give it with --case or --fmu"):
         complete(Trajectory(runs[2].columns))

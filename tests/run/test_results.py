@@ -267,7 +267,7 @@ def test_two_boreholes_in_a_file_are_refused_by_name(tmp_path: Path, names: list
     found = ", ".join(name for name in names if "drilled_length" in name)
     with pytest.raises(InputError) as caught:
         read_trajectory(file)
-    assert str(caught.value) == f"{file}: must have drilled_length of one borehole, got {found}"
+    assert str(caught.value) == f"{file}: must have a single borehole with all its outputs, got several: {found}"
 
 
 def test_columns_of_other_components_may_hold_anything(tmp_path: Path) -> None:
@@ -348,7 +348,7 @@ def test_a_run_is_told_in_a_line(trajectory: Trajectory) -> None:
         f"<Trajectory: {len(trajectory)} columns, {trajectory.row_count} rows over {length:g} m, native engine, "
         "stopped before its end>"
     )
-    assert repr(Trajectory(trajectory.columns)).endswith(" m, case not known>")
+    assert repr(Trajectory(trajectory.columns)).endswith(" m, without its case>")
 
 
 @pytest.mark.parametrize("name", ["run.csv", "run.parquet"])
@@ -388,7 +388,7 @@ def test_a_csv_write_that_fails_changes_nothing(trajectory: Trajectory, tmp_path
 def test_a_case_that_cannot_be_written_leaves_the_old_run(
     trajectory: Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fail(*_: object, **_run: object) -> str:
+    def fail(*_: object, **__: object) -> str:
         raise OSError("disk full")
 
     write_trajectory(trajectory, tmp_path / "run.csv")

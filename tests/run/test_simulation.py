@@ -184,8 +184,8 @@ def test_summary_of_a_steered_run() -> None:
     ("interval", "length", "hidden"),
     [
         (0.1, 219.6, ""),
-        (1.0, 219.0, "under 8 m: take rows closer together"),
-        (0.1, 12.0, "over 2.4 m: drill further"),
+        (1.0, 219.0, "under 8 m: take rows closer together (--sample-interval)"),
+        (0.1, 12.0, "over 2.4 m: drill further (--length)"),
     ],
 )
 def test_a_summary_says_which_waves_the_rows_cannot_show(interval: float, length: float, hidden: str) -> None:

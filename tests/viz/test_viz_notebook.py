@@ -106,7 +106,7 @@ def test_what_is_no_run_is_refused(runs: tuple[Any, ...], got: str) -> None:
 
 
 def test_nothing_is_shown_of_a_run_that_cannot_be_drawn(sent: list[RrdReader], run: Trajectory) -> None:
-    with pytest.raises(InputError, match="must have its case"):
+    with pytest.raises(InputError, match="must come with its case"):
         show(Trajectory(run.columns))
     assert not sent
 

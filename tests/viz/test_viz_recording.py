@@ -237,7 +237,7 @@ def test_the_plan_is_drawn_from_where_drilling_starts(run: Trajectory, case: Cas
 
 
 def test_a_plan_that_ends_above_the_start_is_refused(run: Trajectory, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"measured_depth: must enclose 7\.32 m, where drilling starts, got 0 to 5"):
+    with pytest.raises(InputError, match=r"plan: must include 7\.32 m, where drilling starts, got 0 to 5"):
         record(run, plan=Survey((0.0, 5.0), (0.0, 0.0)), save=tmp_path / "run.rrd")
     assert not list(tmp_path.iterdir())
 
@@ -326,15 +326,15 @@ def test_the_command_runs_a_case_file(command: Command, paper_text: str, tmp_pat
 @pytest.mark.parametrize(
     ("arguments", "error"),
     [
-        (["run.csv", "--save", "run.rrd"], "run.csv: the run must have its case, got none"),
+        (["run.csv", "--save", "run.rrd"], "run.csv: the run must come with its case, got none"),
         (["run.csv", "--save", "run.png"], "run.png: must end in .rrd, got '.png'"),
         (["run.xlsx", "--save", "run.rrd"], "run.xlsx: must end in .csv, .parquet, .fmu or .toml, got '.xlsx'"),
-        (["run.csv", "--spawn", "--serve"], "--spawn, --serve and --connect: must be at most one, got 2"),
-        (["run.csv", "--case", "a.toml", "--fmu", "b.fmu"], "--case and --fmu: must be at most one, got both"),
+        (["run.csv", "--spawn", "--serve"], "--spawn, --serve, --connect: at most one must be given, got 2"),
+        (["run.csv", "--case", "a.toml", "--fmu", "b.fmu"], "--case, --fmu: at most one must be given, got both"),
         (["run.csv", "--case", "no.toml"], "no.toml: must be a readable TOML file, got: No such file or directory"),
-        (["run.csv", "--step", "1"], "--step: must come with an FMU to run, got run.csv"),
-        (["run.csv", "./run.csv", "run.csv"], "run.csv: must be given once, got it again"),
-        (["a.toml", "--case", "b.toml"], "a.toml: must be a run to be given a case, got a case file"),
+        (["run.csv", "--step", "1"], "--step: must be given with an FMU to run, got run.csv"),
+        (["run.csv", "./run.csv", "run.csv"], "run.csv: must be given once, got it twice"),
+        (["a.toml", "--case", "b.toml"], "a.toml: must be a result file with --case or --fmu, got a case file"),
     ],
 )
 def test_bad_input_is_one_line_and_leaves_no_file(

@@ -14,7 +14,7 @@ from boreprop.case.case import Case, Schedule
 from boreprop.case.file import load_case
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
-from boreprop.run.completion import path
+from boreprop.run.completion import axis_of
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
 from boreprop_viz.scales import choose_scales
@@ -22,7 +22,7 @@ from boreprop_viz.scene import (
     Array,
     BitFrame,
     Bounds,
-    HolePath,
+    HoleAxis,
     Shapes,
     bit_positions,
     existing_hole,
@@ -74,7 +74,7 @@ def test_a_path_of_few_stations_is_exactly_an_arc() -> None:
     inclination = start + curvature * length
     x = (math.cos(start) - np.cos(inclination)) / curvature
     z = (np.sin(inclination) - math.sin(start)) / curvature
-    np.testing.assert_allclose(path(length, inclination), np.column_stack((x, z)), atol=1e-11)
+    np.testing.assert_allclose(axis_of(length, inclination), np.column_stack((x, z)), atol=1e-11)
 
 
 def test_an_existing_hole_ends_at_the_origin_and_goes_on_straight_above_its_survey() -> None:
@@ -88,7 +88,7 @@ def test_an_existing_hole_ends_at_the_origin_and_goes_on_straight_above_its_surv
 
 
 def test_a_hole_keeps_every_position_from_the_given_length_on() -> None:
-    hole = HolePath(np.array([-2.0, -1.0, 0.0, 3.0]), np.arange(8.0).reshape(4, 2))
+    hole = HoleAxis(np.array([-2.0, -1.0, 0.0, 3.0]), np.arange(8.0).reshape(4, 2))
     lengths = np.linspace(-0.5, 3.0, 9)
     np.testing.assert_array_equal(hole.since(-0.5).at(lengths), hole.at(lengths))
 
@@ -216,7 +216,7 @@ def test_in_the_vertical_section_the_bha_starts_at_the_bit_and_ends_in_the_hole(
     section = drilled.bha_in_section
     position, top = bit_positions(drilled.rows), drilled.frame.stabilizer[-1]
     np.testing.assert_allclose(section[:, 0], position, atol=1e-12)
-    behind = HolePath(drilled.rows["drilled_length"], position).at(drilled.rows["drilled_length"][-1] - top)
+    behind = HoleAxis(drilled.rows["drilled_length"], position).at(drilled.rows["drilled_length"][-1] - top)
     np.testing.assert_allclose(section[-1, -1], behind, atol=0.01)
     bends = [np.linalg.norm(after - before) for before, after in pairwise(section[-1])]
     np.testing.assert_allclose(bends, np.diff(drilled.frame.stabilizer, prepend=0.0), rtol=1e-3)

@@ -186,7 +186,7 @@ def test_a_viewer_that_dies_or_hangs_does_no_harm(
         assert children() == [psutil.Process(viewer.pid)]
     assert sound(saved)
     assert read(saved) == rows(20)
-    assert capsys.readouterr().err == f"warning: the viewer {told}: it may not have got everything\n"
+    assert capsys.readouterr().err == f"warning: the viewer {told}: it may not have received all data\n"
 
 
 @signals

@@ -1,4 +1,4 @@
-"""The text beside the pictures: what is drilled with what, and what came of it."""
+"""The text beside the pictures: the cases, and whether their holes ripple."""
 
 from collections.abc import Sequence
 from math import degrees
@@ -17,7 +17,7 @@ CARD = "case"
 
 
 def log_card(rec: rr.RecordingStream, sources: Sequence[Source], findings: Sequence[str]) -> None:
-    """Whether the hole of each run ripples, in words, and the cases side by side."""
+    """Log whether the hole of each run ripples, in words, and a table of the cases side by side."""
     names = [source.name for source in sources]
     facts = [case_facts(source.case) for source in sources]
     lines = [f"- **{name}** {finding}" for name, finding in zip(names, findings, strict=True)]
@@ -27,7 +27,7 @@ def log_card(rec: rr.RecordingStream, sources: Sequence[Source], findings: Seque
 
 
 def case_facts(case: Case) -> dict[str, str]:
-    """What there is to know of a case, by what it is called, in the units people use."""
+    """The facts about a case: name → value in the units people use."""
     bha, bit = case.bha, case.bit
     inclination = case.survey.inclination[-1]
     contact = can_touch(bha, bit, inclination, case.schedule.rss_force)
@@ -49,7 +49,7 @@ def case_facts(case: Case) -> dict[str, str]:
 
 
 def in_words(wave: Rippling) -> str:
-    """Whether a run ripples, in a line."""
+    """A line that says whether a run ripples, and with what wave."""
     waves = f"waves of {wave.wavelength:.2f} m, ±{degrees(wave.amplitude):.2g}°"
     return {
         State.NONE: "does not ripple",

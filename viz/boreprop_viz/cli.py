@@ -14,23 +14,24 @@ from boreprop.errors import InputError
 
 
 class WithoutPandas(MetaPathFinder):
-    """Says that pandas is not installed.
+    """Makes pandas appear not to be installed.
 
-    pyarrow, on which Rerun builds, would load it to see whether it was given a table of pandas: a third of a second.
+    pyarrow, which Rerun uses, would import it to see whether data are a table of pandas. That takes a third of a
+    second.
     """
 
     def find_spec(self, fullname: str, path: object = None, target: object = None) -> None:  # noqa: ARG002
-        """Refuse pandas, and leave all else to the other finders."""
+        """Refuse pandas, and leave all other modules to the other finders."""
         if fullname == "pandas":
             raise ModuleNotFoundError("pandas is not needed here", name=fullname)
 
 
-app = new_app("Runs to look at in Rerun: vertical section, bit frame, ripple, plots over the drilled length.")
+app = new_app("Show runs in Rerun: vertical section, bit frame, ripple, plots over the drilled length.")
 
 
 def main() -> NoReturn:
     """Run the command `boreprop-view`."""
-    console.run(app)
+    console.execute(app)
 
 
 @app.command()
@@ -39,19 +40,19 @@ def view(
         list[Path],
         typer.Argument(
             metavar="RUN.csv|RUN.parquet|CASE.toml|Borehole.fmu…",
-            help="Runs of any FMI tool, cases to simulate, FMUs to run and show while they run. Several are drawn over "
-            "one another.",
+            help="Result files of any FMI tool, cases to simulate, FMUs to drive and draw as they run. Several are "
+            "drawn over one another.",
         ),
     ],
     case: Annotated[
         Path | None,
-        typer.Option(metavar="CASE.toml", help="The case of the runs. Default: the one that they come with."),
+        typer.Option(metavar="CASE.toml", help="The case of the runs. Default: the one stored with each."),
     ] = None,
     fmu: Annotated[
-        Path | None, typer.Option(metavar="Borehole.fmu", help="The FMU that made the runs, with its case.")
+        Path | None, typer.Option(metavar="Borehole.fmu", help="The FMU that made the runs: it holds their case.")
     ] = None,
     plan: Annotated[
-        Path | None, typer.Option(metavar="PLAN.csv", help="The planned hole: measured_depth, inclination_deg.")
+        Path | None, typer.Option(metavar="PLAN.csv", help="The planned hole: columns measured_depth, inclination_deg.")
     ] = None,
     schedule: Annotated[
         Path | None, typer.Option(metavar="S.csv", help="Steering force over drilled length, for an FMU.")
@@ -63,24 +64,24 @@ def view(
         float | None, typer.Option(parser=positive, metavar="T", help="Time at the end, s, for an FMU.")
     ] = None,
     save: Annotated[Path | None, typer.Option(metavar="X.rrd", help="The recording to write.")] = None,
-    spawn: Annotated[bool, typer.Option("--spawn", help="Show it in a new viewer: the default.")] = False,
-    serve: Annotated[bool, typer.Option("--serve", help="Show it in the browser until Ctrl-C.")] = False,
+    spawn: Annotated[bool, typer.Option("--spawn", help="Show the runs in a new viewer. This is the default.")] = False,
+    serve: Annotated[bool, typer.Option("--serve", help="Show the runs in the browser until Ctrl-C.")] = False,
     connect: Annotated[
         str | None,
-        typer.Option(metavar="ADDRESS", help="Show it in the viewer that listens at rerun+http://HOST:PORT/proxy."),
+        typer.Option(metavar="ADDRESS", help="Show the runs in the viewer at rerun+http://HOST:PORT/proxy."),
     ] = None,
     _version: Version = False,
 ) -> None:
-    """Draw runs. A case is simulated first; an FMU is drawn while it runs."""
+    """Draw runs with Rerun. A case is simulated first; an FMU is drawn while it runs."""
     if save is not None:
         console.check_output(save, (".rrd",))
     if case is not None and fmu is not None:
-        raise InputError("--case and --fmu: must be at most one, got both")
+        raise InputError("--case, --fmu: at most one must be given, got both")
     if (viewers := spawn + serve + (connect is not None)) > 1:
-        raise InputError(f"--spawn, --serve and --connect: must be at most one, got {viewers}")
+        raise InputError(f"--spawn, --serve, --connect: at most one must be given, got {viewers}")
     check_that_one_runs(sources, {"--schedule": schedule, "--step": step, "--stop": stop})
     sys.meta_path.insert(0, WithoutPandas())
-    from .view import show  # here: Rerun takes longer to load than it takes to say what is wrong with an option
+    from .view import show  # imported here, so that a wrong option is reported before Rerun, which is slow, is imported
 
     show(
         sources,
@@ -98,12 +99,12 @@ def view(
 
 
 def check_that_one_runs(sources: list[Path], options: dict[str, object]) -> None:
-    """Raise `InputError` if one of the options for running an FMU is given without an FMU to run."""
+    """Raise `InputError` if an option for driving an FMU is given without an FMU to drive."""
     if any(source.suffix == ".fmu" for source in sources):
         return
     for option, value in options.items():
         if value is not None:
-            raise InputError(f"{option}: must come with an FMU to run, got {', '.join(map(str, sources))}")
+            raise InputError(f"{option}: must be given with an FMU to run, got {', '.join(map(str, sources))}")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What is logged of each row of a run: one ``log_…`` function per thing shown, each for a stretch of rows.
+"""Logs what is shown of the rows of a run: one ``log_…`` function for each thing, each for a stretch of rows.
 
 Views are in metres with y down the screen. In the bit frame the hole runs up the screen, the high side is to the right,
 and the lateral axis is multiplied by the factor that the view's name gives.
@@ -11,19 +11,19 @@ from boreprop.analysis.axis import AXIS_REACH, axis_ripple
 from boreprop.core.quantities import BY_NAME
 from boreprop.units import UNITS
 
-from .scene import AHEAD, HolePath, Shapes, bit_positions
+from .scene import AHEAD, HoleAxis, Shapes, bit_positions
 from .source import Stretch
 from .style import LANES, PLOTS
 from .track import Track, points, send, send_arrows, send_curve, send_strips
 
 RIPPLE = "plots/ripple/ripple"
-BIT_LENGTH = 0.04  # of the drawn bit, over the length of the BHA
+BIT_LENGTH = 0.04  # length of the drawn bit over that of the BHA
 
 # The vertical section
 
 
-def log_existing_hole(track: Track, hole: HolePath, start: float) -> None:
-    """The surveyed hole, behind where drilling starts; a BHA long at least."""
+def log_existing_hole(track: Track, hole: HoleAxis, start: float) -> None:
+    """The existing hole, up from where drilling starts, for at least the length of the BHA."""
     bha = track.case.bha.stabilizer_positions[-1]
     surveyed = track.case.survey.measured_depth[-1] - track.case.survey.measured_depth[0]
     behind = hole.since(start - max(1.15 * bha, surveyed))
@@ -34,7 +34,10 @@ def log_existing_hole(track: Track, hole: HolePath, start: float) -> None:
 
 
 def log_drilled_hole(track: Track, stretch: Stretch, drilled: float) -> None:
-    """Each row's own piece of the hole, from where it is drawn on: the view shows the pieces up to its cursor."""
+    """The hole drilled beyond the length `drilled`, m, in one piece for each row.
+
+    The view shows the pieces up to its cursor.
+    """
     hole = stretch.hole.since(drilled)
     new = (hole.length > drilled) & (hole.length <= stretch.rows["drilled_length"][-1])
     ends = np.flatnonzero(new)
@@ -59,7 +62,7 @@ def log_walls(track: Track, shapes: Shapes) -> None:
 
 
 def log_bha(track: Track, shapes: Shapes) -> None:
-    """The axis of the BHA, as the model says it bends."""
+    """The axis of the BHA, bent as in the model."""
     strips = points(track.scales.lateral * shapes.bha_axis, -shapes.frame.s)[:, None]
     send_strips(track, "bit_frame/bha", shapes.rows["drilled_length"], strips)
 
@@ -74,7 +77,7 @@ def log_bit(track: Track, shapes: Shapes) -> None:
 
 
 def log_tilt(track: Track, shapes: Shapes) -> None:
-    """The axis of the bit against the direction of the hole, and how far apart the tilt limit lets them be."""
+    """The axis of the bit, the direction of the hole, and the limits of the angle between them."""
     length, reach = shapes.rows["drilled_length"], AHEAD * float(shapes.frame.stabilizer[-1])
     limit = track.case.bit.tilt_limit
     directions = {
@@ -93,13 +96,13 @@ def log_tilt(track: Track, shapes: Shapes) -> None:
 
 
 def log_stabilizers(track: Track, shapes: Shapes) -> None:
-    """The blades, from one side of the BHA to the other; the last stabilizer fills the hole."""
+    """The blades of the stabilizers, from one side of the BHA to the other; the last stabilizer fills the hole."""
     strips = points(track.scales.lateral * shapes.blades, -shapes.frame.stabilizer[:, None])
     send_strips(track, "bit_frame/stabilizers", shapes.rows["drilled_length"], strips)
 
 
 def log_contacts(track: Track, shapes: Shapes) -> None:
-    """Where the wall bears a stabilizer, and its force on it: nothing where there is none."""
+    """The points where the wall pushes on a stabilizer, and its force; nothing where it does not."""
     length, force = shapes.rows["drilled_length"], shapes.rows.stack("stabilizer_force")
     for i, lateral in enumerate(shapes.contact_points.T):
         place = points(track.scales.lateral * lateral, -shapes.frame.stabilizer[i])
@@ -112,7 +115,7 @@ def log_contacts(track: Track, shapes: Shapes) -> None:
 def log_forces(track: Track, shapes: Shapes) -> None:
     """The force of the steering pads on the BHA, and the side force on the bit."""
     frame, rows = shapes.frame, shapes.rows
-    ahead = (track.place + 1.5) * BIT_LENGTH * frame.stabilizer[-1]  # where its arrow and the bit can be told apart
+    ahead = (track.place + 1.5) * BIT_LENGTH * frame.stabilizer[-1]  # ahead of the bit, which would hide the arrow
     at = {"rss_force": (frame.at_rss, frame.rss), "bit_lateral_force": (0, -ahead)}
     for force, (place, s) in at.items():
         if force in rows.columns:
@@ -124,12 +127,12 @@ def log_forces(track: Track, shapes: Shapes) -> None:
 
 
 def curve(plot: str, scalar: str) -> str:
-    """Where a scalar is in a plot: stabilizer_force[1] is plots/stabilizer_force/stabilizer_force_1."""
+    """The entity of the curve of a scalar: plots/stabilizer_force/stabilizer_force_1 for stabilizer_force[1]."""
     return f"plots/{plot}/{scalar.replace('[', '_').rstrip(']')}"
 
 
 def log_plots(track: Track, shapes: Shapes) -> None:
-    """The curves of all plots that there is something for."""
+    """The curves of all plots for which the run has columns."""
     rows = shapes.rows
     for name, plot in PLOTS.items():
         for scalar in plot.names(rows.n):
@@ -145,7 +148,10 @@ def log_tilt_limits(track: Track, shapes: Shapes) -> None:
 
 
 def log_ripple(track: Track, stretch: Stretch, rippled: float) -> float:
-    """The ripple of the drilled hole, mm, from `rippled`, m, to where its trend can be told; returns where that is."""
+    """The ripple of the drilled hole, mm, from the length `rippled`, m, as far as its trend is determined.
+
+    Returns the length up to which it is logged now.
+    """
     width = track.scales.trend
     hole = stretch.hole.since(max(rippled, 0.0) - (AXIS_REACH + 1.0) * width)
     length, ripple = axis_ripple(hole.length, hole.position, width)
@@ -157,21 +163,21 @@ def log_ripple(track: Track, stretch: Stretch, rippled: float) -> float:
 # The modes
 
 
-def lanes(variable: str, n: int) -> list[str]:
-    """Where the lanes of a variable of few values are: stabilizer_contact[1] is modes/stabilizer_1."""
-    if variable == "bit_tilt_saturation":
+def lanes(quantity: str, n: int) -> list[str]:
+    """The entities of the lanes of a quantity of few values: modes/stabilizer_1 for stabilizer_contact[1]."""
+    if quantity == "bit_tilt_saturation":
         return ["modes/tilt"]
-    return [f"modes/stabilizer_{i}" for i, _ in enumerate(BY_NAME[variable].names(n), 1)]
+    return [f"modes/stabilizer_{i}" for i, _ in enumerate(BY_NAME[quantity].names(n), 1)]
 
 
 def log_modes(track: Track, stretch: Stretch, shown: dict[str, float]) -> dict[str, float]:
-    """Which stabilizer touches which wall, and whether the tilt is at its limit, where that changes.
+    """The changes of the wall that each stabilizer touches, and of the saturation of the bit tilt.
 
-    `shown` is what each lane shows last before these rows; what it shows last after them is returned.
+    `shown` has the value that each lane shows before these rows; the values after them are returned.
     """
     rows, last = stretch.rows, {}
-    for variable, states in LANES.items():
-        for lane, scalar in zip(lanes(variable, rows.n), BY_NAME[variable].names(rows.n), strict=True):
+    for quantity, states in LANES.items():
+        for lane, scalar in zip(lanes(quantity, rows.n), BY_NAME[quantity].names(rows.n), strict=True):
             values = rows[scalar]
             changed = np.flatnonzero(np.diff(values, prepend=shown.get(lane, np.nan)) != 0.0)
             words = [states[int(value)][0] for value in values[changed]]

@@ -1,4 +1,4 @@
-"""What is logged once, for all time: grid, places and scales of the views, names, and how everything looks.
+"""Logs what does not change over a run: grid, marks and scales of the views, names, colours and strokes.
 
 Views are in metres with y down the screen. In the bit frame the hole runs up the screen, the high side is to the right,
 and the lateral axis is multiplied by the factor that the view's name gives.
@@ -14,7 +14,7 @@ from boreprop.units import UNITS
 
 from .entities import RIPPLE, curve, lanes
 from .scales import Scales, round_down
-from .scene import Array, HolePath
+from .scene import Array, HoleAxis
 from .style import (
     BY_STABILIZER,
     FURNITURE,
@@ -33,7 +33,7 @@ from .track import Track, points
 
 
 def log_furniture(rec: rr.RecordingStream, scales: Scales, cases: Sequence[Case]) -> None:
-    """What belongs to no run: the grid of the vertical section, the places and the scales of the bit frame."""
+    """What is common to all runs: the grid of the vertical section, the marks and the scales of the bit frame."""
     for thing, stroke in FURNITURE.items():
         log_stroke(rec, thing, stroke)
     log_grid(rec, scales)
@@ -42,7 +42,7 @@ def log_furniture(rec: rr.RecordingStream, scales: Scales, cases: Sequence[Case]
 
 
 def log_styles(track: Track) -> None:
-    """Colours, widths, layers and names of what a run shows, for all time."""
+    """Colours, widths, layers and names of all that a run shows."""
     rec, n = track.rec, len(track.case.bha.stabilizer_positions)
     for thing, stroke in STROKES.items():
         log_stroke(rec, track.entity(thing), stroke if track.colour is None else stroke.of(track.colour))
@@ -61,21 +61,21 @@ def log_styles(track: Track) -> None:
     for side in ("lower", "upper"):
         log_curve_style(track, f"plots/bit_tilt/{side}_limit", "±ψ*  limit", GREY, 1.0)
     log_curve_style(track, RIPPLE, "hole axis less its trend", track.colour or ORANGE, 2.0)
-    for variable, states in LANES.items():
+    for quantity, states in LANES.items():
         words, colours = zip(*states.values(), strict=True)
-        for lane in lanes(variable, n):
+        for lane in lanes(quantity, n):
             rec.log(track.entity(lane), rr.StateConfiguration(values=words, colors=colours), static=True)
 
 
 def log_stroke(rec: rr.RecordingStream, entity: str, stroke: Stroke) -> None:
-    """How the lines of an entity look."""
+    """The colour, width and layer of the lines of an entity."""
     radii = rr.Radius.ui_points(stroke.width / 2)
     strips = rr.LineStrips2D.from_fields(colors=stroke.colour, radii=radii, draw_order=stroke.layer)
     rec.log(entity, strips, static=True)
 
 
 def log_curve_style(track: Track, thing: str, label: str, colour: Colour, width: float) -> None:
-    """How a curve of a plot looks, and what it is called."""
+    """The colour, width and name of a curve of a plot."""
     shown = track.label(label)
     line = rr.SeriesLines(
         colors=colour, names=shown, widths=width, aggregation_policy=rr.components.AggregationPolicy.MinMax
@@ -102,7 +102,7 @@ def log_labels(rec: rr.RecordingStream, entity: str, places: Array, labels: Sequ
 
 
 def log_grid(rec: rr.RecordingStream, scales: Scales) -> None:
-    """Lines at round numbers of metres, labelled along the left and the bottom, but for the corners."""
+    """Lines at round numbers of metres, labelled along the left and the bottom edge, except in the corners."""
     (left, right), (top, bottom) = scales.section.x, scales.section.y
     step = round_down(max(right - left, bottom - top) / 4)
     x, z = (step * np.arange(np.ceil(low / step), high / step) for low, high in (scales.section.x, scales.section.y))
@@ -114,13 +114,13 @@ def log_grid(rec: rr.RecordingStream, scales: Scales) -> None:
     log_labels(rec, "vertical_section/grid/displacement", points(x, bottom), [f"{round(value)} m" for value in x])
 
 
-def log_plan(rec: rr.RecordingStream, plan: HolePath) -> None:
+def log_plan(rec: rr.RecordingStream, plan: HoleAxis) -> None:
     """The planned path."""
     rec.log("vertical_section/plan", rr.LineStrips2D.from_fields(strips=[plan.position]), static=True)
 
 
 def log_places(rec: rr.RecordingStream, scales: Scales, cases: Sequence[Case]) -> None:
-    """What is where along the BHAs."""
+    """Marks at the bit, the pads and the stabilizers of all BHAs, with their names and distances from the bit."""
     names: dict[float, str] = {}
     for case in cases:
         bha = case.bha
@@ -137,7 +137,7 @@ def log_places(rec: rr.RecordingStream, scales: Scales, cases: Sequence[Case]) -
 
 
 def log_scale(rec: rr.RecordingStream, scales: Scales) -> None:
-    """Which side is which, how long 100 mm are across the hole, and how long a force."""
+    """The names of the two sides, and bars for 100 mm across the hole and for a force."""
     (left, right), (top, bottom) = scales.frame.x, scales.frame.y
     newtons = round_down(scales.newtons_per_metre * (right - left) / 5)
     across, force = scales.lateral * 0.1, newtons / scales.newtons_per_metre
@@ -153,7 +153,7 @@ def log_scale(rec: rr.RecordingStream, scales: Scales) -> None:
 
 
 def log_names(rec: rr.RecordingStream, scales: Scales, tracks: Sequence[Track]) -> None:
-    """Which colour is which run, at the top of both pictures."""
+    """The names of the runs in their colours, at the top of both pictures."""
     for view, bounds, side in (("vertical_section", scales.section, 0.9), ("bit_frame", scales.frame, 0.5)):
         (left, right), (top, bottom) = bounds.x, bounds.y
         down = top + 0.045 * (bottom - top) * np.arange(1.0, len(tracks) + 1)

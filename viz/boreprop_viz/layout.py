@@ -1,4 +1,4 @@
-"""The blueprint: which view stands where, what it shows, and over which ranges."""
+"""The blueprint: the arrangement of the views, what each shows, and over which ranges."""
 
 from collections.abc import Sequence
 
@@ -12,19 +12,19 @@ from .style import GROUND, PLOTS, TABS
 from .track import TIMELINE, Track
 
 INFINITE = rr.TimeRangeBoundary.infinite()
-MOST_LANES = 5  # that get a height of their own; more are scrolled
+MOST_LANES = 5  # lanes for which the view has room; with more, one scrolls
 HERE = rr.TimeRangeBoundary.cursor_relative(seq=0)
 
 
 def blueprint(scales: Scales, tracks: Sequence[Track]) -> rrb.Blueprint:
-    """The vertical section over the case, the bit frame, and the plots over the ripple and the modes.
+    """Three columns: the vertical section above the case; the bit frame; the plots above the ripple and the modes.
 
     Parameters
     ----------
     scales
-        How large things are shown, and over which ranges.
+        The scales and ranges of the views.
     tracks
-        Where the runs are.
+        The entities of each run.
     """
     tabs = {
         name: [plot(entity, scales, legend=len(tracks) == 1) for entity in plots if entity in scales.ranges]
@@ -96,7 +96,7 @@ def plot(entity: str, scales: Scales, legend: bool) -> rrb.TimeSeriesView:
 
 
 def _last_waves(scales: Scales) -> rrb.TimeAxis:
-    """The hole up to the cursor that ripple and modes show side by side."""
+    """The range of hole, up to the cursor, that both ripple and modes show."""
     before = rr.TimeRangeBoundary.cursor_relative(seq=-round(1000 * scales.window))
     return rrb.TimeAxis(view_range=rr.TimeRange(start=before, end=HERE))
 

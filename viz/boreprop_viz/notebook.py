@@ -1,6 +1,6 @@
-"""Runs in a notebook: the Rerun viewer as the output of a cell.
+"""Shows runs in a notebook, with the Rerun viewer as the output of a cell.
 
-Rerun and what draws with it are imported when they are needed, so that `import boreprop_viz` needs neither.
+Rerun, and the modules that draw with it, are imported only when needed, so `import boreprop_viz` works without them.
 """
 
 from collections.abc import Mapping
@@ -19,25 +19,25 @@ def show(
 ) -> None:
     """Show runs in a Rerun viewer below the cell of a Jupyter notebook.
 
-    The runs go from the kernel to the page and nowhere else. The viewer itself comes from app.rerun.io, unless the
-    environment variable RERUN_NOTEBOOK_ASSET says otherwise before the first call: with "serve-local" the kernel serves
-    it on this machine, which needs no internet. A viewer is empty once its page has been loaded anew, and a notebook's
-    file does not keep it: run the cell again.
+    The runs are sent from the notebook's kernel to the page and nowhere else. The program of the viewer is loaded from
+    app.rerun.io. If the environment variable RERUN_NOTEBOOK_ASSET is "serve-local" before the first call, the kernel
+    serves it on this machine, which needs no internet. After the page is reloaded, or the notebook reopened, the viewer
+    is empty: run the cell again.
 
     Parameters
     ----------
     runs
-        A run with its case, or several to be drawn over one another, or one mapping from names to runs.
+        A run with its case, several runs to be drawn over one another, or one mapping from names to runs.
     plan
-        The planned hole, its measured depth counted as the survey's.
+        The planned hole, with measured depths as in the survey.
     width, height
-        Of the viewer, pixels. "auto": as wide as the cell, and 9/16 of that high.
+        Size of the viewer, pixels. "auto" is the width of the cell, and 9/16 of the width as height.
 
     Raises
     ------
     InputError
         If rerun-notebook is not installed, there is no run, a run lacks its case or a column, its drilled length
-        decreases, or the plan ends above it.
+        decreases, or the plan does not reach its start.
 
     Examples
     --------
@@ -46,7 +46,7 @@ def show(
     named = by_name(runs)
     try:
         import rerun as rr
-        import rerun_notebook  # noqa: F401  # Rerun does without until it shows something
+        import rerun_notebook  # noqa: F401  # Rerun imports it only when it shows something
         from rerun.notebook import Viewer
     except ModuleNotFoundError as error:
         message = f"show: {error.name} must be installed for this: pip install 'boreprop[viz]', got: {error}"
@@ -64,7 +64,7 @@ def show(
 
 
 def by_name(runs: tuple[Trajectory | Mapping[str, Trajectory], ...]) -> dict[str, Trajectory]:
-    """The runs by name: as in the mapping, else run, or run 1, run 2, …; `InputError` if they are no runs."""
+    """Name → run: the names of the mapping, else "run", or "run 1", "run 2", …; `InputError` if they are not runs."""
     match runs:
         case [Trajectory() as run]:
             named = {"run": run}

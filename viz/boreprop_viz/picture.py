@@ -1,4 +1,4 @@
-"""Pictures of a recording without a screen: Rerun's viewer, drawing headless, under remote control.
+"""Takes pictures of a recording without a screen, with Rerun's viewer under remote control.
 
 On Linux it draws with Mesa's software Vulkan driver where that is installed (Debian: mesa-vulkan-drivers and
 libvulkan1), so that no graphics card is needed and the pictures are the same on every machine.
@@ -22,9 +22,9 @@ from .sinks import LOOPBACK, PROGRAM, free_port
 T = TypeVar("T")
 
 SOFTWARE_DRIVERS = sorted(Path("/usr/share/vulkan/icd.d").glob("lvp_icd*.json"))
-LOG = "warn,re_renderer=error,egui_wgpu=error"  # that the driver is slow is no news
-GREETING = 30  # frames; the viewer's note of where it listens covers the first 16
-PATIENCE = 60.0  # s
+LOG = "warn,re_renderer=error,egui_wgpu=error"  # without warnings that the software driver is slow
+GREETING = 30  # frames drawn first, since a note of the viewer's covers the first 16
+PATIENCE = 60.0  # s to wait for an answer: a viewer on a busy machine may take half of it to start
 
 
 class Viewer:
@@ -45,15 +45,15 @@ class Viewer:
         return self.client.get_state().views
 
     def reports(self, view: View) -> list[ViewReport]:
-        """What a view that is being drawn says went wrong; one that is not being drawn says nothing."""
+        """The errors that a view reports; a view that is not being drawn reports none."""
         return [report for now in self.views() if now.view_id == view.view_id for report in now.reports]
 
     def warnings(self) -> list[str]:
-        """What the viewer has warned of so far."""
+        """The warnings of the viewer so far."""
         return [entry.message for entry in self.client.get_logs()]
 
     def picture(self, view: View | None = None) -> Image.Image:
-        """Picture of the whole viewer, or of one view drawn alone, which brings it out of a hidden tab too."""
+        """A picture of the whole viewer, or of one view drawn alone, even if its tab is hidden."""
         self._maximize(view)
         shots = [b""]
 
@@ -74,7 +74,7 @@ class Viewer:
 
 @contextmanager
 def viewer(recording: Path, width: int = 1600, height: int = 1000) -> Iterator[Viewer]:
-    """Run a viewer of that size, in pixels, on a recording; it neither reads nor leaves anything of the user's.
+    """Start a viewer of that size, in pixels, on a recording. It does not read or change any of the user's settings.
 
     Raises
     ------
@@ -104,7 +104,7 @@ def viewer(recording: Path, width: int = 1600, height: int = 1000) -> Iterator[V
 
 
 def environment(folder: str) -> dict[str, str]:
-    """Variables for a viewer that has its home in `folder`, sends no statistics and draws with the software driver."""
+    """Environment variables of a viewer with its home in `folder`, without statistics, on the software driver."""
     homes = ("HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "XDG_DATA_HOME", "XDG_RUNTIME_DIR")
     variables = os.environ | dict.fromkeys(homes, folder) | {"CI": "true", "RUST_LOG": LOG}
     if SOFTWARE_DRIVERS:
@@ -113,7 +113,7 @@ def environment(folder: str) -> dict[str, str]:
 
 
 def connected(process: subprocess.Popen[bytes], port: int) -> ViewerClient | None:
-    """The way to the viewer, once it draws; `RuntimeError` if it has ended."""
+    """A connection to the viewer, once it draws; None before that; `RuntimeError` if it has ended."""
     if process.poll() is not None:
         raise RuntimeError(
             "the viewer must find a Vulkan driver (Debian: mesa-vulkan-drivers and libvulkan1), "
@@ -128,7 +128,7 @@ def connected(process: subprocess.Popen[bytes], port: int) -> ViewerClient | Non
 
 
 def wait_for(ask: Callable[[], T | None], must: str) -> T:
-    """Ask until there is something in the answer; `TimeoutError` if there never is."""
+    """Call `ask` until its answer is not empty; `TimeoutError` after `PATIENCE`."""
     deadline = time.monotonic() + PATIENCE
     while not (answer := ask()):
         if time.monotonic() > deadline:

@@ -1,4 +1,4 @@
-"""Runs into a recording: to a file, to a viewer, or both."""
+"""Draws runs into a recording, which goes to a file, to a viewer, or to both."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -37,20 +37,22 @@ def record(
     Parameters
     ----------
     runs
-        A run with its case, or several by name. A live run, as `boreprop_fmu` has them, drills while it is drawn.
+        A run with its case, or several: name → run. A live run, such as `boreprop_fmu.host.drive.FmuRun`, is drilled
+        while it is drawn.
     plan
-        The planned hole, its measured depth counted as the survey's.
+        The planned hole, with measured depths as in the survey.
     save
-        The .rrd file to write. Nothing of that name changes before everything is written, or stopped by Ctrl-C.
+        The .rrd file to write. An existing file is replaced only at the end, or at Ctrl-C by the data up to then.
     spawn, serve, connect
-        Show it in a new viewer, in the browser, or in the viewer at an address rerun+http://HOST:PORT/proxy.
+        Show the runs in a new viewer, in the browser, or in the viewer at an address rerun+http://HOST:PORT/proxy.
     progress
         Called with the number of rows done.
 
     Raises
     ------
     InputError
-        If a run lacks its case or a column, its drilled length decreases, a live run fails, or the plan ends above it.
+        If a run lacks its case or a column, its drilled length decreases, a live run fails, or the plan does not reach
+        the start of the run.
     ConnectionError
         If there is no viewer at `connect`, and nothing to save.
     OSError
@@ -62,7 +64,7 @@ def record(
 
 
 def find_sources(runs: Runs, plan: Survey | None = None) -> Iterator[Source]:
-    """What there is to draw of `runs`."""
+    """The source of each run."""
     for name, run in {"run": runs}.items() if isinstance(runs, Trajectory) else runs.items():
         yield stored(name, run, plan) if isinstance(run, Trajectory) else live(name, run, plan)
 
@@ -73,7 +75,7 @@ def draw(
     plan: Survey | None = None,
     progress: Callable[[float], None] = lambda _: None,
 ) -> None:
-    """Log everything there is of some runs, and the blueprint, into an open recording.
+    """Log some runs and the blueprint into an open recording.
 
     Parameters
     ----------
@@ -82,12 +84,12 @@ def draw(
     sources
         The runs.
     plan, progress
-        As of `record`.
+        As in `record`.
 
     Raises
     ------
     InputError
-        If a live run fails, or the plan ends above the first run.
+        If a live run fails, or the plan does not reach the start of the first run.
     OSError
         If the recording's file cannot be written.
     """
@@ -115,7 +117,7 @@ def draw(
                 scales = scales.widened(bit_positions(stretch.rows))
                 log_grid(rec, scales)
                 rec.send_blueprint(blueprint(scales, tracks))
-            flush(rec)  # what came before: it would pile up in memory if the disk is slow
+            flush(rec)  # the stretch before this one, which would else pile up in memory if the disk is slow
             stream.send(stretch)
             done += stretch.rows.row_count
             progress(done)

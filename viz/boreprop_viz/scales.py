@@ -1,4 +1,4 @@
-"""What is fixed for a recording before its rows are drawn: how large things are shown, and over which ranges."""
+"""Chooses the scales and ranges of a recording before its rows are drawn."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -16,30 +16,30 @@ from boreprop.units import UNITS
 from .scene import Array, Bounds, frame_bounds, section_bounds
 from .style import PLOTS, Plot
 
-WAVES = 11.0  # in view at once
-USUAL_WAVELENGTH = 1.4  # half lengths of the BHA: of a ripple that is not there yet
-TREND = 0.75  # wavelengths, and no more than half the BHA: the trend keeps nothing of the wave
-FULL_RIPPLE = 0.25  # ψ* times the wavelength: what a hole has whose bit tilts from limit to limit
-ROOM_FOR_LEGEND = 0.35  # for each curve, over the span of them all
+WAVES = 11.0  # waves that ripple and modes show: more are too narrow to see, fewer do not show whether they last
+USUAL_WAVELENGTH = 1.4  # half lengths of the BHA: the wavelength assumed before there is a ripple
+TREND = 0.75  # wavelengths, at most half the BHA: width of the trend, see `axis_ripple`, of which a wave leaves < 0.1 %
+FULL_RIPPLE = 0.25  # ψ* times the wavelength: the ripple of a hole whose bit tilts from limit to limit
+ROOM_FOR_LEGEND = 0.35  # of the span of all curves, above them, for each line of the legend
 ARROWS = ("stabilizer_force", "bit_lateral_force", "rss_force")
 
 
 @dataclass(frozen=True)
 class Scales:
-    """How large things are shown, and over which ranges, for all runs of a recording."""
+    """The scales and ranges of the views, for all runs of a recording."""
 
     section: Bounds  # of the vertical section
     frame: Bounds  # of the bit frame
-    lateral: float  # what the bit frame's lateral axis is multiplied by
-    newtons_per_metre: float  # of an arrow
-    window: float  # m of hole up to the cursor that ripple and lanes show
-    ripple: float  # mm, the largest that its plot shows
-    trend: float  # m, the width of the trend that the ripple is less
-    start: float | None  # m, the measured depth where drilling starts, if it is the same for all
-    ranges: dict[str, tuple[float, float] | None]  # of the plots that there are, in their unit; None: as the rows come
+    lateral: float  # factor by which the lateral axis of the bit frame is enlarged
+    newtons_per_metre: float  # force over the length of its arrow
+    window: float  # length of hole up to the cursor that ripple and modes show, m
+    ripple: float  # the largest ripple that its plot shows, mm
+    trend: float  # width of the trend from which the ripple is measured, m
+    start: float | None  # measured depth at which drilling starts, m; None if the runs differ
+    ranges: dict[str, tuple[float, float] | None]  # plot → its range in the unit shown; None: the viewer chooses it
 
     def widened(self, position: Array) -> "Scales":
-        """The same with a vertical section at least twice as wide, that shows positions (N, 2) too."""
+        """The same scales with a vertical section at least twice as wide that also shows positions (N, 2)."""
         shown = np.concatenate((np.transpose((self.section.x, self.section.y)), position))
         return replace(self, section=section_bounds(shown, around=float(np.ptp(shown, axis=0).max()) / 2))
 
@@ -52,9 +52,9 @@ def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) ->
     Parameters
     ----------
     runs
-        The runs, or their beginnings, with all columns that are shown.
+        The runs, or their first rows, with all columns that are shown.
     whole
-        Whether they are whole. If not, the cases say how long arrows are, and the plots have no ranges yet.
+        Whether all rows are there. If not, the cases determine the scale of the arrows, and the plots have no ranges.
     section
         Positions that the vertical section should show, (N, 2).
     """
@@ -81,26 +81,26 @@ def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) ->
 
 
 def likely_wavelength(runs: Sequence[Trajectory], cases: Sequence[Case], whole: bool) -> float:
-    """The longest wave with which one of the runs, if they are whole, ripples; else that which one may come to, m."""
+    """The longest wave with which one of the runs, if they are whole, ripples; else the longest to be expected, m."""
     waves = [find_rippling(run) for run in runs] if whole else []
     found = [wave.wavelength for wave in waves if wave.ripples]
     return max(found or [USUAL_WAVELENGTH * case.bha.half_length for case in cases])
 
 
 def largest_force(run: Trajectory) -> float:
-    """The largest force of a run that is drawn, N."""
+    """The largest force of a run for which an arrow is drawn, N."""
     columns = [run.columns[name] for arrow in ARROWS for name in BY_NAME[arrow].names(run.n) if name in run.columns]
     return max(float(np.abs(column).max()) for column in columns)
 
 
 def likely_force(case: Case) -> float:
-    """A force of the size that comes up in a case, N: what bends half the BHA by ψ*/2, or the largest of the pads."""
+    """A force of the size to be expected in a case, N: that which bends half the BHA by ψ*/2, or that of the pads."""
     stiffness = 3 * case.bha.flexural_stiffness / case.bha.half_length**2
     return max(stiffness * case.bit.tilt_limit / 2, *map(abs, case.schedule.rss_force))
 
 
 def plot_range(plot: Plot, curves: Sequence[Array], room: float) -> tuple[float, float]:
-    """Axis of a plot of some curves, with room above for each in the legend."""
+    """The range of a plot of some curves, with room above them for each line of the legend."""
     low = plot.unit.factor * min(float(np.nanmin(curve)) for curve in curves)
     high = plot.unit.factor * max(float(np.nanmax(curve)) for curve in curves)
     span = (high - low) or 1.0
@@ -108,6 +108,6 @@ def plot_range(plot: Plot, curves: Sequence[Array], room: float) -> tuple[float,
 
 
 def round_down(value: float) -> float:
-    """Largest of 1, 2 and 5 times a power of ten that is not above `value`."""
+    """The largest of 1, 2 and 5 times powers of ten that is not above `value`."""
     power = 10.0 ** floor(log10(value))
     return max(step * power for step in (1, 2, 5) if step * power <= value)

@@ -1,11 +1,12 @@
-"""Geometry of a run: arrays in, arrays out. Metres and radians, float64, one row per row of the trajectory.
+"""Geometry of a run, in arrays of metres and radians, whose first axis is the rows of the trajectory.
 
-The vertical plane has x to the side of growing inclination and z down, with its origin where the bit starts the run.
+In the vertical plane x points to the side to which inclination grows and z points down; the origin is the bit at the
+start of the run.
 
-The bit frame has its origin at the bit and its axis through the centre of the hole at the last stabilizer: at the
-inclination averaged over the BHA. s grows up the hole; lateral offsets are positive to the high side, as in the model.
-The model is linear in lateral offsets, so a frame turned by the small angle between the bit's axis and the mean axis
-differs by that angle times s.
+The bit frame has its origin at the bit, and its axis passes through the centre of the hole at the last stabilizer, so
+its inclination is the mean over the BHA. s grows up the hole; lateral offsets are positive to the high side, as in the
+model. The model is linear in lateral offsets: turning its frame from the axis of the bit to that of the bit frame, by a
+small angle, adds that angle times s.
 """
 
 from dataclasses import dataclass
@@ -18,75 +19,76 @@ from boreprop.core.beam import Beam
 from boreprop.core.survey import Survey
 from boreprop.core.system import scale
 from boreprop.errors import InputError
-from boreprop.run.completion import path
+from boreprop.run.completion import axis_of
 from boreprop.run.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
-POINTS_ALONG_BHA = 48
-POINTS_OF_PLAN = 1000
-REACH_ABOVE_BHA = 1.15  # how far up the hole is drawn in the bit frame, over the length of the BHA
-AHEAD = 0.2  # how far ahead of the bit the directions of bit and hole are drawn, over the length of the BHA
+POINTS_ALONG_BHA = 48  # of the drawn BHA and hole: a smooth curve with little data
+POINTS_OF_PLAN = 1000  # of the drawn plan: at most a pixel apart
+REACH_ABOVE_BHA = 1.15  # lengths of the BHA up to which the bit frame shows the hole, so that its top can be seen
+AHEAD = 0.2  # lengths of the BHA ahead of the bit over which the bit frame shows the directions of bit and hole
 
 
 @dataclass(frozen=True)
-class HolePath:
-    """The hole axis in the vertical plane, straight between points."""
+class HoleAxis:
+    """The axis of the hole in the vertical plane, straight between points."""
 
-    length: Array  # (N,), increasing; drilled length, negative in the existing hole
-    position: Array  # (N, 2), x and z
+    length: Array  # drilled length of each point, negative in the existing hole, increasing, (N,)
+    position: Array  # x and z, (N, 2)
 
     def at(self, length: Array) -> Array:
         """Positions at the given lengths, shape (..., 2)."""
         return np.stack([np.interp(length, self.length, self.position[:, axis]) for axis in (0, 1)], axis=-1)
 
-    def followed_by(self, length: Array, position: Array) -> "HolePath":
-        """The hole drilled on through more points; those not ahead of its end are left out."""
+    def followed_by(self, length: Array, position: Array) -> "HoleAxis":
+        """The hole extended through further points, without those that are not ahead of its end."""
         ahead = length > self.length[-1]
-        return HolePath(np.append(self.length, length[ahead]), np.concatenate((self.position, position[ahead])))
+        return HoleAxis(np.append(self.length, length[ahead]), np.concatenate((self.position, position[ahead])))
 
     def chord_inclination(self, length: Array, chord: float) -> Array:
-        """Inclination of the chord from `chord` metres before to the given lengths, (m,)."""
+        """Inclination of the chord over the last `chord` metres before each of the given lengths, (m,)."""
         x, z = (self.at(length) - self.at(length - chord)).T
         inclination: Array = np.arctan2(x, z)
         return inclination
 
-    def since(self, length: float) -> "HolePath":
-        """The end of this hole from the last point at or before `length` on."""
+    def since(self, length: float) -> "HoleAxis":
+        """The part of this hole from the last point at or before `length` on."""
         first = max(int(np.searchsorted(self.length, length, side="right")) - 1, 0)
-        return HolePath(self.length[first:], self.position[first:])
+        return HoleAxis(self.length[first:], self.position[first:])
 
 
-def existing_hole(survey: Survey, reach: float, spacing: float) -> HolePath:
-    """The surveyed hole up to the bit at the start, extended straight to at least `reach`, a point each `spacing`."""
+def existing_hole(survey: Survey, reach: float, spacing: float) -> HoleAxis:
+    """The existing hole, above the survey straight until it is `reach` long, with a point every `spacing` metres."""
     station = np.asarray(survey.measured_depth) - survey.measured_depth[-1]
     top = min(float(station[0]), -reach)
     length = np.union1d(station, np.linspace(top, 0.0, int(np.ceil(-top / spacing)) + 1))
-    position = path(length, np.interp(length, station, np.asarray(survey.inclination)))
-    return HolePath(length, position - position[-1])
+    position = axis_of(length, np.interp(length, station, np.asarray(survey.inclination)))
+    return HoleAxis(length, position - position[-1])
 
 
-def planned_hole(plan: Survey, start: float) -> HolePath:
-    """The hole that a plan asks for from its first station on, placed where it should be when drilling starts.
+def planned_hole(plan: Survey, start: float) -> HoleAxis:
+    """The planned hole, moved so that it passes through the bit at the start of the run.
 
     Raises
     ------
     InputError
-        If the plan does not reach the measured depth `start`, m, at which it does.
+        If the plan does not include the measured depth `start`, m, at which drilling starts.
     """
     depth = np.asarray(plan.measured_depth)
     if not depth[0] <= start <= depth[-1]:
         raise InputError(
-            f"measured_depth: must enclose {start:g} m, where drilling starts, got {depth[0]:g} to {depth[-1]:g}"
+            f"measured_depth of the plan: must include {start:g} m, where drilling starts, "
+            f"got {depth[0]:g} to {depth[-1]:g}"
         )
     length = np.union1d(depth - start, np.linspace(depth[0] - start, depth[-1] - start, POINTS_OF_PLAN))
     length = np.union1d(length, 0.0)
-    hole = HolePath(length, path(length, np.interp(length, depth - start, np.asarray(plan.inclination))))
-    return HolePath(length, hole.position - hole.at(np.array(0.0)))
+    hole = HoleAxis(length, axis_of(length, np.interp(length, depth - start, np.asarray(plan.inclination))))
+    return HoleAxis(length, hole.position - hole.at(np.array(0.0)))
 
 
-def turning(hole: HolePath, length: Array, over: float, chord: float) -> Array:
-    """Change of inclination per length over the last `over` metres, (m,), rad/m; inclinations are those of chords."""
+def turning(hole: HoleAxis, length: Array, over: float, chord: float) -> Array:
+    """Change of inclination over the last `over` metres, per length, rad/m, (m,); inclinations are those of chords."""
     change = hole.chord_inclination(length, chord) - hole.chord_inclination(length - over, chord)
     return change / over
 
@@ -97,18 +99,18 @@ def bit_positions(rows: Trajectory) -> Array:
 
 
 class BitFrame:
-    """Computes the shapes of a BHA and the hole around it in the bit frame.
+    """Computes the shapes of a BHA and of the hole around it in the bit frame.
 
     Attributes
     ----------
     stabilizer, rss
-        Distance from the bit of the stabilizers, (n,), and of the steering pads.
+        Distances of the stabilizers, (n,), and of the steering pads from the bit.
     radius, blade_radius
         Radius of the hole, and of the blades of each stabilizer, (n,).
     s, s_hole
-        Distances from the bit at which the BHA, (k,), and the hole, (k',), are computed: the first k are the same.
+        Distances from the bit at which the BHA, (k,), and the hole, (k',), are computed; the first k are the same.
     at_stabilizer, at_rss
-        Where the stabilizers, (n,), and the pads are in `s` and `s_hole`.
+        Indices of the stabilizers, (n,), and of the pads in `s` and `s_hole`.
     """
 
     def __init__(self, case: Case) -> None:
@@ -124,23 +126,23 @@ class BitFrame:
         self.at_stabilizer = np.searchsorted(self.s, self.stabilizer)
         self.at_rss = int(np.searchsorted(self.s, self.rss))
 
-        # The shape is linear in its loads e_n, F_1 … F_{n−1}, F_RSS, sin⟨Θ⟩_1: the shape under a unit of each.
+        # The shape is linear in the loads e_n, F_1 … F_{n−1}, F_RSS, sin⟨Θ⟩_1; these are the shapes under unit loads.
         beam = Beam(scaled)
         units = np.eye(self.stabilizer.size + 2).tolist()
         shapes = [[beam.shape(s, e_n, F, rss, g) for s in self.s / bha.length_scale] for e_n, *F, rss, g in units]
         load_scales = np.array([bha.length_scale] + [bha.force_scale] * self.stabilizer.size + [1.0])
         self._shape_per_load = bha.length_scale * np.array(shapes) / load_scales[:, None]
 
-    def shapes(self, rows: Trajectory, hole: HolePath) -> "Shapes":
-        """The shapes of each row; `hole` must reach from the last row's bit back over the first row's BHA."""
+    def shapes(self, rows: Trajectory, hole: HoleAxis) -> "Shapes":
+        """The shapes at each row; `hole` must reach from the bit of the last row to the top of the first row's BHA."""
         mean = rows.stack("average_inclination") @ np.diff(self.stabilizer, prepend=0.0) / self.stabilizer[-1]
         return Shapes(self, rows, mean, self._hole_axis(rows, hole, mean), self._bha_axis(rows, mean))
 
-    def _hole_axis(self, rows: Trajectory, hole: HolePath, mean: Array) -> Array:
-        """The path of the hole, in the bit frame.
+    def _hole_axis(self, rows: Trajectory, hole: HoleAxis, mean: Array) -> Array:
+        """The axis of the hole in the bit frame, (m, k').
 
-        It is shifted, by what small angles and the spacing of the rows leave, to pass exactly through the lateral
-        coordinates Y(ξ−s_i) − Y(ξ) that the averages ⟨Θ⟩_i give at the stabilizers.
+        It is corrected for the errors of the small angles and of the spacing of the rows, so that at the stabilizers it
+        has exactly the lateral coordinates Y(ξ−s_i) − Y(ξ) that follow from the averages ⟨Θ⟩_i.
         """
         behind = hole.at(rows["drilled_length"][:, None] - self.s_hole) - bit_positions(rows)[:, None]
         axis: Array = behind[..., 0] * np.cos(mean)[:, None] - behind[..., 1] * np.sin(mean)[:, None]
@@ -152,7 +154,7 @@ class BitFrame:
         return axis
 
     def _bha_axis(self, rows: Trajectory, mean: Array) -> Array:
-        """The model's deflected shape under the loads of each row, turned from the bit's axis to the frame's."""
+        """The bent axis of the BHA under the loads of each row, turned from the bit's axis to the frame's, (m, k)."""
         turn = mean - rows["bit_inclination"]
         e_n = turn * self.stabilizer[-1]
         sin_Theta_1 = np.sin(rows.stack("average_inclination")[:, 0])
@@ -168,9 +170,9 @@ class Shapes:
 
     frame: BitFrame
     rows: Trajectory
-    mean_inclination: Array  # (m,), of the frame's axis
-    hole_axis: Array  # (m, k'), at frame.s_hole
-    bha_axis: Array  # (m, k), at frame.s
+    mean_inclination: Array  # inclination of the frame's axis, (m,)
+    hole_axis: Array  # lateral offset of the hole at frame.s_hole, (m, k')
+    bha_axis: Array  # lateral offset of the BHA at frame.s, (m, k)
 
     @property
     def walls(self) -> Array:
@@ -185,7 +187,7 @@ class Shapes:
 
     @property
     def contact_points(self) -> Array:
-        """The wall where it bears each non-ideal stabilizer, (m, n−1); NaN where it does not."""
+        """The wall where it pushes on each non-ideal stabilizer, (m, n−1); nan where it does not."""
         force = self.rows.stack("stabilizer_force")
         wall = self.hole_axis[:, self.frame.at_stabilizer[:-1]] - np.sign(force) * self.frame.radius
         return np.where(force == 0.0, np.nan, wall)
@@ -197,12 +199,12 @@ class Shapes:
 
     @property
     def hole_turn(self) -> Array:
-        """Angle from the frame's axis to the direction in which the hole goes on, (m,)."""
+        """Angle from the frame's axis to the direction of the hole at the bit, (m,)."""
         return self.rows["borehole_inclination"] - self.mean_inclination
 
     @property
     def bha_in_section(self) -> Array:
-        """Bit and stabilizers, in the middle of the BHA, in the vertical plane, (m, n+1, 2)."""
+        """Positions of the BHA's axis at the bit and the stabilizers in the vertical plane, (m, n+1, 2)."""
         at = np.append(0, self.frame.at_stabilizer)
         lateral, s = self.bha_axis[:, at], self.frame.s[at]
         sin, cos = np.sin(self.mean_inclination)[:, None], np.cos(self.mean_inclination)[:, None]
@@ -212,7 +214,7 @@ class Shapes:
 
 @dataclass(frozen=True)
 class Bounds:
-    """What a view shows, in metres of the view; y down the screen."""
+    """The range that a view shows, in metres of the view; y points down the screen."""
 
     x: tuple[float, float]
     y: tuple[float, float]
@@ -224,7 +226,7 @@ class Bounds:
 
 
 def section_bounds(position: Array, around: float) -> Bounds:
-    """The vertical section around positions (N, 2), with `around` metres to spare, or a tenth."""
+    """The range of the vertical section: positions (N, 2) with a margin of `around` metres, or of a tenth if more."""
     low, high = position.min(axis=0), position.max(axis=0)
     around = max(around, 0.1 * float((high - low).max()))
     (left, top), (right, bottom) = low - around, high + around
@@ -232,5 +234,5 @@ def section_bounds(position: Array, around: float) -> Bounds:
 
 
 def frame_bounds(reach: float) -> Bounds:
-    """The bit frame of a BHA that is `reach` metres long."""
+    """The range of the bit frame of a BHA that is `reach` metres long."""
     return Bounds((-0.45 * reach, 0.45 * reach), (-1.05 * REACH_ABOVE_BHA * reach, (AHEAD + 0.06) * reach))

@@ -1,9 +1,9 @@
-"""Where a recording goes: a file, a viewer, or both.
+"""Sends a recording to a file, to a viewer, or to both.
 
 A recording is always written to a file, which is removed afterwards unless it was asked for. A viewer is another
-process; a thread feeds it, through its standard input, what is in the file and what is added. So a run waits for the
-disk alone. A viewer that is slow, hangs, dies or never comes holds up that thread and nothing else, and what it has not
-taken yet needs no memory. (Rerun's own connections hold up the run: with a viewer that hangs, for ever.)
+process. A thread reads the growing file and writes it to the viewer's standard input. So a run waits for the disk
+alone. A viewer that is slow, hangs, dies or never starts blocks that thread and nothing else, and what it has not read
+yet takes no memory. (Rerun's own connections block the run, and for ever if the viewer hangs.)
 """
 
 import os
@@ -27,40 +27,40 @@ from boreprop.errors import InputError
 from boreprop.replacing import replacing
 
 APPLICATION = "boreprop"
-LOOPBACK = "127.0.0.1"  # Rerun's own default is every network that the machine is in
+LOOPBACK = "127.0.0.1"  # only this machine; by default Rerun listens on all its networks
 PORT = 9876  # Rerun's default
-# the binary itself: the command is a wrapper, whose child outlives it
+# the binary itself: the command `rerun` is a wrapper, and ending that would not end its child
 PROGRAM = shutil.which("rerun", path=str(files("rerun_cli"))) or "rerun"
-# the standard input takes one, and a viewer without another would show nothing until it ends
+# reading the standard input occupies one thread; without a second one a viewer would show nothing until that ends
 THREADS = max(2, (os.cpu_count() or 2) - 2)
-BLOCK = 1 << 16  # bytes, read and fed at once
-TICK = 0.05  # s, between two looks at the file
-STARTS_WITHIN = 30.0  # s, a viewer
-PATIENCE = 20.0  # s, with a viewer or a disk that takes nothing
+BLOCK = 1 << 16  # bytes that are read from the file and written to the viewer at once
+TICK = 0.05  # s between two checks whether the file has grown
+STARTS_WITHIN = 30.0  # s that a viewer may take to start
+PATIENCE = 20.0  # s after which a viewer or a disk that accepts no data is given up
 
 
 @contextmanager
 def open_recording(
     *, save: str | Path | None = None, spawn: bool = False, serve: bool = False, connect: str | None = None
 ) -> Iterator[rr.RecordingStream]:
-    """Open a recording whose data go to a file, a viewer, or both.
+    """Open a recording whose data go to a file, to a viewer, or to both.
 
-    When the block has ended the file is complete, and the viewer has everything. Then this waits, with `spawn` until
-    the viewer is closed, with `serve` until Ctrl-C. A viewer that fails is a warning at the end.
+    When the block ends, the file is complete and the viewer has all data. With `spawn` this then waits until the viewer
+    is closed, with `serve` until Ctrl-C. If the viewer fails, there is a warning at the end.
 
     Parameters
     ----------
     save
-        The .rrd file to write. Nothing of that name changes before the block has ended: then the file takes its place,
-        after Ctrl-C with what there is by then, but not after any other exception.
+        The .rrd file to write. An existing file is replaced when the block ends, also by Ctrl-C (with the data up to
+        then), but not by any other exception.
     spawn, serve, connect
-        The viewer, one at most: a new window, the browser, or the one at an address rerun+http://HOST:PORT/proxy. The
-        first two listen on this machine alone.
+        The viewer, at most one: a new window, the browser, or the viewer at an address rerun+http://HOST:PORT/proxy.
+        The first two listen on this machine only.
 
     Raises
     ------
     InputError
-        If `connect` is no such address; without `save`, if the viewer does not start.
+        If `connect` is not such an address; without `save`, if the viewer does not start.
     ConnectionError
         Without `save`, if there is no viewer at `connect`.
     OSError
@@ -106,17 +106,17 @@ def recording_to(path: Path) -> Iterator[rr.RecordingStream]:
         yield rec
         flush(rec)
     finally:
-        end = Thread(target=rec.disconnect, daemon=True)  # this writes the file's end
+        end = Thread(target=rec.disconnect, daemon=True)  # writes the end of the file
         end.start()
-        end.join(PATIENCE)  # as `flush`
+        end.join(PATIENCE)  # like `flush`, it may wait for ever
         if end.is_alive():
             raise OSError(f"{path}: must be written within {PATIENCE:g} s, got a file without its end")
 
 
 def flush(rec: rr.RecordingStream) -> None:
-    """Wait until what has been sent is in its file; `OSError` if it cannot be written.
+    """Wait until all data sent so far are in the file; `OSError` if they cannot be written.
 
-    Rerun may wait for ever where a disk has filled up, so there is an end to it.
+    Rerun may wait for ever if the disk is full, so the wait ends after `PATIENCE`.
     """
     try:
         rec.flush(timeout_sec=PATIENCE)
@@ -125,26 +125,26 @@ def flush(rec: rr.RecordingStream) -> None:
 
 
 class Viewer:
-    """A process of Rerun's, fed with a file that grows.
+    """A process of Rerun's viewer that is sent a growing file.
 
     Parameters
     ----------
     path
         The file.
     options
-        Of the command `rerun`.
+        Options of the command `rerun`.
     stays
-        Whether it stays when it has everything, until it is closed.
+        Whether the process, once it has all data, runs until the user closes it.
     """
 
     def __init__(self, path: Path, *options: str, stays: bool) -> None:
         command = [PROGRAM, *options, "--threads", str(THREADS), "-"]
-        environment = os.environ | {"RERUN_APP_ONLY": "true"}  # ask nothing
+        environment = os.environ | {"RERUN_APP_ONLY": "true"}  # without any dialogue
         self.process = Popen(command, stdin=PIPE, stdout=DEVNULL, stderr=DEVNULL, env=environment)
         self.stays = stays
-        self.complete = Event()  # the file
-        self.taken = 0  # bytes
-        self.fed = False  # all of them
+        self.complete = Event()  # set when the file is complete
+        self.taken = 0  # bytes that the viewer has read
+        self.fed = False  # whether the viewer has read the whole file
         self.feeder = Thread(target=self._feed, args=(path,), daemon=True)
         self.feeder.start()
 
@@ -153,7 +153,7 @@ class Viewer:
         with suppress(OSError), self.process.stdin as pipe, open(path, "rb") as file:
             complete = False
             while not complete:
-                complete = self.complete.wait(TICK)  # before the last look, or what came in between would be missed
+                complete = self.complete.wait(TICK)  # checked before the last read, so that no data are missed
                 while block := file.read(BLOCK):
                     pipe.write(block)
                     self.taken += len(block)
@@ -165,7 +165,7 @@ class Viewer:
         deadline = monotonic() + STARTS_WITHIN
         while self.process.poll() is None and monotonic() < deadline:
             with suppress(OSError):
-                ViewerClient.connect(address).get_state()  # that it listens does not mean that it finds a screen
+                ViewerClient.connect(address).get_state()  # it may listen and still fail to find a screen
                 return
             sleep(TICK)
         if self.process.poll() is not None:
@@ -173,7 +173,7 @@ class Viewer:
             raise InputError(f"{message}, got exit status {self.process.returncode}")
 
     def finish(self) -> None:
-        """Now that the file is complete, wait until the viewer has taken all of it, or takes nothing any more."""
+        """Declare the file complete, and wait until the viewer has read all of it or stops reading."""
         self.complete.set()
         taken = -1
         while self.feeder.is_alive() and taken < self.taken:
@@ -181,19 +181,19 @@ class Viewer:
             self.feeder.join(PATIENCE)
 
     def wait(self) -> None:
-        """Wait until the viewer is closed, or Ctrl-C, or it has passed everything on; warn if something went wrong."""
+        """Wait until the viewer is closed or has passed on all data, or until Ctrl-C; warn if it has failed."""
         with suppress(KeyboardInterrupt):
             try:
                 status = self.process.wait(None if self.stays else PATIENCE if self.fed else 0.0)
             except TimeoutExpired:
-                warn("the viewer hangs: it may not have got everything")
+                warn("the viewer hangs: it may not have received all data")
             else:
                 if status or not self.fed:
-                    warn(f"the viewer ended with exit status {status}: it may not have got everything")
+                    warn(f"the viewer ended with exit status {status}: it may not have received all data")
         self.stop()
 
     def stop(self) -> None:
-        """End the viewer, and with it the feeding."""
+        """End the viewer and the thread that feeds it."""
         self.process.kill()
         self.process.wait()
         self.complete.set()
@@ -201,7 +201,10 @@ class Viewer:
 
 
 def open_viewer(path: Path, spawn: bool, serve: bool, connect: str | None, required: bool) -> Viewer | None:
-    """Show a file that grows, see `open_recording`; None if no viewer is wanted, or not `required` and not there."""
+    """Start the viewer of a growing file, see `open_recording`.
+
+    None if no viewer is wanted, or if there is none at the address and none is `required`.
+    """
     if connect is not None:
         try:
             host, port = reach(connect)
@@ -210,7 +213,7 @@ def open_viewer(path: Path, spawn: bool, serve: bool, connect: str | None, requi
                 raise
             warn(str(error))
             return None
-        # a viewer that is told of a port where another one listens passes everything on to it
+        # a viewer that is given the port of another one passes all data on to that one
         return Viewer(path, "--bind", host, "--port", str(port), "--headless", stays=False)
     if not (spawn or serve):
         return None

@@ -1,4 +1,4 @@
-"""What is drawn: stored runs and live ones, as stretches of consecutive rows with the hole behind them."""
+"""The sources of what is drawn: stored and live runs, as stretches of consecutive rows with the hole behind them."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -16,14 +16,14 @@ from boreprop.run.completion import case_of, complete
 from boreprop.run.trajectory import Trajectory
 from boreprop.units import BUILD_LENGTH
 
-from .scene import REACH_ABOVE_BHA, Array, HolePath, bit_positions, existing_hole, turning
+from .scene import REACH_ABOVE_BHA, Array, HoleAxis, bit_positions, existing_hole, turning
 
-BATCH = 1000  # rows drawn at once
-PATIENCE = 0.1  # s until rows that have come are drawn
+BATCH = 1000  # rows drawn at once, which limits memory
+PATIENCE = 0.1  # s after which the rows of a live run are drawn though there are fewer: longer would look like stalling
 
 
 class LiveRun(Protocol):
-    """A run that is drilled while it is drawn; iterating over it drills on, and gives its rows one after the other."""
+    """A run that is drilled while it is drawn: iterating over it drills, and gives one row after the other."""
 
     @property
     def case(self) -> Case | None:
@@ -31,7 +31,7 @@ class LiveRun(Protocol):
 
     @property
     def columns(self) -> Sequence[str]:
-        """What a row holds, under the names of a `Trajectory`'s columns."""
+        """The names of the values of a row; they are names of columns of a `Trajectory`."""
 
     def __len__(self) -> int:
         """How many rows there will be."""
@@ -42,10 +42,10 @@ class LiveRun(Protocol):
 
 @dataclass(frozen=True)
 class Stretch:
-    """Consecutive rows of a run, with the columns that follow from the hole, and the hole behind the bit."""
+    """Consecutive rows of a run, and the hole behind the bit."""
 
-    rows: Trajectory  # with the columns of `hole_columns`
-    hole: HolePath  # reaches far enough behind the first row
+    rows: Trajectory  # has the columns of `hole_columns`, too
+    hole: HoleAxis  # reaches as far behind the first row as drawing it needs
 
 
 @dataclass(frozen=True)
@@ -55,17 +55,17 @@ class Source:
     Parameters
     ----------
     name
-        What it is called beside others.
+        Its name, shown if there are several runs.
     case
         What is drilled.
     row_count
-        How many rows there will be.
+        The number of rows that it will have.
     beginning
         The whole run, or its first rows if it is `live`.
     live
         Whether it is being drilled while it is drawn.
     stretches
-        The whole run in pieces, once.
+        Iterates over the whole run, once.
     """
 
     name: str
@@ -76,7 +76,7 @@ class Source:
     stretches: Iterator[Stretch]
 
     def likely_positions(self) -> Array:
-        """Where the bit passes, (N, 2): as the run says; of a live run, straight on from the end of the survey."""
+        """Positions of the bit, (N, 2). Those of a live run are expected straight on from the end of the survey."""
         if not self.live:
             return bit_positions(self.beginning)
         inclination = self.case.survey.inclination[-1]
@@ -84,18 +84,18 @@ class Source:
 
 
 def stored(name: str, run: Trajectory, plan: Survey | None = None, *, batch: int = BATCH) -> Source:
-    """A run that is there already.
+    """The source of a complete run.
 
     Parameters
     ----------
     name
-        What it is called beside others.
+        Its name, shown if there are several runs.
     run
         The run with its case.
     plan
-        The planned hole, its measured depth counted as the survey's.
+        The planned hole, with measured depths as in the survey.
     batch
-        How many rows are drawn at once.
+        Number of rows drawn at once.
 
     Raises
     ------
@@ -113,16 +113,16 @@ def stored(name: str, run: Trajectory, plan: Survey | None = None, *, batch: int
 
 
 def live(name: str, run: LiveRun, plan: Survey | None = None, *, batch: int = BATCH) -> Source:
-    """A run that is drilled while it is drawn.
+    """The source of a run that is drilled while it is drawn.
 
     Parameters
     ----------
     name, plan
-        As of `stored`.
+        As in `stored`.
     run
-        The run; its drilling begins now.
+        The run; drilling begins now.
     batch
-        How many rows are drawn at once, at most: what has come after a tenth of a second is drawn.
+        Largest number of rows drawn at once; fewer are drawn if no more have come after a tenth of a second.
 
     Raises
     ------
@@ -137,7 +137,7 @@ def live(name: str, run: LiveRun, plan: Survey | None = None, *, batch: int = BA
 
 
 def gather(run: LiveRun, batch: int) -> Iterator[Trajectory]:
-    """The rows of a run as they come, so many at once, or what there is after a tenth of a second."""
+    """The rows of a run in batches, of fewer rows if no more have come after a tenth of a second."""
     rows: list[Sequence[float]] = []
     due = 0.0  # the first row comes at once
     for row in run:
@@ -155,7 +155,7 @@ def trajectory_of(run: LiveRun, rows: Sequence[Sequence[float]]) -> Trajectory:
 
 
 def stretches(runs: Iterable[Trajectory], case: Case, plan: Survey | None) -> Iterator[Stretch]:
-    """Add to consecutive rows the hole behind them. Of the hole no more is kept than drawing the next rows needs."""
+    """Add the hole behind them to consecutive rows. No more hole is kept than drawing the next rows needs."""
     half = case.bha.half_length
     reach = max(2 * REACH_ABOVE_BHA * half, BUILD_LENGTH + half, 2 * AXIS_REACH * half) + half
     hole = existing_hole(case.survey, reach, spacing=half / 25)
@@ -166,7 +166,7 @@ def stretches(runs: Iterable[Trajectory], case: Case, plan: Survey | None) -> It
         hole = hole.since(float(length[-1]) - reach)
 
 
-def hole_columns(length: Array, hole: HolePath, case: Case, plan: Survey | None) -> dict[str, Array]:
+def hole_columns(length: Array, hole: HoleAxis, case: Case, plan: Survey | None) -> dict[str, Array]:
     """Build rate and dogleg severity of the hole behind the bit, rad/m, and with a plan its inclination there, rad."""
     half = case.bha.half_length
     columns = {
@@ -181,7 +181,7 @@ def hole_columns(length: Array, hole: HolePath, case: Case, plan: Survey | None)
 
 
 def pieces(whole: Stretch, batch: int) -> Iterator[Stretch]:
-    """A stretch cut into stretches of so many rows."""
+    """A stretch cut into stretches of `batch` rows."""
     for first in range(0, whole.rows.row_count, batch):
         columns = {name: column[first : first + batch] for name, column in whole.rows.columns.items()}
         yield replace(whole, rows=replace(whole.rows, columns=columns))

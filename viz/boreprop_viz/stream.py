@@ -27,19 +27,19 @@ from .scene import BitFrame
 from .source import Stretch
 from .track import Track
 
-RECENT = 32.0  # half lengths of the BHA that show whether a hole ripples: ten of the longest waves
+RECENT = 32.0  # half lengths of the BHA up to the bit that decide whether the hole ripples: five of the longest waves
 
 
 class RunStream:
-    """A run on its way into a recording, stretch by stretch."""
+    """Draws the stretches of a run one after the other."""
 
     def __init__(self, track: Track) -> None:
         self.track = track
         self.frame = BitFrame(track.case)
-        self.drilled: float | None = None  # how far the hole has been drawn, m
-        self.rippled = -np.inf  # how far its ripple has, m
-        self.modes: dict[str, float] = {}  # what each lane shows last
-        self.recent: Trajectory | None = None  # the rows that tell whether the hole ripples
+        self.drilled: float | None = None  # drilled length up to which the hole is drawn, m
+        self.rippled = -np.inf  # drilled length up to which its ripple is drawn, m
+        self.modes: dict[str, float] = {}  # the last value of each lane
+        self.recent: Trajectory | None = None  # the last rows, which decide whether the hole ripples
         log_styles(track)
 
     def send(self, stretch: Stretch) -> None:
@@ -68,7 +68,7 @@ class RunStream:
         self.recent = _latest(self.recent, stretch.rows, RECENT * self.track.case.bha.half_length)
 
     def finding(self) -> str:
-        """Whether the hole ripples where the bit is."""
+        """Whether the hole ripples near the bit, in words; empty before the first rows."""
         return in_words(find_rippling(self.recent)) if self.recent else ""
 
 

@@ -1,4 +1,4 @@
-"""How a recording looks: colours, strokes, plots and lanes."""
+"""The style of a recording: colours, strokes, plots and lanes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -11,7 +11,7 @@ from boreprop.units import BUILD_LENGTH, UNITS, Unit
 from .scene import Array
 
 Colour = tuple[int, int, int]
-# Okabe and Ito's colours: told apart with any colour vision
+# the colours of Okabe and Ito, which can be told apart with any colour vision
 ORANGE, SKY_BLUE, GREEN, YELLOW = (230, 159, 0), (86, 180, 233), (0, 158, 115), (240, 228, 66)
 VERMILION, PURPLE = (213, 94, 0), (204, 121, 167)
 WHITE, GREY, FAINT, GROUND = (240, 240, 240), (150, 155, 160), (52, 58, 66), (20, 23, 28)
@@ -20,26 +20,26 @@ BY_RUN = (ORANGE, SKY_BLUE, GREEN, PURPLE, YELLOW, VERMILION)
 
 
 def shade(colour: Colour, lightness: float) -> Colour:
-    """`colour` on its way to white, which it is at a lightness of 1."""
+    """`colour` mixed with white: 0 is the colour itself, 1 is white."""
     red, green, blue = (round(c + lightness * (w - c)) for c, w in zip(colour, WHITE, strict=True))
     return red, green, blue
 
 
 @dataclass(frozen=True)
 class Stroke:
-    """How lines are drawn: by what they show when one run is shown, by the run's own colour when there are several."""
+    """How lines are drawn. If there are several runs, each has its own colour, which replaces that of the stroke."""
 
     colour: Colour
-    width: float  # points of the screen
-    layer: float
-    lightness: float = 0.0  # of the run's own colour
+    width: float  # in points of the screen
+    layer: float  # higher layers are drawn over lower ones
+    lightness: float = 0.0  # to which the run's own colour is lightened
 
     def of(self, run: Colour) -> "Stroke":
         """The stroke for one of several runs."""
         return replace(self, colour=shade(run, self.lightness))
 
 
-FURNITURE = {  # what belongs to no run
+FURNITURE = {  # lines that are common to all runs
     "vertical_section/grid": Stroke(FAINT, 1.0, 0.0),
     "vertical_section/plan": Stroke(WHITE, 1.5, 1.5),
     "bit_frame/places": Stroke(FAINT, 1.0, 0.0),
@@ -59,12 +59,12 @@ STROKES = {
 }
 
 
-SI_OF_HOLE = {"build_rate": "rad/m", "dogleg_severity": "rad/m"}  # of `source.hole_columns`
+SI_OF_HOLE = {"build_rate": "rad/m", "dogleg_severity": "rad/m"}  # SI units of `source.hole_columns`
 
 
 @dataclass(frozen=True)
 class Plot:
-    """One plot over the drilled length: columns of one unit, and the colours of their curves in turn."""
+    """A plot over the drilled length: its columns, all of one unit, and the colours of their curves in turn."""
 
     title: str
     columns: tuple[str, ...]
@@ -72,17 +72,17 @@ class Plot:
 
     @property
     def unit(self) -> Unit:
-        """The unit that they are shown in."""
+        """The unit in which the columns are shown."""
         column = self.columns[0]
         return UNITS[BY_NAME[column].unit if column in BY_NAME else SI_OF_HOLE[column]]
 
     def names(self, n: int) -> list[str]:
-        """Scalars shown for `n` stabilizers; a column that is in no table is one of its own."""
+        """The scalar names of the columns for `n` stabilizers. A column that is not in the table is a scalar."""
         scalars = [BY_NAME[column].names(n) if column in BY_NAME else [column] for column in self.columns]
         return list(chain.from_iterable(scalars))
 
     def curves(self, runs: Sequence[Trajectory]) -> list[Array]:
-        """What there is to show of some runs, in SI units."""
+        """The values of all columns that some runs have, in SI units."""
         return [run.columns[name] for run in runs for name in self.names(run.n) if name in run.columns]
 
 
@@ -110,7 +110,7 @@ TABS = {
     "Drilling": ("active_weight_on_bit", "rate_of_penetration"),
 }
 
-Lane = dict[int, tuple[str, Colour]]  # what a whole number of the table means, and its colour
+Lane = dict[int, tuple[str, Colour]]  # value → its name and colour
 LANES: dict[str, Lane] = {
     "stabilizer_contact": {1: ("low", ORANGE), -1: ("high", SKY_BLUE), 0: ("free", FAINT)},
     "bit_tilt_saturation": {1: ("+ψ*", VERMILION), -1: ("−ψ*", PURPLE), 0: ("free", FAINT)},
@@ -118,7 +118,7 @@ LANES: dict[str, Lane] = {
 
 
 def curve_label(name: str) -> str:
-    """Symbol, with its index, and name in words of a scalar of the table; of any other column its name in words."""
+    """The label of a curve: the symbol, with its index, and the name in words; without a symbol, the name alone."""
     column, _, index = name.rstrip("]").partition("[")
     words = column.replace("_", " ")
     if column not in BY_NAME:

@@ -1,4 +1,4 @@
-"""The way of a run into a recording: its place and colour among others, its timeline, and how things are sent.
+"""Tracks: the entities, colour and timeline of each run in a recording, and functions that send data to them.
 
 The timeline is the drilled length in whole millimetres.
 """
@@ -22,18 +22,18 @@ TIMELINE = "drilled_length_mm"
 
 @dataclass(frozen=True)
 class Track:
-    """Where in a recording a run goes, and how it looks there.
+    """The entities of a run in a recording, and its colour there.
 
     Parameters
     ----------
     rec
         The recording.
     scales
-        Those of all its runs.
+        The scales of the recording.
     case
         What is drilled.
     name, colour, place
-        Of the run beside others: what it is called, its own colour, and its number. Left out for one that is alone.
+        The name of the run, its own colour and its number, from 0. The defaults are for a single run.
     """
 
     rec: rr.RecordingStream
@@ -44,7 +44,7 @@ class Track:
     place: int = 0
 
     def entity(self, thing: str) -> str:
-        """The entity of a thing, named by its view and what it is; where there are others, the run's name is in it."""
+        """The entity of a thing, named view/thing; with several runs it contains the run's name, too."""
         if not self.name:
             return thing
         view, _, name = thing.rpartition("/")
@@ -52,15 +52,15 @@ class Track:
 
     @property
     def lanes(self) -> int:
-        """How many lanes its modes take."""
+        """The number of lanes of its modes."""
         return len(self.case.bha.stabilizer_positions)
 
     def label(self, text: str) -> str:
-        """`text`, with the run's name where there are others."""
+        """`text`; with several runs, after the run's name."""
         return f"{self.name}: {text}" if self.name else text
 
     def shades(self, colours: tuple[Colour, ...]) -> tuple[Colour, ...]:
-        """`colours` for one run, shades of its own colour for one of several."""
+        """`colours`; with several runs, as many shades of the run's own colour."""
         if self.colour is None:
             return colours
         return tuple(shade(self.colour, i / (len(colours) + 1)) for i in range(len(colours)))
@@ -77,7 +77,7 @@ def make_tracks(rec: rr.RecordingStream, scales: Scales, sources: Sequence[Sourc
 
 
 def send(track: Track, thing: str, length: Array, columns: rr.ComponentColumnList) -> None:
-    """Components of a thing at drilled lengths; nothing where there are none, as viewers fail on that."""
+    """Send components of a thing at drilled lengths. Nothing is sent if there are none, since viewers fail on that."""
     if len(length):
         time = rr.TimeColumn(TIMELINE, sequence=np.rint(1000 * length).astype(np.int64))
         track.rec.send_columns(track.entity(thing), [time], columns)
@@ -89,14 +89,14 @@ def points(x: Array | float, y: Array | float) -> Array:
 
 
 def send_strips(track: Track, thing: str, length: Array, strips: Array) -> None:
-    """Line strips (rows, strips a row, points, 2)."""
+    """Send line strips at drilled lengths, shape (rows, strips, points, 2)."""
     rows, per_row = strips.shape[:2]
     columns = rr.LineStrips2D.columns(strips=strips.reshape(-1, *strips.shape[2:]).astype(np.float32))
     send(track, thing, length, columns.partition([per_row] * rows))
 
 
 def send_arrows(track: Track, thing: str, length: Array, tip: Array, force: Array) -> None:
-    """A lateral force (rows,), N, as an arrow that ends at `tip` (rows, 2), with its size; none where it is zero."""
+    """Send lateral forces (rows,), N, as arrows that end at `tip` (rows, 2), with their values; none where zero."""
     there = force != 0.0
     vectors = points(force[there] / track.scales.newtons_per_metre, 0.0)
     unit = UNITS["N"]
@@ -106,5 +106,5 @@ def send_arrows(track: Track, thing: str, length: Array, tip: Array, force: Arra
 
 
 def send_curve(track: Track, thing: str, length: Array, values: Array) -> None:
-    """A curve of a plot, in the plot's unit."""
+    """Send a curve of a plot, in the unit of the plot."""
     send(track, thing, length, rr.Scalars.columns(scalars=values))

@@ -1,4 +1,4 @@
-"""What the command `boreprop-view` does: opens runs, and draws them."""
+"""The work of the command `boreprop-view`: opens runs and draws them."""
 
 from collections import Counter
 from dataclasses import dataclass, field
@@ -21,18 +21,18 @@ from .source import Source, live, stored
 
 @dataclass
 class Opener:
-    """Opens what the command is given: result files, cases that it drills first, FMUs that it drives.
+    """Opens result files, cases (which it simulates first) and FMUs (which it drives).
 
     Parameters
     ----------
     case, fmu
-        The case of result files, or the FMU that has it, if they are not to have their own.
+        The case of the result files, or the FMU that holds it. None: the case stored with each file.
     plan
         The planned hole.
     schedule
-        The file with the forces for an FMU, instead of those packed in it.
+        The force schedule for an FMU. None: the one packed in it.
     step, stop
-        Communication step and end, s, for an FMU, instead of its own.
+        Communication step and end, s, for an FMU. None: those of its default experiment.
     """
 
     case: Path | None
@@ -41,12 +41,12 @@ class Opener:
     schedule: Path | None
     step: float | None
     stop: float | None
-    stopped: list[Stopped] = field(default_factory=list)  # runs that ended early: what there is of them is drawn
+    stopped: list[Stopped] = field(default_factory=list)  # from runs that ended early; they are drawn all the same
 
     def open(self, name: str, path: Path) -> Source:
-        """A run to draw, under a name."""
+        """The source of a run, under a name."""
         if path.suffix == ".fmu":
-            from boreprop_fmu.host.drive import FmuRun  # here: fmpy takes long to load
+            from boreprop_fmu.host.drive import FmuRun  # imported here, since importing fmpy takes long
 
             forces = None if self.schedule is None else read_schedule(self.schedule)
             return live(name, FmuRun(path, forces, step=self.step, stop=self.stop), self.plan)
@@ -63,10 +63,10 @@ class Opener:
             raise InputError(f"{path}: {error}") from error
 
     def _run(self, path: Path) -> Trajectory:
-        """The run in a result file, or of a case file that is drilled now."""
+        """The run in a result file, or that of a case file, which is simulated now."""
         if path.suffix == ".toml":
             if self.case or self.fmu:
-                raise InputError(f"{path}: must be a run to be given a case, got a case file")
+                raise InputError(f"{path}: must be a result file with --case or --fmu, got a case file")
             case = load_case(path)
             with console.progress("drilling", case.length) as drilled:
                 return simulate(case, progress=drilled)
@@ -76,7 +76,7 @@ class Opener:
             return read_trajectory(path, None if self.case is None else load_case(self.case))
         packed = read_packed_case(self.fmu)
         if packed is None:
-            raise InputError(f"{self.fmu}: must hold its case, as ours do, got an FMU without")
+            raise InputError(f"{self.fmu}: must hold a case, as FMUs of boreprop-fmu do, got none: use --case")
         return read_trajectory(path, packed)
 
 
@@ -111,10 +111,10 @@ def show(
 
 
 def names(sources: list[Path]) -> list[str]:
-    """What the runs are called: as their files, without what is not needed to tell them apart."""
+    """The names of the runs: the shortest of stem, file name and path with which all are different."""
     for short in (lambda path: path.stem, lambda path: path.name, str):
         found = [short(source) for source in sources]
         if len(set(found)) == len(found):
             return found
     [(twice, _)] = Counter(sources).most_common(1)
-    raise InputError(f"{twice}: must be given once, got it again")
+    raise InputError(f"{twice}: must be given once, got it twice")

@@ -15,4 +15,4 @@ app = new_group("The borehole as a component of a system simulation: an FMI 2.0 
 
 def main() -> NoReturn:
     """Run the command `boreprop-fmu`."""
-    console.run(app)
+    console.execute(app)

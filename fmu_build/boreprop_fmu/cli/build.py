@@ -21,14 +21,14 @@ def build_command(
         str,
         typer.Option(
             metavar="python|native",
-            help="What computes in it: python, for which its host needs Python, or native, compiled code.",
+            help="What computes in the FMU: python, for which the host needs Python, or native, compiled code.",
         ),
     ] = "python",
     platforms: Annotated[
         str | None,
         typer.Option(
             metavar="linux64,win64,…|all|none",
-            help="What native code is compiled for; none: only the C sources are packed. Default: this machine.",
+            help="The platforms of a native FMU; none: only the C sources are packed. Default: this machine.",
         ),
     ] = None,
 ) -> None:
@@ -46,7 +46,7 @@ def _chosen(platforms: str) -> list[str]:
 
 
 def _contents(fmu: Path) -> list[str]:
-    """What an FMU runs on: platforms, and whether it has C sources."""
+    """The platforms for which an FMU has binaries, and "C sources" if it has them."""
     with ZipFile(fmu) as archive:
         folders = [name.split("/")[:2] for name in archive.namelist()]
     binaries = sorted({path[1] for path in folders if path[0] == "binaries"})

@@ -15,7 +15,7 @@ from ..host.drive import FmuRun
 
 
 def run_command(
-    fmu: Annotated[Path, typer.Argument(metavar="Borehole.fmu", help="An FMU with our variable names.")],
+    fmu: Annotated[Path, typer.Argument(metavar="Borehole.fmu", help="An FMU with the variable names of boreprop.")],
     output: Annotated[Path, typer.Option(metavar="RUN.csv", help="The result file, .csv or .parquet.")],
     schedule: Annotated[
         Path | None,
@@ -34,8 +34,8 @@ def run_command(
 ) -> None:
     """Run an FMU and write the run to a file.
 
-    Its rows are at whole multiples of the communication step, from 0. If the FMU cannot go on to the end, the rows so
-    far are written all the same; the exit status is then 3.
+    Its rows are at whole multiples of the communication step, from 0. If the FMU cannot go on to the end, the rows up
+    to there are written, and the exit status is 3.
     """
     console.check_output(output, SUFFIXES)
     forces = None if schedule is None else read_schedule(schedule)

@@ -1,4 +1,4 @@
-"""Steps an FMU that uses the names of our table through fmpy, under a force schedule."""
+"""Drives an FMU that has the names of the table of quantities, through fmpy, under a force schedule."""
 
 from collections import deque
 from collections.abc import Callable, Iterator
@@ -18,12 +18,12 @@ from boreprop.run.trajectory import Stopped, Trajectory
 from ..packed_case import read_packed_case
 from .instance import open_instance, read_description, uninterrupted
 
-MAX_ROWS = 10_000_000
-CLOSE = 1e-9  # of a step: times closer than this are one
+MAX_ROWS = 10_000_000  # more would need gigabytes of memory
+CLOSE = 1e-9  # of a step: times closer than this are taken as equal, for they differ by rounding
 
 
 class FmuRun:
-    """A run of an FMU: iterate over it for its rows, one at each communication point start + k·step, k = 0, 1, …
+    """A run of an FMU. Iterating over it gives a row at each communication point start + k·step, k = 0, 1, …
 
     Parameters
     ----------
@@ -31,25 +31,26 @@ class FmuRun:
         An FMI 2.0 co-simulation FMU with an input rss_force and an output drilled_length.
     schedule
         The force over the drilled length; a step in which it changes is split there. None: the schedule of the case
-        that is packed in the FMU, without one the FMU's own start value.
+        that is packed in the FMU or, without one, the FMU's own start value.
     step, stop
         Communication step and last communication point, s. None: those of the FMU's default experiment.
     relative_tolerance
-        The FMU's parameter of that name. None: as it is packed.
+        The FMU's parameter of that name. None: the value packed in the FMU.
 
     Attributes
     ----------
     columns
-        What a row holds: time, then the FMU's inputs and outputs that are in our table, in its order.
+        The names of the values of a row: time, then the FMU's inputs and outputs that are in the table of quantities,
+        in its order.
     case
         The case packed in the FMU, with the schedule of this run; None if there is none.
     start, step, stop
-        s.
+        First communication point, communication step and last communication point, s.
 
     Raises
     ------
     InputError, ParameterError
-        If the FMU or a value cannot be used; while iterating, if a call fails: then the FMU's own message.
+        If the FMU or a value cannot be used. While iterating, if a call fails; the message is then the FMU's own.
     """
 
     def __init__(
@@ -80,8 +81,8 @@ class FmuRun:
             if name not in self._variables:
                 raise InputError(f"{fmu}: must have a variable {name!r}, got {', '.join(self._variables) or 'none'}")
         n = sum(name.startswith("average_inclination[") for name in self._variables)
-        ours = [name for variable in INPUTS + OUTPUTS for name in variable.names(n) if name in self._variables]
-        self.columns = ["time", *ours]
+        own = [name for quantity in INPUTS + OUTPUTS for name in quantity.names(n) if name in self._variables]
+        self.columns = ["time", *own]
 
     def __len__(self) -> int:
         return int((self.stop - self.start) / self.step + CLOSE) + 1
@@ -108,12 +109,14 @@ class FmuRun:
             raise InputError(f"{self.fmu}: at {time:.9g} s: {' '.join(messages) or error}") from error
 
     def trajectory(self, progress: Callable[[float], None] | None = None) -> Trajectory:
-        """All rows, with the case; `progress` is called with the time, s, after each row.
+        """The whole run, with its case; `progress` is called with the time, s, after each row.
 
-        Raises `Stopped`, with the rows so far, if a call fails after the first row.
+        Raises `Stopped`, with the rows up to there, if a call fails after the first row.
         """
         if len(self) > MAX_ROWS:
-            raise InputError(f"step: must give at most {MAX_ROWS} rows up to {self.stop:g} s, got {self.step:g} s")
+            raise InputError(
+                f"step: must give at most {MAX_ROWS} rows up to {self.stop:g} s, got {self.step:g} s; raise --step"
+            )
         rows, done, stopped = np.empty((len(self), len(self.columns))), 0, None
         try:
             for row in self:
@@ -133,11 +136,14 @@ class FmuRun:
 
     def _choose(self, name: str, given: float | None, default: str | float | None) -> float:
         if given is None and default is None:
-            raise InputError(f"{self.fmu}: {name}: must be given, the FMU has no default experiment")
+            raise InputError(f"{self.fmu}: {name}: must be given (--{name}), since the FMU has no default, got nothing")
         return float(default if given is None else given)  # type: ignore[arg-type]
 
     def _changes(self, slave: Any) -> deque[tuple[float, float]]:
-        """Times at which the force changes, and to what. The rate of penetration stays what the FMU starts with."""
+        """The times at which the force changes, and its new values.
+
+        The rate of penetration is that with which the FMU starts; it does not change in this run.
+        """
         if self._schedule is None:
             return deque()
         rate = 1.0
@@ -149,7 +155,7 @@ class FmuRun:
         )
 
     def _advance(self, slave: Any, time: float, point: float, changes: deque[tuple[float, float]]) -> None:
-        """Step from `time` to `point`, the force changing on the way and at its end."""
+        """Step from `time` to `point`; the force changes on the way and at the end, as in `changes`."""
         close = CLOSE * self.step
         while changes and changes[0][0] <= point + close:
             change, force = changes.popleft()

@@ -1,4 +1,4 @@
-"""Loads an FMU through fmpy: its description, an instance of it, and what its runtime needs of this process."""
+"""Loads an FMU through fmpy: reads its description, and opens an instance of it safely in this process."""
 
 from collections import deque
 from collections.abc import Iterator
@@ -34,18 +34,18 @@ def read_description(fmu: Path) -> Any:
 def open_instance(
     fmu: Path, description: Any, messages: deque[str], *, start: float, stop: float, platform: str | None = None
 ) -> Iterator[Any]:
-    """Yield an instance of an FMU in initialization mode, and terminate and free it in the end.
+    """Yield an instance of an FMU in initialization mode; terminate and free it at the end.
 
     Parameters
     ----------
     fmu, description
-        The FMU, and what `read_description` gives for it.
+        The FMU, and its description from `read_description`.
     messages
-        Where the instance's log goes, line by line.
+        The lines of the instance's log are appended to it.
     start, stop
-        Of the experiment, s.
+        Start and end of the experiment, s.
     platform
-        Which of the folders in binaries/ the library is taken from, under the names of FMI 2.0.4. None: this machine's.
+        The folder in binaries/ from which the library is taken, named as in FMI 2.0.4. None: that of this machine.
 
     Raises
     ------
@@ -69,8 +69,8 @@ def open_instance(
                 libraryPath=_library(directory, identifier, platform or host_platform()),
             )
             slave.instantiate(callbacks=callbacks, loggingOn=True)
-        except Exception as error:  # fmpy raises just that, where there is no binary for this platform, say
-            raise InputError(f"{fmu}: must load here, got: {' '.join(messages) or error}") from error
+        except Exception as error:  # fmpy raises a plain Exception if, say, there is no binary for this platform
+            raise InputError(f"{fmu}: must load on this machine, got: {' '.join(messages) or error}") from error
         dead = False
         try:
             slave.setupExperiment(startTime=start, stopTime=stop)
@@ -78,7 +78,7 @@ def open_instance(
             yield slave
             slave.terminate()
         except FMICallException as error:
-            dead = error.status == fmi2Fatal  # then nothing may be called any more
+            dead = error.status == fmi2Fatal  # FMI then forbids all further calls
             raise
         finally:
             if not dead:
@@ -88,7 +88,7 @@ def open_instance(
 
 
 def _log_to(messages: deque[str]) -> fmi2CallbackFunctions:
-    """Callbacks for an instance that logs to `messages`; they must live as long as it does."""
+    """Callbacks for an instance that logs to `messages`; they must be kept as long as the instance."""
 
     def log(*arguments: Any) -> None:  # environment, instance, status, category, message
         messages.append(arguments[4].decode(errors="replace").replace("%%", "%"))
@@ -101,15 +101,15 @@ def _log_to(messages: deque[str]) -> fmi2CallbackFunctions:
 
 
 def _library(directory: str, identifier: str, platform: str | None) -> str | None:
-    """The binary in the folder that FMI 2.0.4 names; None: fmpy looks for one, on Arm in the folder for x86."""
+    """The binary in the folder that FMI 2.0.4 names; None if there is none, and fmpy chooses a folder."""
     library = Path(directory, "binaries", platform or "", f"{identifier}{fmpy.sharedLibraryExtension}")
     return str(library) if platform and library.exists() else None
 
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Let Ctrl-C wait until the end of a call: an FMU with Python in it would take it for an error of its own."""
-    if current_thread() is not main_thread():  # which alone is interrupted
+    """Delay Ctrl-C until the end of a call, since an FMU with Python in it would take it for an error of its own."""
+    if current_thread() is not main_thread():  # only the main thread is interrupted
         yield
         return
     pressed: list[int] = []
@@ -123,12 +123,12 @@ def uninterrupted() -> Iterator[None]:
 
 
 def _check_readable(directory: str) -> None:
-    """Raise `InputError` where pythonfmu would crash: it finds no folder whose name has other than ASCII characters."""
+    """Raise `InputError` if the name of a directory is not plain ASCII, since pythonfmu would crash on it."""
     if "%" in Path(directory).as_uri().replace("%20", " "):
-        raise InputError(f"the temporary directory (TMPDIR) must have a plain ASCII name, got {directory}")
+        raise InputError(f"TMPDIR: the temporary directory must have a plain ASCII name, got {directory}")
 
 
 def _release_runtime(library: Any) -> None:
-    """Let pythonfmu's library drop its static state now: at exit it drops it twice, which may abort the process."""
-    if hasattr(library, "finalizePythonInterpreter"):  # does not finalize the interpreter of a host that is Python
+    """Free the static state of pythonfmu's library: at exit it would be freed twice, which may abort the process."""
+    if hasattr(library, "finalizePythonInterpreter"):  # in a host that is Python, it does not end the interpreter
         library.finalizePythonInterpreter()

@@ -1,4 +1,4 @@
-"""The archive that an FMU is: the same bytes for the same files, and an identity that follows from them."""
+"""Writes the archive of an FMU, with the same bytes for the same files, and derives its guid from them."""
 
 import zipfile
 from collections.abc import Mapping
@@ -9,11 +9,11 @@ from uuid import UUID, uuid5
 from boreprop.replacing import replacing
 
 GUID_NAMESPACE = UUID("6f0a3c1e-9d1b-5a55-8a0e-0d6c1f9f7b11")
-EPOCH = (1980, 1, 1, 0, 0, 0)  # the date of every file: that of the build would make each build different
+EPOCH = (1980, 1, 1, 0, 0, 0)  # the date of every file: the date of packing would make each archive different
 
 
 def write_archive(files: Mapping[str, bytes], output: Path) -> None:
-    """Write an FMU whole or not at all; the description comes first, the other files in alphabetical order.
+    """Write an FMU completely or not at all. The description comes first, then the other files by name.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ def write_archive(files: Mapping[str, bytes], output: Path) -> None:
     Raises
     ------
     OSError
-        If it cannot be written; nothing is left behind then.
+        If it cannot be written; it is unchanged then.
     """
     with replacing(output) as draft, zipfile.ZipFile(draft, "w") as fmu:
         for name in sorted(files, key=lambda name: (name != "modelDescription.xml", name)):
@@ -36,11 +36,11 @@ def write_archive(files: Mapping[str, bytes], output: Path) -> None:
 
 
 def identify(files: Mapping[str, bytes]) -> str:
-    """Give the guid of an FMU, from all the files that decide what it does."""
+    """The guid of an FMU, derived from all files that determine its behaviour."""
     return str(uuid5(GUID_NAMESPACE, digest(files)))
 
 
 def digest(files: Mapping[str, bytes]) -> str:
-    """SHA-256 over names and contents, hexadecimal."""
+    """The SHA-256 of names and contents, hexadecimal."""
     lines = (f"{sha256(content).hexdigest()} {name}\n" for name, content in sorted(files.items()))
     return sha256("".join(lines).encode()).hexdigest()

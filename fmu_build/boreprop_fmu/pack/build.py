@@ -1,4 +1,4 @@
-"""Builds the FMU of a case, an FMI 2.0 co-simulation component: on pythonfmu's runtime, or as machine code."""
+"""Packs a case as an FMI 2.0 co-simulation FMU, either as Python code on pythonfmu's runtime or as machine code."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -27,18 +27,18 @@ def build_fmu(
     Parameters
     ----------
     case
-        What the FMU starts from.
+        The case from which the FMU starts.
     output
-        The file.
+        The file to write.
     runtime
-        What runs in the FMU: "python", for hosts that have a Python; "native", machine code and its C sources.
+        "python" packs Python code, for hosts that have a Python; "native" packs machine code and its C sources.
     platforms
-        For a native FMU: what it has binaries for, of `boreprop.kernel.compiler.PLATFORMS`. None: this machine; empty:
-        no binaries, only the sources.
+        For a native FMU: the names, in `boreprop.kernel.compiler.PLATFORMS`, of the platforms for which it has
+        binaries. None: this machine; empty: no binaries, only the sources.
     compiler
-        For a native FMU: "ziglang", which compiles for every platform and gives the same bytes wherever it runs; "own",
-        this machine's C compiler ($CC with $CFLAGS, else cc, gcc or clang), for this machine alone. None: ziglang; if
-        that is not installed and no platforms are named, the own one.
+        For a native FMU: "ziglang" compiles for every platform, and gives the same bytes on every machine; "own" is
+        this machine's C compiler ($CC with $CFLAGS, else cc, gcc or clang) and compiles for this machine only. None:
+        ziglang or, if that is not installed and no platforms are named, the own compiler.
     progress
         Called with the number of binaries compiled so far.
 
@@ -49,10 +49,10 @@ def build_fmu(
     Raises
     ------
     InputError
-        If the runtime, a platform or the compiler is unknown or does not fit the others, or nothing here compiles for
-        a platform.
+        If the runtime, a platform or the compiler does not exist or does not fit the others, or no compiler is
+        installed for a platform.
     OSError
-        If the file cannot be written; nothing is left behind then.
+        If the file cannot be written; it is unchanged then.
     """
     if runtime not in RUNTIMES:
         raise InputError(f"runtime: must be {' or '.join(RUNTIMES)}, got {runtime!r}")

@@ -1,4 +1,4 @@
-"""What an FMU holds whichever flavour it is: its description, its case, its icon and its documentation."""
+"""The contents that both flavours of FMU have: the description, the case, the icon and the documentation."""
 
 from collections.abc import Sequence
 from importlib.resources import files
@@ -21,7 +21,7 @@ CAPABILITIES = {
     "canGetAndSetFMUstate": True,
     "canSerializeFMUstate": True,
 }
-STEP_SIZE = 0.1  # s, so 0.1 m at the start value of the rate of penetration
+STEP_SIZE = 0.1  # s: 0.1 m at the start value of the rate of penetration, as `simulate` has it
 
 
 def describe(
@@ -32,13 +32,13 @@ def describe(
     Parameters
     ----------
     case
-        What the FMU starts from.
+        The case from which the FMU starts.
     guid
         The FMU's identity.
     interpolates
-        Whether it takes derivatives of inputs.
+        Whether the FMU accepts derivatives of inputs.
     source_files
-        What is to be compiled of the folder sources/.
+        The files in the folder sources/ that are to be compiled.
     """
     description = model_description(
         IDENTIFIER,
@@ -54,7 +54,7 @@ def describe(
 
 
 def pack_manual(case: Case, runtime: str) -> dict[str, bytes]:
-    """What people see: the icon (made by docs/make_icon.py) and the documentation."""
+    """The icon (made by docs/make_icon.py) and the documentation."""
     icon = files("boreprop_fmu.pack").joinpath("icon.png").read_bytes()
     return {"model.png": icon, "documentation/index.html": documentation(case, runtime)}
 

@@ -39,7 +39,7 @@ def model_description(
     capabilities
         Attributes of the element CoSimulation.
     source_files
-        What is to be compiled of the folder sources/.
+        The files in the folder sources/ that are to be compiled.
     """
     root = Element(
         "fmiModelDescription",
@@ -103,7 +103,7 @@ def _add_variable(
             typed.set("displayUnit", display)
         typed.set("nominal", repr(quantity.nominal))
     number = repr if quantity.kind == "Real" else "{:d}".format
-    # FMI cannot say that a value must be above a bound and not on it: such a bound is left out
+    # FMI has no way to say that a value must be above a bound and not equal to it; such a bound is left out
     if isfinite(quantity.at_least):
         typed.set("min", number(quantity.at_least))
     if isfinite(quantity.at_most):
@@ -121,5 +121,5 @@ def _add_structure(structure: Element, scalars: list[tuple[str, Quantity]]) -> N
         depends_on = " ".join(index[source] for source in quantity.follows)
         SubElement(unknowns, "Unknown", index=index[name], dependencies=depends_on)
     unknowns = SubElement(structure, "InitialUnknowns")
-    for name, _ in outputs:  # no dependencies named: they depend on everything
+    for name, _ in outputs:  # without a list of dependencies, they depend on everything
         SubElement(unknowns, "Unknown", index=index[name])

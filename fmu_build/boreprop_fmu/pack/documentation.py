@@ -1,4 +1,4 @@
-"""documentation/index.html of the borehole FMU: the page documentation.html, filled in."""
+"""Fills in the page documentation.html to make the documentation/index.html of an FMU."""
 
 from html import escape
 from importlib.resources import files
@@ -9,24 +9,25 @@ from boreprop.case.case import Case
 from boreprop.core.quantities import VARIABLES, Quantity
 
 DISCARDED = """A bad input is logged (status fmi2Error, category logStatusError) with its variable, its constraint and
-its value, and the step is discarded (fmi2Discard): nothing has moved, and the next step with good values works."""
-TEXTS = {  # where the flavours differ
+its value, and the step is discarded (fmi2Discard): the state is unchanged, and the next step with good values works."""
+TEXTS = {  # the passages in which the flavours differ
     "python": {
         "inputs": "",
         "errors": f"""{DISCARDED} After a bad parameter the instance must be reset (fmi2Reset). After a state that is
-not one of this FMU's, every step is discarded until a good state is set or the instance is reset.""",
+not a valid state of this FMU, every step is discarded until a valid one is set or the instance is reset.""",
         "hosts": """64-bit Linux and Windows, with CPython 3.10 to 3.13 and its standard library; no other package is
 needed. On Linux, a host that is not Python itself must preload libpython.""",
     },
     "native": {
         "inputs": """ A derivative of an input (fmi2SetRealInputDerivatives, first order) acts over the next step that
 is completed; a discarded step does not use it up. After that step the input keeps the value that it has reached. Over
-the step the rate of penetration is linear in time, the force and the weight on bit in the drilled length.""",
+the step the rate of penetration is linear in time, force and weight on bit are linear in the drilled length.""",
         "errors": f"""{DISCARDED} After bad parameters, fmi2ExitInitializationMode and every step give fmi2Error until
-the instance is reset (fmi2Reset). Outputs that cannot be computed are NaN, with fmi2Error. A state that is not one of
-this FMU's is refused with fmi2Error and changes nothing; a good one may come from another process or platform.""",
-        "hosts": """Any. The folder binaries/ shows which platforms this FMU is compiled for. For others compile
-sources/fmi2.c with a C99 compiler; it needs no library but libm:
+the instance is reset (fmi2Reset). Outputs that cannot be computed are NaN, with fmi2Error. A state that is not a valid
+state of this FMU is refused with fmi2Error and changes nothing; a valid one may come from another process or platform.
+""",
+        "hosts": """Any. The folder binaries/ shows for which platforms this FMU is compiled. For others compile
+sources/fmi2.c with a C99 compiler; it needs no library except libm:
 <code>cc -shared -fPIC -O2 -ffp-contract=off -I sources sources/fmi2.c -lm -o Borehole.so</code>.""",
     },
 }
@@ -38,7 +39,7 @@ def documentation(case: Case, runtime: str) -> bytes:
     Parameters
     ----------
     case
-        What the FMU starts from.
+        The case from which the FMU starts.
     runtime
         "python" or "native".
 

@@ -1,6 +1,6 @@
 """Packs the model as machine code: the kernel behind the functions of FMI 2.0, for hosts without Python.
 
-What goes into `sources/` builds with any C compiler; what goes into `binaries/` is built from just that.
+The folder `sources/` can be compiled with any C99 compiler; the binaries are compiled from nothing else.
 """
 
 from collections.abc import Callable, Sequence
@@ -50,7 +50,7 @@ def pack_native(
     compiler: str | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> dict[str, bytes]:
-    """Gather the files of the FMU that needs no Python: path in the FMU → content; parameters as of `build_fmu`."""
+    """The files of an FMU that needs no Python: path in the FMU → content. Parameters are those of `build_fmu`."""
     check_targets(platforms, compiler)
     code = pack_sources()
 
@@ -65,7 +65,7 @@ def pack_native(
 
 
 def pack_sources() -> dict[str, bytes]:
-    """The C code, which is the same for every case."""
+    """The C code, which does not depend on the case."""
     own, kernel, fmi = files("boreprop_fmu") / "native", files("boreprop.kernel"), files("fmpy") / "c-code"
     code = [path for folder in (own, kernel) for path in folder.iterdir() if path.name.endswith(".h")]
     code += [own / SOURCE_FILE, *(fmi / name for name in FMI_HEADERS)]
@@ -73,17 +73,17 @@ def pack_sources() -> dict[str, bytes]:
 
 
 def case_header(case: Case, guid: str) -> bytes:
-    """The numbers, and the variables with their start values, as a C header."""
+    """A C header with the numbers of the case, and with the variables and their start values."""
     start = start_values(case)
     n = len(case.bha.stabilizer_positions)
-    scalars = [(name, variable) for variable in VARIABLES for name in variable.names(n)]
+    scalars = [(name, quantity) for quantity in VARIABLES for name in quantity.names(n)]
     references, reference = [], 0
-    for variable in VARIABLES:
-        references.append(f"    {variable.name.upper()} = {reference},")
-        reference += len(variable.names(n))
+    for quantity in VARIABLES:
+        references.append(f"    {quantity.name.upper()} = {reference},")
+        reference += len(quantity.names(n))
     table = [
-        f'    {{"{name}", {variable.role.upper()}, {variable.kind.upper()}, {_real(start.get(name, 0.0))}}},'
-        for name, variable in scalars
+        f'    {{"{name}", {quantity.role.upper()}, {quantity.kind.upper()}, {_real(start.get(name, 0.0))}}},'
+        for name, quantity in scalars
     ]
     return CASE_HEADER.format(
         guid=guid,
@@ -107,7 +107,7 @@ def _lines(values: Sequence[float]) -> str:
 
 
 def check_targets(platforms: Sequence[str] | None, compiler: str | None) -> None:
-    """Raise `InputError` unless the platforms and the compiler exist and go together; None leaves the choice open."""
+    """Raise `InputError` unless the platforms and the compiler exist and fit each other; None fits everything."""
     for platform in platforms or ():
         if platform not in PLATFORMS:
             raise InputError(f"platforms: must be among {', '.join(PLATFORMS)}, got {platform!r}")
@@ -129,13 +129,13 @@ def compile_binaries(
     Parameters
     ----------
     sources
-        What is in the folder sources/, by its path in the FMU.
+        The files of the folder sources/: path in the FMU → content.
     platforms, compiler, progress
-        As of `build_fmu`.
+        As in `build_fmu`.
 
     Returns
     -------
-    The binaries, by their path in the FMU.
+    The binaries: path in the FMU → content.
 
     Raises
     ------
@@ -161,17 +161,19 @@ def compile_binaries(
 
 
 def _targets(platforms: Sequence[str] | None) -> Sequence[str]:
-    """What there are to be binaries for, each once."""
+    """The platforms for which binaries are compiled, without repetitions."""
     if platforms is not None:
         return list(dict.fromkeys(platforms))
     host = host_platform()
     if host is None:
-        raise InputError(f"platforms: must be given on this machine, which is none of {', '.join(PLATFORMS)}")
+        raise InputError(
+            f"platforms: must be given (--platforms) on this machine, which is none of {', '.join(PLATFORMS)}, got none"
+        )
     return [host]
 
 
 def _compile(source: Path, library: Path, platform: str, compilers: Sequence[str]) -> None:
-    """Compile with the first of these compilers that is installed; one that fails is not replaced by another."""
+    """Compile with the first of these compilers that is installed. If that one fails, no other is tried."""
     for compiler in compilers:
         try:
             compile_library(source, library, platform=platform if compiler == "ziglang" else None)

@@ -1,7 +1,7 @@
 """Packs the model as Python code on pythonfmu's runtime, for hosts that have a Python.
 
-The files are gathered here and not by pythonfmu's own builder, which imports the slave into the building process and
-makes a different file every time. From pythonfmu come the binaries and the base class of the slave.
+The binaries and the base class of the slave are those of pythonfmu. Its own builder is not used: it would import the
+slave into this process, and make a different file every time.
 """
 
 import json
@@ -15,7 +15,7 @@ from .archive import digest, identify
 from .contents import IDENTIFIER, describe, pack_manual, start_values
 
 RUNTIME_MODULES = ("default_experiment", "enums", "fmi2slave", "logmsg", "variables", "_version")
-SCRIPT = '''"""What pythonfmu starts. It compiles this for every instance, and wants a class with methods of its own."""
+SCRIPT = '''"""The script that pythonfmu compiles for every instance; it needs a class with methods of its own."""
 
 from {package}.slave import Borehole as Slave
 
@@ -30,7 +30,7 @@ class Borehole(Slave):
 
 
 def pack_python(case: Case) -> dict[str, bytes]:
-    """Gather the files of the FMU on pythonfmu's runtime: path in the FMU → content."""
+    """The files of an FMU on pythonfmu's runtime: path in the FMU → content."""
     code = pack_code()
 
     def numbers(guid: str) -> dict[str, bytes]:
@@ -43,10 +43,10 @@ def pack_python(case: Case) -> dict[str, bytes]:
 
 
 def pack_code() -> dict[str, bytes]:
-    """The core with the slave in one package, and the script that starts it.
+    """The core and the slave in one package, and the script that starts the slave.
 
-    An embedded interpreter knows a module by its name alone, so both carry a hash of their content in theirs: several
-    FMUs in one process each run their own code.
+    An embedded interpreter tells modules apart by name alone. So the names of both contain a hash of their content, and
+    several FMUs in one process each run their own code.
     """
     moved = {
         "from boreprop.core.": "from .",
@@ -71,7 +71,7 @@ def pack_code() -> dict[str, bytes]:
 
 
 def pack_runtime() -> dict[str, bytes]:
-    """pythonfmu: the binaries under the FMU's name, and the base class of the slave."""
+    """The parts of pythonfmu: the binaries, under the FMU's name, and the base class of the slave."""
     package, modules = base_class()
     archive = {f"resources/{package}/{name}": content for name, content in modules.items()}
     for platform in files("pythonfmu").joinpath("resources/binaries").iterdir():
@@ -81,9 +81,9 @@ def pack_runtime() -> dict[str, bytes]:
 
 
 def base_class() -> tuple[str, dict[str, bytes]]:
-    """Name and modules of a package with pythonfmu's base class. The name is free, and carries a hash like the others.
+    """The name and the modules of a package with pythonfmu's base class. Its name contains a hash, too.
 
-    Without pythonfmu's `__init__`, which would load its builder whenever an FMU starts.
+    pythonfmu's `__init__` is replaced by an empty one: it would import the builder whenever an FMU starts.
     """
     modules = read_modules("pythonfmu")
     needed = {"__init__.py": b"", **{f"{name}.py": modules[f"{name}.py"] for name in RUNTIME_MODULES}}
@@ -91,5 +91,5 @@ def base_class() -> tuple[str, dict[str, bytes]]:
 
 
 def read_modules(package: str) -> dict[str, bytes]:
-    """Sources of the modules of `package`, by file name."""
+    """The modules of `package`: file name → source."""
     return {path.name: path.read_bytes() for path in files(package).iterdir() if path.name.endswith(".py")}

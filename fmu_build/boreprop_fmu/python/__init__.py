@@ -1,1 +1,1 @@
-"""What runs inside the FMU on pythonfmu's runtime."""
+"""The slave that runs inside the FMU on pythonfmu's runtime."""

@@ -1,1 +1,1 @@
-"""Analyses of the model: numpy and scipy."""
+"""Analyses of cases and runs."""

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-AXIS_POINTS = 40  # samples of the axis in a width of its trend
-AXIS_REACH = 4.0  # widths of hole that the trend of the axis needs to each side
+AXIS_POINTS = 40  # samples of the axis in one width of the Gaussian
+AXIS_REACH = 4.0  # widths at which the Gaussian is cut off: it has fallen to e⁻⁸ there
 
 
 def axis_ripple(
@@ -12,23 +12,24 @@ def axis_ripple(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """How far the axis of a hole lies from its smooth trend, to the high side.
 
-    The trend is a mean over the neighbourhood whose weights, a Gaussian times a parabola, leave straight and evenly
-    curved holes as they are; of a wave of 1.4 widths it keeps less than 10⁻³, of one of 1.8 less than 2 %.
+    The trend is a weighted mean over the neighbourhood. The weights are a Gaussian times a parabola, chosen so that the
+    trend of a straight or evenly curved hole is the hole itself. A wave of 1.4 widths leaves less than 10⁻³ of its
+    amplitude in the trend, a wave of 1.8 widths less than 2 %.
 
     Parameters
     ----------
     length
-        m, increasing, shape (N,).
+        Lengths along the hole, m, increasing, shape (N,).
     position
-        Of the axis in the vertical plane, horizontal and down, m, shape (N, 2).
+        Positions of the axis in the vertical plane, horizontal and down, m, shape (N, 2).
     width
         Standard deviation of the Gaussian, m: `BottomHoleAssembly.half_length` suits all ripples of a BHA.
 
     Returns
     -------
     length, ripple
-        At whole multiples of a fortieth of the width, as far as the hole goes on for `AXIS_REACH` widths to both sides,
-        m, shape (k,), perhaps empty.
+        Lengths at whole multiples of a fortieth of the width, and the ripple there, m, shape (k,) each. They are those
+        from which the hole goes on for `AXIS_REACH` widths to both sides; there may be none.
     """
     spacing = width / AXIS_POINTS
     first, last = np.ceil(length[0] / spacing), np.floor(length[-1] / spacing)
@@ -37,7 +38,7 @@ def axis_ripple(
     if len(at) < len(u):
         return np.empty(0), np.empty(0)
     gaussian = np.exp(-(u**2) / 2)
-    weights = gaussian * (np.sum(gaussian * u**4) - np.sum(gaussian * u**2) * u**2)  # so the sum of u² weights is zero
+    weights = gaussian * (np.sum(gaussian * u**4) - np.sum(gaussian * u**2) * u**2)  # now Σ weights·u² = 0
     weights /= weights.sum()
     axis = np.column_stack([np.interp(at, length, coordinate) for coordinate in position.T])
     trend = np.column_stack([np.convolve(coordinate, weights, mode="valid") for coordinate in axis.T])

@@ -28,7 +28,7 @@ def lcp(
     Returns
     -------
     M, q
-        (2n, 2n) and (2n,), in the order of z = (F_ℓ, F_u, F̂_ℓ, F̂_u): two blocks of n − 1, then two numbers.
+        Shapes (2n, 2n) and (2n,), in the order of z = (F_ℓ, F_u, F̂_ℓ, F̂_u): two blocks of n − 1, then two numbers.
     """
     m = len(y_star)
     M = [[0.0] * (2 * m + 2) for _ in range(2 * m + 2)]
@@ -47,5 +47,5 @@ def lcp(
 
 
 def residual(M: Matrix, q: list[float], z: list[float]) -> float:
-    """Max |min(z, Mz + q)|: zero where z solves the LCP."""
+    """The largest |min(z_i, (Mz + q)_i|: zero if z solves the LCP."""
     return max(abs(min(z_i, dot(row, z) + q_i)) for row, q_i, z_i in zip(M, q, z, strict=True))

@@ -1,4 +1,4 @@
-"""When a ripple dies out as weight or clearance goes up, and where it comes back on the way down."""
+"""Where a ripple dies out as weight or clearance is raised, and where it comes back as it is lowered."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -14,7 +14,7 @@ from .rippling import Rippling
 from .study.design import vary
 from .tipping import LARGEST_DOGLEG, SCAN, drill_until_steady, with_dogleg
 
-END = 0.01  # to which part of the parameter the ends of a loop are found
+END = 0.01  # of the parameter: the ends of a loop are bracketed this closely; halving this costs a run or two more
 
 Bracket = tuple[float, float]
 
@@ -25,17 +25,20 @@ class Hysteresis:
 
     Parameters
     ----------
-    name, values
-        The parameter, see `design.vary`, and its values in rising order.
+    name
+        The parameter, see `vary`.
+    values
+        Its values in increasing order, in SI units.
     dogleg
-        What turn, over half the BHA, straight holes have, rad.
+        The turn, over half the length of the BHA, of the holes that are otherwise straight, rad.
     up, down
-        The rippling at each value on the way up and on the way down; None where a run could not go on.
+        The rippling at each of `values` on the way up and on the way down; None where a run could not go on.
     dies
-        Between which two values the ripple dies out on the way up, to a hundredth; None if it does not, or never was.
+        The two values between which the ripple dies out on the way up, within a hundredth of each other; None if it
+        does not die out or never was there.
     returns
-        Between which two values the dogleg brings the ripple back on the way down, the larger one without ripple;
-        None if it does not, or if it ripples from the largest value on.
+        The two values between which the dogleg brings the ripple back on the way down; at the larger one there is no
+        ripple. None if it does not come back, or if there is a ripple at the largest value already.
     """
 
     name: str
@@ -56,33 +59,52 @@ def hysteresis(
     relative_tolerance: float = RELATIVE_TOLERANCE,
     progress: Callable[[float], None] = lambda _: None,
 ) -> Hysteresis:
-    """How a system ripples while a parameter goes up and down again, slowly.
+    """Find how a system ripples while a parameter goes slowly up and down again.
 
-    Going up starts from a ripple: from a dogleg that makes the case with the first value ripple, if any does. Each case
-    then drills on in the hole that the one before it left, until it is steady. A straight hole would stay straight for
-    ever, though the next survey, connection or formation makes it turn: so each case that no ripple goes before starts
-    in the hole of `with_dogleg`, straight at the inclination of the case, with the dogleg. So do all cases going down,
-    until one ripples.
+    The way up starts from a ripple, in a hole with a dogleg that makes the case with the first value ripple, if there
+    is such a dogleg. Each case then drills on, until it is steady, in the hole that the case before it drilled. If that
+    one did not ripple, the hole is straight at the inclination of the case, with the given dogleg before the bit: a
+    perfectly straight hole would stay straight for ever, but in the field the next survey, connection or formation
+    makes it turn. On the way down all cases start in such a hole until one ripples.
 
     Parameters
     ----------
-    case, name, values
-        What is drilled, the parameter that changes, see `design.vary`, and its values in rising order.
+    case
+        What is drilled.
+    name
+        The parameter that changes, see `vary`: "eta_pi", say, or "stabilizer_clearance[1]".
+    values
+        Its values in increasing order, in SI units.
     dogleg
-        What turn, over half the BHA, straight holes have, rad.
+        The turn, over half the length of the BHA, of the holes that are otherwise straight, rad.
     relative_tolerance
-        Of the integrator.
+        Error allowed in one step of the integrator, see `simulate`.
     progress
-        Called with the number of values done, of twice as many as there are.
+        Called with the number of values done; there are ``2 * len(values)``, those up and those down.
+
+    Returns
+    -------
+    Hysteresis
+        The rippling at each value, and the ends of the loop.
 
     Raises
     ------
     InputError, ParameterError
-        If a value is out of range.
+        If a name or a value is not accepted.
+
+    Examples
+    --------
+    A dogleg of 0.5° does not start the ripple at ηΠ = 0.1, though a ripple that exists lasts there:
+
+    >>> from math import radians
+    >>> from boreprop import hysteresis, paper_case
+    >>> found = hysteresis(paper_case(), "eta_pi", [0.1], radians(0.5))
+    >>> [wave.ripples for wave in found.up], [wave.ripples for wave in found.down]
+    ([True], [False])
     """
     ramp = _Ramp(case, name, dogleg, relative_tolerance)
     for value in values:
-        ramp.at(value)  # what is out of range is refused before the work
+        ramp.at(value)  # raises if the value is out of range, before any work is done
     up: list[Rippling | None] = []
     dies: Bracket | None = None
     hole = ramp.rippling_hole(values[0])
@@ -108,7 +130,7 @@ def hysteresis(
 
 
 class _End(NamedTuple):
-    """What a run came to: its rippling, None if it could not go on; and the hole it leaves, if it ripples."""
+    """How a run ended: its rippling, None if it could not go on; and the hole that it drilled, None if it is smooth."""
 
     wave: Rippling | None
     hole: Survey | None
@@ -128,27 +150,27 @@ class _Ramp:
         return vary(self.case, {self.name: value})
 
     def drill(self, value: float, hole: Survey | None) -> _End:
-        """Drill at a value of the parameter in a hole; None: the straight one with the dogleg."""
+        """Drill at a value of the parameter in a hole; None is the straight hole with the dogleg."""
         case = self.at(value)
         case = replace(case, survey=hole) if hole else with_dogleg(case, self.dogleg)
         try:
             run, wave = drill_until_steady(case, relative_tolerance=self.relative_tolerance)
         except Stopped:
             return _End(None, None)
-        return _End(wave, _left_behind(run, case) if wave.ripples else None)
+        return _End(wave, _drilled_hole(run, case) if wave.ripples else None)
 
     def rippling_hole(self, value: float) -> Survey | None:
-        """A hole with as small a dogleg as makes the system ripple at a value of the parameter; None if none does."""
+        """The hole with the smallest dogleg tried that makes the system ripple at a value; None if none does."""
         case = self.at(value)
         holes = (with_dogleg(case, LARGEST_DOGLEG / 2**k).survey for k in reversed(range(SCAN)))
         return next((hole for hole in holes if self.drill(value, hole).hole), None)
 
     def follow(self, low: float, high: float, hole: Survey, end: _End) -> tuple[Bracket | None, _End]:
-        """Follow the ripple that left `hole` at `low` in shorter steps towards `high`, where at once it came to `end`.
+        """Follow the ripple that drilled `hole` at `low` to `high` in shorter steps; in one step it ended as `end`.
 
-        A ripple may survive a slow change that is too much for it at once. So wherever it does not survive a step, the
-        step is halved, down to a hundredth of the parameter: between which two values it dies, None if it does not, and
-        what it comes to at `high`.
+        A ripple may survive a gradual change that it does not survive in one step. So wherever it dies in a step, the
+        step is halved, down to a hundredth of the parameter. Returned are the two values between which it dies, None if
+        it survives, and how it ends at `high`.
         """
         step, here = high - low, high
         while step > END * here:
@@ -164,17 +186,17 @@ class _Ramp:
         return (low, here), end
 
     def bisect(self, low: float, high: float) -> Bracket:
-        """Between which two values the dogleg starts a ripple, given one where it does and a larger one where not."""
+        """The two values between which the dogleg ceases to start a ripple: it does at `low` and does not at `high`."""
         while high - low > END * high:
             middle = (low + high) / 2
             low, high = (middle, high) if self.drill(middle, None).hole else (low, middle)
         return low, high
 
 
-def _left_behind(run: Trajectory, case: Case) -> Survey:
-    """The drilled hole as a survey of chords, as far as the next run can feel it.
+def _drilled_hole(run: Trajectory, case: Case) -> Survey:
+    """The end of the drilled hole as a survey of the chords between its rows, as far up as the next run's BHA reaches.
 
-    It ends where the tilt was least: a run starts with the bit along the hole.
+    It ends where the bit tilt was smallest, since a run starts with the bit aligned with the hole.
     """
     length, half = run["drilled_length"], case.bha.half_length
     recent = length >= length[-1] - 2 * half

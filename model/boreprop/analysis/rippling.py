@@ -1,13 +1,14 @@
-"""Is a hole rippling, and with what wave: from the inclination over the drilled length.
+"""Finds whether a hole ripples, and with what wave, from its inclination over the drilled length.
 
-A hole ripples if, at the end of the run and while force and weight are steady, its inclination swings in waves that
-keep themselves up: at least five of them, no longer than three BHAs, of ±0.001° or more, that lose no more than 3 %
-of their size from wave to wave. The waves need not be equal: chaotic ripples count.
+A hole ripples if, at the end of the run and while force and weight are constant, its inclination swings in waves that
+sustain themselves. There must be at least five waves, no longer than three BHAs, of ±0.001° or more, that lose no more
+than 3 % of their size from wave to wave. They need not be equal: chaotic ripples count.
 
-While no contact and no saturation changes, the equations are linear, and a wave grows or dies but cannot last. So a
-wave that lasts changes the mode of the BHA each time; one that does not, and falls however slowly, is dying out.
+As long as no contact and no saturation changes, the equations are linear, and a wave grows or dies but cannot last. So
+every wave of a ripple changes the mode of the BHA. A wave that changes no mode and falls, however slowly, is dying out.
 
-It is a statement about the inclination that the run ends with: gravity moves and ends ripples as that changes.
+The finding holds for the inclination at which the run ends: as the inclination changes, gravity changes ripples and may
+end them.
 """
 
 from collections.abc import Sequence
@@ -37,25 +38,28 @@ from .waves import (
     without_even_trend,
 )
 
-LONGEST = 6.0  # half lengths of the BHA: the longest wave that is looked for
-SHORTER = 4.0  # each window is so much shorter than the one before: small short waves are seen on long ones
-SMALLEST_AMPLITUDE = np.radians(0.001)  # far above what the integrator leaves of a straight hole, 1e-10°
-ALIKE = 0.5  # autocorrelation from which a signal is a wave
-ALIKE_SWITCHING = 0.2  # the same where each wave changes the mode, as no noise does: chaotic ripples have 0.25 to 0.6
-NOISE = 4.5  # standard deviations, 1/√rows: white noise does not reach it at any of the lags that are tried
-STILL_ALIKE = 0.8  # of ALIKE: what the last four waves must have, or the wave is over
-AT_THE_END = 4  # waves that tell whether a wave is still there, how large it is and whether it changes modes
-MOST_WAVES = 10  # at the end whose size is followed, …
-MOST_OF_LONGEST = 2.0  # … or as many as this many longest waves hold, if that is more: ripples beat
-FALLING = 0.03  # of the size, per wave: what falls faster dies out, half of it within 23 waves
-FALLING_IN_ONE_MODE = 1e-4  # the same for a wave that changes no mode: it follows an exponential this well
-HALF = 0.5  # of the size it has at the end: since when a wave has been there
-INPUTS = ("rss_force", "active_weight_on_bit")  # while these are steady, a wave keeps itself up
-PHASES = 64  # of a wave, for its modes
+LONGEST = 6.0  # half lengths of the BHA: the longest wave that is searched for
+SHORTER = 4.0  # each window is shorter than the last by this factor, so that small short waves on long ones are found
+SMALLEST_AMPLITUDE = np.radians(0.001)  # far above the error that the integrator leaves in a straight hole, 1e-10°
+ALIKE = 0.5  # the autocorrelation at one wavelength from which a signal counts as a wave
+ALIKE_SWITCHING = 0.2  # the same if each wave changes the mode, which noise does not: chaotic ripples have 0.25 to 0.6
+NOISE = 4.5  # standard deviations, 1/√rows, of the autocorrelation of white noise: noise reaches this at no lag tried
+STILL_ALIKE = 0.8  # times ALIKE: the autocorrelation that the last waves must have, or the wave has ended
+AT_THE_END = 4  # waves at the end that decide whether a wave is still there, its size and whether it changes modes
+MOST_WAVES = 10  # waves at the end from which the growth is determined, …
+MOST_OF_LONGEST = 2.0  # … or as many as fit into this many of the longest waves, if more: ripples beat
+FALLING = 0.03  # loss of size per wave: a wave that falls faster, to half within 23 waves, is dying
+FALLING_IN_ONE_MODE = 1e-4  # the same for a wave that changes no mode, whose exponential decay is this well determined
+HALF = 0.5  # of its size at the end: a wave counts as present since it has had this size
+INPUTS = ("rss_force", "active_weight_on_bit")  # a wave can sustain itself only while these are constant
+PHASES = 64  # points of a wave at which its mode is determined
 
 
 class Stretch(NamedTuple):
-    """A part of a wave in one mode: contact of each non-ideal stabilizer, saturation of the tilt, share of the wave."""
+    """A part of a wave in one mode.
+
+    It has the contact of each non-ideal stabilizer, the saturation of the bit tilt, and its share of the wavelength.
+    """
 
     contact: tuple[int, ...]
     saturation: int
@@ -69,36 +73,37 @@ class State(StrEnum):
     DYING = "dying"
     LASTING = "lasting"
     GROWING = "growing"
-    STEERED = "steered"  # a wave, but force or weight change too often to tell whether it would last
+    STEERED = "steered"  # there is a wave, but force or weight change too often to say whether it would last
 
 
 @dataclass(frozen=True)
 class Rippling:
-    """The wave that a run ends with; nan and empty if there is none, or nobody looked.
+    """The wave with which a run ends. Fields are nan or empty if there is no wave or if they were not computed.
 
     Parameters
     ----------
     state
-        What becomes of it.
+        What becomes of the wave.
     wavelength
-        m.
+        Length of a wave along the hole, m.
     amplitude
-        Half the height of the mean of the last waves of the inclination, rad.
+        Half the height, from crest to trough, of the mean of the last waves of the inclination, rad.
     growth
-        Change of the logarithm of the amplitude along the hole, 1/m.
+        Change of the logarithm of the amplitude per drilled length, 1/m.
     since
-        The drilled length from which on the wave has had at least half its present size, m.
+        The drilled length from which on the wave has had at least half the size that it has at the end, m.
     spread
         Standard deviation of the last wavelengths, m.
     inclination_drift
-        Change of the inclination that the waves are about, rad/m.
+        Slope of the least-squares line through the trend about which the inclination swings, rad/m.
     switching
-        Whether contact or saturation change in each of the last waves; None if the modes are not known.
+        Whether a contact or the saturation changes in each of the last waves; None if the run does not say.
     axis_amplitude
-        Half the height of the mean of the last waves of the hole axis, m.
+        Half the height, from crest to trough, of the mean of the last waves of the hole axis, m.
     modes
-        The modes of one wave in turn, from where the inclination rises through its trend: which stabilizer touches
-        which wall (1 lower, −1 upper, 0 free), and at which limit the tilt is. What most of the last waves agree on.
+        The modes that one wave goes through, beginning where the inclination rises through its trend: the wall that
+        each stabilizer touches (1 lower, −1 upper, 0 none) and the saturation of the bit tilt (1, −1, 0). At each phase
+        it is the mode of most of the last waves.
     """
 
     state: State = State.NONE
@@ -119,29 +124,29 @@ class Rippling:
 
     @property
     def fading_length(self) -> float:
-        """The drilled length over which a dying wave falls to a tenth, m."""
+        """The drilled length over which a dying wave falls to a tenth of its size, m; inf if the wave is not dying."""
         return log(10.0) / -self.growth if self.growth < 0 else inf
 
     def growth_over(self, length: float) -> float:
-        """By what part the amplitude grows over a drilled length, m; falling is negative."""
+        """The relative change of the amplitude over a drilled length, m: 0.1 is growth by a tenth."""
         return exp(min(self.growth * length, 700.0)) - 1.0
 
 
 @dataclass(frozen=True)
 class _Rows:
-    """Of a run: drilled length, m, inclination, rad, and modes, whole numbers, (rows, k), if they are known."""
+    """Some rows of a run: drilled length, m, inclination, rad, and modes, whole numbers, shape (rows, k)."""
 
     length: Floats
     inclination: Floats
     modes: NDArray[np.int_] | None
 
     def where(self, kept: NDArray[np.bool_] | slice) -> "_Rows":
-        """Some of them."""
+        """The rows that a mask or a slice selects."""
         return _Rows(self.length[kept], self.inclination[kept], None if self.modes is None else self.modes[kept])
 
 
 class _Found(NamedTuple):
-    """What is said of a wave, the last of its waves, and the rows that they are the end of; if there is a wave."""
+    """A wave that was found, the last of its waves, and the rows that end with them; the defaults if there is none."""
 
     rippling: Rippling = Rippling()
     waves: LastWaves | None = None
@@ -152,12 +157,12 @@ _NOTHING = _Found()
 
 
 def longest_wave(bha: BottomHoleAssembly) -> float:
-    """The longest wave that is looked for in the hole of a BHA, m."""
+    """The longest wave that is searched for in the hole of a BHA, m."""
     return LONGEST * bha.half_length
 
 
 def visible_waves(drilled_length: Floats) -> tuple[float, float]:
-    """The shortest and the longest wave that the rows of a run can show, m."""
+    """The shortest and the longest wave that can be found in the rows of a run, m."""
     span = float(drilled_length[-1] - drilled_length[0])
     moves = int(np.count_nonzero(np.diff(drilled_length)))
     return FEWEST_ROWS * span / max(moves, 1), span / FEWEST_WAVES
@@ -171,26 +176,32 @@ def find_rippling(
     modes: NDArray[np.int_] | None = None,
     inputs: Sequence[Floats] = (),
 ) -> Rippling:
-    """The wave that a run ends with; of several that last, the one with the largest amplitude.
+    """Find whether a run ends rippling, and with what wave.
 
-    Waves are found that are at least eight rows long and repeat five times.
+    If there are several waves that last, it is the one with the largest amplitude. A wave must be at least eight rows
+    long and repeat five times to be found. The module's docstring defines a ripple.
 
     Parameters
     ----------
     run
-        A run; its force and weight are taken to be steady where it has no columns of them. Or, of a hole that is
-        known otherwise, the drilled length alone, m, not decreasing, shape (rows,); then `inclination` is needed, and
-        nothing is said of the axis and the modes.
+        A run; force and weight are taken to be constant if it lacks their columns. Instead, for a hole without a run,
+        the drilled length, m, not decreasing, shape (rows,); then the other parameters give the rest, and nothing is
+        found about the axis and the modes.
     inclination
-        Of the borehole, rad, shape (rows,), if `run` is not a run.
+        Inclination of the borehole, rad, shape (rows,). Only without a run, where it is needed.
     longest
-        Longest wave that is looked for, m; without it, the `longest_wave` of the run's case, or any.
+        The longest wave that is searched for, m. None: the `longest_wave` of the run's case, without a case any wave.
     modes
-        Contact of each stabilizer and saturation of the tilt, whole numbers, shape (rows, k), if `run` is not a run.
-        Without them a wave that dies out very slowly is called lasting.
+        Contact of each stabilizer and saturation of the bit tilt, whole numbers, shape (rows, k). Only without a run.
+        If they are not given, a wave that dies out very slowly counts as lasting.
     inputs
-        Steering force and weight on bit, shape (rows,) each, if `run` is not a run. Without them they are taken to be
-        steady.
+        Steering force and weight on bit, shape (rows,) each. Only without a run. If they are not given, they are taken
+        to be constant.
+
+    Returns
+    -------
+    Rippling
+        The wave, in SI units; its state is `State.NONE` if there is none.
 
     Raises
     ------
@@ -213,15 +224,15 @@ def find_rippling(
 
 
 def last_wave(run: Trajectory) -> Rippling:
-    """`find_rippling` of a run without what takes longest to tell and studies do not report.
+    """`find_rippling` of a run without the fields since, spread, axis_amplitude and modes.
 
-    The fields since, spread, axis_amplitude and modes are left nan and empty.
+    Studies do not report these, and they take longest to compute.
     """
     return _wave_of(run, None).rippling
 
 
 def _wave_of(run: Trajectory, longest: float | None) -> _Found:
-    """The wave that a run ends with."""
+    """The wave with which a run ends, with its last waves and their rows."""
     if longest is None:
         longest = longest_wave(run.case.bha) if run.case else inf
     inputs = [run[name] for name in INPUTS if name in run.columns]
@@ -229,7 +240,7 @@ def _wave_of(run: Trajectory, longest: float | None) -> _Found:
 
 
 def _with_details(run: Trajectory, found: _Found) -> Rippling:
-    """What is said of a wave, with the wave of the axis, the modes of a wave, and where it began."""
+    """The wave that was found, with the fields since, spread, axis_amplitude and modes."""
     length = run["drilled_length"]
     position = np.column_stack((run["displacement"], run["true_vertical_depth"]))
     if found.waves is None:
@@ -245,7 +256,7 @@ def _with_details(run: Trajectory, found: _Found) -> Rippling:
 
 
 def modes_of(run: Trajectory) -> NDArray[np.int_]:
-    """Contact of each non-ideal stabilizer and saturation of the tilt, shape (rows, n)."""
+    """Contact of each non-ideal stabilizer and saturation of the bit tilt, whole numbers, shape (rows, n)."""
     return np.column_stack((run.stack("stabilizer_contact"), run["bit_tilt_saturation"])).astype(int)
 
 
@@ -260,7 +271,7 @@ def _find(
     changed = np.zeros(max(len(length) - 1, 0), dtype=bool)
     for values in inputs:
         changed |= values[1:] != values[:-1]
-    moved = np.ones(len(length), dtype=bool)  # while the bit stands still, the last row counts
+    moved = np.ones(len(length), dtype=bool)  # of several rows at one length, only the last one is used
     np.greater(length[1:], length[:-1], out=moved[:-1])
     steady = int(np.count_nonzero(moved[: int(np.flatnonzero(changed)[-1]) + 1])) if changed.any() else 0
     rows = _Rows(length, inclination, modes) if moved.all() else _Rows(length, inclination, modes).where(moved)
@@ -273,7 +284,7 @@ def _find(
 
 
 def _search(rows: _Rows, longest: float) -> _Found:
-    """The wave in windows at the end of some rows, from one that holds the longest waves down to one of a few rows."""
+    """The wave in windows at the end of some rows: the first holds five of the longest waves, the last few rows."""
     found, fewest = [_NOTHING], int(FEWEST_WAVES * FEWEST_ROWS)
     if len(rows.length) < fewest:
         return _NOTHING
@@ -287,7 +298,7 @@ def _search(rows: _Rows, longest: float) -> _Found:
 
 
 def _since(found: _Found) -> float:
-    """The drilled length from which on a wave has had at least half its present size, m."""
+    """The drilled length from which on a wave has had at least half the size that it has at the end, m."""
     if found.waves is None or found.rows is None:
         return nan
     least = HALF * float(found.waves.sizes[-AT_THE_END:].min())
@@ -295,7 +306,7 @@ def _since(found: _Found) -> float:
 
 
 def _weight(found: _Found) -> tuple[bool, bool, float]:
-    """Which wave counts: one that lasts rather than one that dies, a large rather than a small one."""
+    """A sort key: a wave that lasts comes before one that dies, and a large one before a small one."""
     there = found.waves is not None
     return found.rippling.ripples, there, found.rippling.amplitude if there else 0.0
 
@@ -316,7 +327,7 @@ def _wave(rows: _Rows, spacing: float, count: int, followed: float) -> _Found:
     if waves.count < FEWEST_WAVES - 1 or waves.sizes[-1] <= 0:
         return _NOTHING
     irregular = max(likeness(waves.deviation, period), ALIKE_SWITCHING)
-    amplitude = waves.height() / 2 / irregular**0.5  # waves that differ average out
+    amplitude = waves.height() / 2 / irregular**0.5  # the mean of waves that differ is lower than each of them
     if amplitude < SMALLEST_AMPLITUDE:
         return _NOTHING
     switching = _switching(rows, waves)
@@ -336,7 +347,7 @@ def _wave(rows: _Rows, spacing: float, count: int, followed: float) -> _Found:
 
 
 def _switching(rows: _Rows, waves: LastWaves) -> bool | None:
-    """Whether contact or saturation change in each of the last waves; None if the modes are not known."""
+    """Whether a contact or the saturation changes in each of the last waves; None without modes."""
     if rows.modes is None:
         return None
     late = int(np.searchsorted(waves.wave[1:], waves.count - AT_THE_END))
@@ -347,14 +358,14 @@ def _switching(rows: _Rows, waves: LastWaves) -> bool | None:
 
 
 def _still_there(waves: LastWaves, period: float) -> bool:
-    """Whether the last four waves alone are a wave."""
+    """Whether the last four waves, taken alone, still count as a wave."""
     late = waves.deviation[waves.place >= waves.count - AT_THE_END]
     enough = STILL_ALIKE * max(ALIKE, NOISE / max(len(late) - period, 1.0) ** 0.5)
     return bool(likeness(late, period) >= enough)
 
 
 def _axis_amplitude(length: Floats, position: Floats, waves: LastWaves) -> float:
-    """Half the height of the wave of the axis, across its mean over one wavelength, m."""
+    """Half the height of the waves of the axis, measured across its mean over one wavelength, m."""
     moved = np.append(np.diff(length) > 0, True)
     x, (sideways, down) = length[moved], position[moved].T
     inside, trend = mean_over(x, sideways + 1j * down, waves.wavelength)
@@ -366,7 +377,10 @@ def _axis_amplitude(length: Floats, position: Floats, waves: LastWaves) -> float
 
 
 def _modes(length: Floats, modes: NDArray[np.int_], starts: Floats) -> tuple[Stretch, ...]:
-    """The modes of a wave in turn: at each phase the one that most of the rows nearest in phase, one a wave, are in."""
+    """The modes that one wave goes through: at each phase the mode of most of the rows nearest to it, one of each wave.
+
+    `starts` are the lengths at which the waves begin, and the end of the last one, m.
+    """
     rows = (length >= starts[0]) & (length < starts[-1])
     phase = np.interp(length[rows], starts, np.arange(len(starts))) % 1.0
     kinds, kind = np.unique(modes[rows], axis=0, return_inverse=True)

@@ -1,29 +1,29 @@
-"""Steering: how fast a steady force of the pads turns the hole, at which bit tilt, with which stabilizers touching.
+"""Steering: the curvature of the hole under a constant force of the pads, the bit tilt and the contacts.
 
 In a hole of constant curvature, Θ(ξ−s) = Θ − κ s, the offsets of the beam are e_i = −s_i ψ − s_i² κ/2, and θ' = κ.
-In a regime of contact and saturation (14) and (17) are then two linear equations for κ and ψ,
+In a regime of contacts and saturation, (14) and (17) are then two linear equations for κ and ψ,
 
     (εηΠ + M₂) κ +      M₁ ψ = M_rss F_RSS + M_g sin⟨Θ⟩_1 + M_const ,       M₁ = Σ M_i s_i ,  M₂ = Σ M_i s_i²/2
             F₂ κ + (ηΠ + F₁) ψ = F0_rss F_RSS + F0_g sin⟨Θ⟩_1 + F0_const ,  F₁ = Σ F0_i s_i , F₂ = Σ F0_i s_i²/2
 
 with the second one replaced by ψ = ±ψ* where the tilt saturates.
 
-One response to each force. The determinant is positive in every regime at every ηΠ > 0. The beam is a cubic spline,
-clamped at the bit and hinged at the last support, and its moments at the supports follow the spline's tridiagonal
-equations: so M₁, M₂ and F₁ are positive, and between the bit and the first support the moment of a tilt passes zero
-while that of a curvature does not, so M₂ F₁ − M₁ F₂ >= 0. Determinants of one sign in all regimes make κ and ψ the
-solution of a linear complementarity problem with a P-matrix: it exists, it is unique, and least-index pivoting finds
-it. So the build rate is a continuous, piecewise linear function of the force. Whether a hole settles on its response is
-a matter of stability.
+There is one response to each force. The determinant is positive in every regime at every ηΠ > 0: the beam is a cubic
+spline, clamped at the bit and hinged at the last support, and its moments at the supports follow the spline's
+tridiagonal equations. So M₁, M₂ and F₁ are positive, and between the bit and the first support the moment of a tilt
+passes zero while that of a curvature does not, so M₂ F₁ − M₁ F₂ >= 0. Determinants of one sign in all regimes make κ
+and ψ the solution of a linear complementarity problem with a P-matrix: it exists, it is unique, and least-index
+pivoting finds it. So the build rate is a continuous, piecewise linear function of the force. Whether the hole
+approaches this response is a question of stability.
 
-The sign of the response. Without saturation dκ/dF_RSS has the numerator M_rss (ηΠ + F₁) − M₁ F0_rss: it passes zero,
-not infinity, at ηΠ = M₁ F0_rss/M_rss − F₁ > 0, without contact 2/(Δ(2λ − Δ)). Above it a push to the high side drops
-the hole: the bit hardly moves sideways and turns as the clamped end of the pushed beam. At its limit the tilt does not
-answer either, so there the sign is that of M_rss <= 0 at any ηΠ.
+The response may be reversed. Without saturation dκ/dF_RSS has the numerator M_rss (ηΠ + F₁) − M₁ F0_rss, which is zero
+at ηΠ = M₁ F0_rss/M_rss − F₁ > 0; without contact that is 2/(Δ(2λ − Δ)). At larger ηΠ a push to the high side drops the
+hole: the bit hardly moves sideways and turns as the clamped end of the pushed beam. If the tilt is saturated it does
+not change with the force, and the sign is that of M_rss <= 0 at any ηΠ.
 
-Gravity. It acts through sin⟨Θ⟩_1 alone, which changes along the arc. The response here is quasi-steady: it takes
-sin⟨Θ⟩_1 as it is. That is exact without weight and where κ = 0; else `build_rate_error` is the leading term of what it
-leaves out.
+Gravity acts through sin⟨Θ⟩_1 alone, which changes along the arc. The response here is quasi-steady: sin⟨Θ⟩_1 is taken
+as constant. That is exact without weight and where κ = 0; otherwise `build_rate_error` is the leading term of what is
+neglected.
 """
 
 from collections.abc import Iterator
@@ -37,33 +37,33 @@ from ..core.linear import dot
 from ..core.modes import ROUNDING, Loads, Mode, Modes, Regime, Row, wall
 from ..core.system import BottomHoleAssembly, Scaled, eta_pi, scale
 
-MOST_PIECES = 1000  # of the curve: there are at most 729 regimes, and few of them are met twice
+MOST_PIECES = 1000  # of the curve, so that the way along it ends: there are at most 729 regimes, few of them met twice
 
 
 @dataclass(frozen=True)
 class SteadyResponse:
-    """A hole of constant curvature and what drills it.
+    """The steady response to a force: a hole of constant curvature, with the tilt and the contacts that drill it.
 
     Parameters
     ----------
     rss_force
-        N, positive to the high side.
+        Force of the steering pads, N, positive to the high side.
     build_rate
-        Change of inclination per length, rad/m.
+        Change of inclination per drilled length, rad/m.
     build_rate_error
-        Leading term of what the build rate at the bit has beyond `build_rate`, since gravity changes along the arc,
-        rad/m.
+        Leading term of the difference between the true build rate at the bit and `build_rate`, rad/m. It arises since
+        gravity changes along the arc.
     bit_tilt
         ψ, rad.
     bit_tilt_saturation
-        1 at +ψ*, −1 at −ψ*, 0 between.
+        1 at +ψ*, −1 at −ψ*, 0 in between.
     stabilizer_contact
-        For each non-ideal stabilizer 1 on the lower wall, −1 on the upper wall, 0 free. One without clearance is on the
-        wall that bears it.
+        For each non-ideal stabilizer 1 on the lower wall, −1 on the upper wall, 0 free, shape (n − 1,). A stabilizer
+        without clearance is on the wall that pushes it.
     stabilizer_force
-        Force of the wall on each non-ideal stabilizer, N.
+        Force of the wall on each non-ideal stabilizer, N, shape (n − 1,), positive from the lower wall.
     stabilizer_deflection
-        Offset of each from the hole axis, m.
+        Deflection of each non-ideal stabilizer from the hole axis, m, shape (n − 1,), positive to the high side.
     """
 
     rss_force: float
@@ -78,17 +78,17 @@ class SteadyResponse:
 
 @dataclass(frozen=True)
 class Piece:
-    """A stretch of the curve of build rate over force on which contact and saturation do not change: straight.
+    """A straight piece of the curve of build rate over force: contacts and saturation do not change along it.
 
     Parameters
     ----------
     start, end
-        The responses at its ends, by increasing force.
+        The responses at its ends, the smaller force first.
     gain
-        Change of the build rate per force, rad/m per N.
+        Slope of the piece: change of the build rate per force, rad/m per N.
     reversal_eta_pi, reversal_weight
-        The ηΠ, and the active weight on bit (N), above which the gain is negative: inf if there is none, 0 where the
-        tilt saturates.
+        The ηΠ, and the active weight on bit in N, above which the gain is negative: inf if it never is, 0 where the
+        tilt is saturated.
     """
 
     start: SteadyResponse
@@ -99,43 +99,56 @@ class Piece:
 
 
 def steady_response(case: Case, rss_force: float, inclination: float, *, gravity: bool = True) -> SteadyResponse:
-    """The hole that a constant force drills at a given inclination.
+    """Find the hole of constant curvature that a constant force drills at a given inclination.
+
+    It solves (14) and (17) with the contacts (7, 8) and the saturation (11); see the module's docstring.
 
     Parameters
     ----------
     case
-        The drilling system and its active weight on bit; hole and force schedule make no difference.
+        The drilling system and its active weight on bit. The existing hole, the schedule and the length have no
+        influence.
     rss_force
-        N, positive to the high side.
+        Force of the steering pads, N, positive to the high side.
     inclination
-        ⟨Θ⟩_1: of the hole, averaged over the ℓ₁ behind the bit, rad.
+        ⟨Θ⟩_1, the inclination of the hole averaged over the ℓ₁ behind the bit, rad.
     gravity
-        False: leave the weight of the BHA out.
+        False leaves out the weight of the BHA.
 
     Returns
     -------
     SteadyResponse
-        It exists for every force, and there is only one.
+        The response, in SI units. It exists for every force, and there is only one.
 
     Raises
     ------
     ParameterError
         If a value is not finite.
+
+    Examples
+    --------
+    >>> from math import degrees, radians
+    >>> from boreprop import paper_case, steady_response
+    >>> response = steady_response(paper_case(), rss_force=10e3, inclination=radians(30.0))
+    >>> round(30 * degrees(response.build_rate), 2)  # ° over 30 m
+    5.09
+    >>> response.stabilizer_contact, response.bit_tilt_saturation
+    ((-1,), 0)
     """
     check_number("rss_force", rss_force)
     steady = _steady(case, inclination, gravity)
-    return _in_si(case.bha, steady.settle(rss_force / case.bha.force_scale), rss_force)
+    return _in_si(case.bha, steady.line_at(rss_force / case.bha.force_scale), rss_force)
 
 
 def build_rate_curve(case: Case, inclination: float, force_limit: float, *, gravity: bool = True) -> tuple[Piece, ...]:
-    """The response to every force up to a limit to either side: its straight pieces.
+    """The response to every force up to a limit to either side, as the straight pieces of its curve.
 
     Parameters
     ----------
     case, inclination, gravity
         As in `steady_response`.
     force_limit
-        N, positive.
+        Largest force to either side, N, positive.
 
     Returns
     -------
@@ -168,10 +181,10 @@ def build_rate_curve(case: Case, inclination: float, force_limit: float, *, grav
 def largest_build_rate(
     case: Case, inclination: float, force_limit: float, *, gravity: bool = True
 ) -> tuple[SteadyResponse, SteadyResponse]:
-    """The fastest build and the fastest drop under forces up to `force_limit` (N) to either side.
+    """The responses with the highest and with the lowest build rate under forces up to `force_limit` (N).
 
-    They need not be at the limit: where the tilt saturates, or above the ηΠ of the reversal, a larger push builds
-    less. Parameters and errors are those of `build_rate_curve`.
+    They need not be at the limit: if the tilt is saturated, or above the ηΠ of the reversal, a larger push builds less.
+    Parameters and errors are those of `build_rate_curve`.
     """
     curve = build_rate_curve(case, inclination, force_limit, gravity=gravity)
     kinks = [curve[0].start, *(piece.end for piece in curve)]
@@ -181,10 +194,10 @@ def largest_build_rate(
 def holding_forces(
     case: Case, inclination: float, force_limit: float, *, gravity: bool = True
 ) -> tuple[SteadyResponse, ...]:
-    """The responses without curvature: the forces that hold an inclination, the smallest first.
+    """The responses without curvature, under the forces that hold an inclination, the smallest force first.
 
-    None if no force up to the limit does. Usually one; more where the build rate falls again with the force.
-    Parameters and errors are those of `build_rate_curve`.
+    The tuple is empty if no force up to the limit holds it. Usually there is one force; there are more if the build
+    rate does not always grow with the force. Parameters and errors are those of `build_rate_curve`.
     """
     curve = build_rate_curve(case, inclination, force_limit, gravity=gravity)
     builds = [curve[0].start.build_rate > 0, *(piece.end.build_rate > 0 for piece in curve)]
@@ -227,27 +240,27 @@ def _in_si(bha: BottomHoleAssembly, line: "Line", rss_force: float) -> SteadyRes
     )
 
 
-# dimensionless
+# From here on quantities are dimensionless.
 
 
 def moment(row: Row, s: tuple[float, ...], power: int) -> float:
-    """Σ row_i s_i^power: how a row answers to offsets that grow so."""
+    """Σ row_i s_i^power: the value of a row under the offsets e_i = s_i^power."""
     return dot(row.e, [s_i**power for s_i in s])
 
 
 def reversal(scaled: Scaled, mode: Mode) -> float:
-    """The ηΠ above which, the tilt not saturated, a push to the high side drops the hole; inf if there is none.
+    """The ηΠ above which a push to the high side drops the hole while the tilt is not saturated; inf if there is none.
 
-    The zero of dκ/dF_RSS over ηΠ. The law of the bit makes no difference to it.
+    It is the ηΠ at which dκ/dF_RSS is zero, and does not depend on the law of the bit.
     """
     M, F_0 = mode.M, mode.F_0
-    if M.rss > -ROUNDING:  # the pads at the bit, or at a stabilizer that does not move (nothing turns then)
+    if M.rss > -ROUNDING:  # the pads are at the bit, or at a stabilizer on a wall: their force does not turn the bit
         return inf
     return moment(M, scaled.s, 1) * F_0.rss / M.rss - moment(F_0, scaled.s, 1)
 
 
 class Line:
-    """κ and ψ as linear functions of F_RSS in one regime."""
+    """κ and ψ as linear functions of F_RSS in one regime: a line in the diagram of either."""
 
     def __init__(self, steady: "Steady", regime: Regime) -> None:
         self.regime, self.mode, self.sine = regime, steady.modes[regime.contact], steady.sine
@@ -257,7 +270,7 @@ class Line:
         c, d = (0.0, 1.0) if saturation else (moment(F_0, s, 2) / 2, steady.eta_pi + moment(F_0, s, 1))
 
         def solve(of_M: float, of_F_0: float, limit: float = 0.0) -> tuple[float, float]:
-            """κ and ψ of the two equations with these right-hand sides; `limit` is that of the saturated tilt."""
+            """κ and ψ of the two equations with these right-hand sides; a saturated tilt is ψ = `limit` instead."""
             second = limit if saturation else of_F_0
             return (d * of_M - b * second) / (a * d - b * c), (a * second - c * of_M) / (a * d - b * c)
 
@@ -265,14 +278,14 @@ class Line:
             M.g * self.sine + M.constant, F_0.g * self.sine + F_0.constant, saturation * steady.scaled.psi_star
         )
         self.rate = solve(M.rss, F_0.rss)
-        # κ and ψ change along the arc at κ₁ and ψ₁, per κ, which adds κ₁ s_i³/6 to e_i and ψ₁ to θ'
+        # Along the arc κ and ψ change at the rates κ₁ κ and ψ₁ κ. This adds κ₁ κ s_i³/6 to e_i and ψ₁ κ to θ'.
         kappa_1, psi_1 = (steady.cosine * x for x in solve(M.g, F_0.g))
         self.error_rate, _ = solve(
             moment(M, s, 3) / 6 * kappa_1 - epsilon_eta_pi * psi_1, moment(F_0, s, 3) / 6 * kappa_1
         )
 
     def at(self, F_rss: float) -> tuple[float, float]:
-        """(κ, ψ) under a force."""
+        """κ and ψ under a force."""
         return self.rest[0] + self.rate[0] * F_rss, self.rest[1] + self.rate[1] * F_rss
 
     def loads(self, F_rss: float) -> Loads:
@@ -280,7 +293,7 @@ class Line:
         return Loads(offsets(self.s, *self.at(F_rss)), F_rss, self.sine)
 
     def slope(self, row: Row) -> float:
-        """Change of a row's value per force."""
+        """The change of a row's value per force."""
         return dot(row.e, offsets(self.s, *self.rate)) + row.rss
 
 
@@ -297,18 +310,18 @@ class Steady:
         self.sine, self.cosine = sin(inclination), cos(inclination)
         self.modes = Modes(scaled)
 
-    def settle(self, F_rss: float) -> Line:
-        """The line that holds under a force, by pivoting from no contact and no saturation."""
+    def line_at(self, F_rss: float) -> Line:
+        """The line of the regime that holds under a force, found by pivoting from no contact and no saturation."""
         free = self.modes.free()
         regime = free.settle(lambda regime: (regime.bounds(self.modes, self.eta_pi), Line(self, regime).loads(F_rss)))
         return Line(self, regime)
 
     def walk(self, start: float, stop: float) -> Iterator[tuple[Line, float, float]]:
-        """The lines that hold from one force to a larger one, each with the forces between which it does.
+        """The lines that hold from one force to a larger one, each with the two forces between which it holds.
 
-        Raises `ParameterError` if the way there has no end.
+        Raises `ParameterError` if there are more than `MOST_PIECES`.
         """
-        line, at = self.settle(start), start
+        line, at = self.line_at(start), start
         for _ in range(MOST_PIECES):
             if at >= stop:
                 return
@@ -316,10 +329,10 @@ class Steady:
             if min(end, stop) - at > ROUNDING:
                 yield line, at, min(end, stop)
             line, at = Line(self, line.regime.switch(part, side)), end
-        raise ParameterError("force_limit / F*", f"must be reached in {MOST_PIECES} pieces of the curve", stop)
+        raise ParameterError("force_limit / F*", f"must be smaller: the curve has over {MOST_PIECES} pieces", stop)
 
     def _first_met(self, line: Line, at: float) -> tuple[float, int, int]:
-        """The force, from `at` on, at which a line first meets a bound, which part's, and on which side."""
+        """The first force from `at` on at which a line meets a bound, the part that the bound is of, and its side."""
         loads = line.loads(at)
         met = (inf, 0, 0)
         for bound in line.regime.bounds(self.modes, self.eta_pi):

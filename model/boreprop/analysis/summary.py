@@ -1,4 +1,4 @@
-"""A run in a dozen numbers."""
+"""Sums up a run in about a dozen numbers."""
 
 from dataclasses import dataclass
 from math import ceil, pi
@@ -14,8 +14,8 @@ from ..run.trajectory import Trajectory
 from ..units import BUILD_LENGTH
 from .rippling import Rippling, State, find_rippling, visible_waves
 
-SHORT_WAVE, LONG_WAVE = 0.25, 1.8  # half BHAs: what ripples are between
-CHORD = np.linspace(-1.0, 0.0, 200)  # points of the existing hole under a chord: millimetres of any bend are not seen
+SHORT_WAVE, LONG_WAVE = 0.25, 1.8  # half lengths of the BHA: the usual wavelengths of ripples lie in between
+CHORD = np.linspace(-1.0, 0.0, 200)  # points of the existing hole below a chord: close enough to miss no more than mm
 
 
 @dataclass(frozen=True)
@@ -25,25 +25,27 @@ class Summary:
     Parameters
     ----------
     drilled_length
-        m.
+        The length that was drilled, m.
     averaging_length
-        Length of hole that inclinations are means over, m.
+        The length of hole over which each inclination is averaged, m.
     start_inclination, end_inclination
-        rad.
-    build_rate, largest_build_rate
-        Over the whole run, and the largest in size over any 30 m (nan in a shorter run), rad/m; positive builds.
+        Mean inclination at the first and at the last row, rad.
+    build_rate
+        Mean build rate over the whole run, rad/m; positive builds inclination.
+    largest_build_rate
+        Of the build rates over any 30 m, the one of largest magnitude, rad/m; nan in a shorter run.
     largest_contact_force
-        For each non-ideal stabilizer, in size, N, shape (n − 1,).
+        Largest magnitude of the contact force of each non-ideal stabilizer, N, shape (n − 1,).
     contact_share
-        Share of the length each non-ideal stabilizer touches a wall, shape (n − 1,).
+        Share of the drilled length over which each non-ideal stabilizer touches a wall, shape (n − 1,).
     saturation_share
-        Share of the length the bit tilt is at its limit.
+        Share of the drilled length over which the bit tilt is at its limit.
     rippling
-        Whether it ends rippling, with what wave.
+        Whether the run ends rippling, and with what wave.
     hidden_waves
-        Why waves that this BHA may make would not show, "" if they would.
+        Which waves that this BHA may make cannot be seen in the rows of the run, and what to do; empty if none.
     stopped
-        Why the run ended before its end, if it did.
+        The reason why the run ended early; None if it reached its end.
     """
 
     drilled_length: float
@@ -61,12 +63,17 @@ class Summary:
 
 
 def summarize(trajectory: Trajectory) -> Summary:
-    """Sum up a run.
+    """Sum up a run: inclinations, build rates, contacts, saturation and rippling.
 
     Parameters
     ----------
     trajectory
-        With its case, of at least two rows.
+        A run of at least two rows, with its case.
+
+    Returns
+    -------
+    Summary
+        The figures, in SI units.
 
     Raises
     ------
@@ -85,7 +92,7 @@ def summarize(trajectory: Trajectory) -> Summary:
 
 
 def sum_up(trajectory: Trajectory, rippling: Rippling) -> Summary:
-    """`summarize` a run whose rippling is known."""
+    """`summarize` a run of which `find_rippling` or `last_wave` has found the rippling."""
     case = case_of(trajectory)
     length = trajectory["drilled_length"]
     over = averaging_length(case.bha, rippling)
@@ -117,9 +124,10 @@ def sum_up(trajectory: Trajectory, rippling: Rippling) -> Summary:
 
 
 def averaging_length(bha: BottomHoleAssembly, wave: Rippling) -> float:
-    """The length of hole that a summary averages inclinations over, m.
+    """The length of hole over which a summary averages inclinations, m.
 
-    Half the BHA, whichever of its blades touch; where a wave lasts, the next whole number of wavelengths.
+    It is half the length of the BHA, whichever stabilizers touch the wall; where a wave lasts, the smallest whole
+    number of wavelengths that is at least as long.
     """
     if wave.state in (State.NONE, State.DYING):
         return bha.half_length
@@ -127,29 +135,29 @@ def averaging_length(bha: BottomHoleAssembly, wave: Rippling) -> float:
 
 
 def hidden_waves(length: Floats, bha: BottomHoleAssembly) -> str:
-    """Which waves the rows of a run are too far apart, or the run is too short, to show; "" if none that matter."""
+    """The waves that rows too far apart, or a run too short, hide; empty if none of those that this BHA may make."""
     shortest, longest = visible_waves(length)
     hidden = []
     if shortest > SHORT_WAVE * bha.half_length:
-        hidden.append(f"under {shortest:.2g} m: take rows closer together")
+        hidden.append(f"under {shortest:.2g} m: take rows closer together (--sample-interval)")
     if longest < LONG_WAVE * bha.half_length:
-        hidden.append(f"over {longest:.3g} m: drill further")
+        hidden.append(f"over {longest:.3g} m: drill further (--length)")
     return ", ".join(hidden)
 
 
 def mean_inclination(run: Trajectory, survey: Survey, over: float) -> Floats:
-    """The inclination of the chord over the last `over`, m, of the hole at each row of a run, rad, shape (rows,).
+    """The inclination at each row of a run of the chord to the hole `over` metres behind, rad, shape (rows,).
 
-    The run starts at the end of the survey, above which the hole goes on straight.
+    The run starts at the end of the survey; above the first station of the survey the hole is straight.
     """
     before = over * CHORD
     stations = np.array(survey.measured_depth) - survey.measured_depth[-1]
     turns = np.interp(before[1:] + before[-2] / 2, stations, survey.inclination)
-    existing = np.cumsum(np.exp(1j * turns)) * (over / (len(before) - 1))  # down + i sideways
+    existing = np.cumsum(np.exp(1j * turns)) * (over / (len(before) - 1))  # positions: depth + i displacement
     length, drilled = run["drilled_length"], run["true_vertical_depth"] + 1j * run["displacement"]
     at = np.concatenate((before, length))
     axis = np.concatenate(([0.0], existing, existing[-1] + drilled))
     chord = axis[-len(length) :] - np.interp(length - over, at, axis)
     inclination: Floats = np.arctan2(chord.imag, chord.real)
     turns = np.abs(inclination[1:] - inclination[:-1])
-    return np.unwrap(inclination) if turns.max(initial=0.0) > pi else inclination  # seldom: a hole past straight up
+    return np.unwrap(inclination) if turns.max(initial=0.0) > pi else inclination  # unwrap only a hole past vertical

@@ -1,12 +1,10 @@
-"""How large a dogleg in the existing hole a drilling system forgives before it ripples.
+"""Finds the smallest dogleg in the existing hole that starts rippling.
 
-Straight drilling and rippling coexist: which of the two it comes to depends on the hole there is. `critical_dogleg`
-asks that of a family of holes,
+A system may drill a straight hole or a rippling one, depending on the existing hole. `critical_dogleg` tries a family
+of existing holes: each is straight, at the inclination that the case's hole has half the length of the BHA behind the
+bit, and then turns at a constant rate by an angle, its dogleg, over the last half length before the bit.
 
-    straight at the inclination of the case's hole half a BHA behind the bit, then turning evenly by an angle, its
-    dogleg, over that half of the BHA before the bit.
-
-Half the BHA, whichever of its blades touch, is the length that everything here is measured in.
+Lengths here are measured in half lengths of the BHA, which do not depend on which stabilizers touch the wall.
 """
 
 from collections.abc import Callable
@@ -37,45 +35,46 @@ from .stability.roots import critical_eta_pi
 from .study.design import vary
 from .waves import without_trend
 
-ROWS = 50  # per half BHA: a wave of the paper has 70, …
-LARGEST_INTERVAL = 0.1  # … but no further apart than this, m: a wave of near-bit stabilizers is a metre long
-FIRST_CHECK = 8.0  # half BHAs before a run is looked at: the start itself takes that long to pass the BHA four times
-LATER = 1.25  # each check comes after so many times the length of the one before: a run is a quarter too long at most
-EARLIEST = 30.0  # half BHAs before a ripple is believed: of those at 20, one in ten is an echo of the start
-LONGEST = 120.0  # half BHAs before it is taken for steady: chaotic ripples may never be
-FALLING = -0.002  # change of the size per wave: a wave that falls faster may yet die out, …
-RISING = 0.01  # … and one that rises faster is still starting
-STRAIGHT = radians(0.003)  # what a straight hole keeps of the start: far below any ripple that lasts, …
-STRAIGHT_OVER = 4.0  # … over so many half BHAs: the two BHAs that the bit feels
-LARGEST_DOGLEG = radians(10.0)  # in half a BHA: no collar passes through a sharper turn
-SCAN = 6  # doglegs tried first, each half of the one before: down to 0.3°, a usual survey's accuracy
-SMALL = 11  # the same where the straight hole ripples by itself: does it after the smallest turns, too?
-TOLERANCE = 0.02  # of the critical dogleg: far less than anybody knows the hole
-FINEST = radians(0.001)  # what tips at less is tipped by any dogleg
+ROWS = 50  # rows in half a length of the BHA: a wave of the paper's case has 70, …
+LARGEST_INTERVAL = 0.1  # m, … and the largest distance between rows: with a stabilizer near the bit a wave is 1 m long
+FIRST_CHECK = 8.0  # half lengths drilled before the first check: the starting point has then passed the BHA four times
+LATER = 1.25  # each check comes at this many times the length of the last, so a run is at most a quarter too long
+EARLIEST = 30.0  # half lengths before a ripple is accepted: of those at 20, one in ten is an echo of the start
+LONGEST = 120.0  # half lengths after which a run counts as steady: chaotic ripples may never become so
+FALLING = -0.002  # growth per wave: a wave that falls faster may yet die out, …
+RISING = 0.01  # … and one that rises faster has not reached its size yet
+STRAIGHT = radians(0.003)  # a deviation from the trend this small is a straight hole: far below any lasting ripple, …
+STRAIGHT_OVER = 4.0  # … over this many half lengths: two BHAs
+LARGEST_DOGLEG = radians(10.0)  # over half a length of the BHA: no drill collar passes through a sharper turn
+SCAN = 6  # doglegs tried first, each half of the last: from 10° down to 0.3°, the accuracy of a usual survey
+SMALL = 11  # the same if the straight hole ripples by itself, to see whether it also does after the smallest turns
+TOLERANCE = 0.02  # relative, of the critical dogleg: no hole is surveyed as precisely
+FINEST = radians(0.001)  # a critical dogleg below this counts as zero
 
 
 def drill_until_steady(case: Case, *, relative_tolerance: float = RELATIVE_TOLERANCE) -> tuple[Trajectory, Rippling]:
-    """Drill a case under its first steering force until it plainly ripples or plainly does not.
+    """Drill a case under its first steering force until it clearly ripples or clearly does not.
 
-    It does not when over two BHAs less than 0.003° is left of the start, or when its wave dies out and changes no
-    contact and no saturation any more, so nothing can keep it up. It does when its waves last, lose less than 0.2 %
-    from one to the next, and at least 15 lengths of the BHA are drilled. After 60 lengths it does unless
-    its waves still fall by more.
+    It does not ripple if, over two lengths of the BHA, the inclination deviates from its trend by less than ±0.003°, or
+    if there is a wave that dies out and changes no contact and no saturation, so that nothing can sustain it. It
+    ripples if its waves last, lose less than 0.2 % and gain less than 1 % of their size from one to the next, and at
+    least 15 lengths of the BHA are drilled. After 60 lengths it ripples unless its waves still fall faster.
 
-    In an inclined hole gravity changes the inclination on the way: the answer is for where it starts. With several
-    stabilizers a ripple may be chaotic, and some of those die out after hundreds of BHAs, when nobody can tell before.
+    In an inclined hole gravity changes the inclination as the hole is drilled; the answer is for the inclination at the
+    start. With several stabilizers a ripple may be chaotic, and some chaotic ripples die out after hundreds of BHA
+    lengths, which cannot be foreseen.
 
     Parameters
     ----------
     case
-        What is drilled; its length does not matter.
+        What is drilled; its length has no influence.
     relative_tolerance
-        Of the integrator.
+        Error allowed in one step of the integrator, see `simulate`.
 
     Returns
     -------
     run, rippling
-        What was drilled, and the wave that it ends with.
+        The run, and the wave with which it ends.
 
     Raises
     ------
@@ -97,11 +96,11 @@ def drill_until_steady(case: Case, *, relative_tolerance: float = RELATIVE_TOLER
 
 @dataclass
 class _OpenEndedRun:
-    """A case that is drilled further and further, with its rows so far."""
+    """A case that is drilled ever further, with its rows so far."""
 
     case: Case
     drilling: Engine
-    interval: float  # m between two rows
+    interval: float  # distance between rows, m
     names: list[str]
     rows: Floats
 
@@ -126,33 +125,33 @@ class _OpenEndedRun:
 
 
 def _is_steady(run: Trajectory, wave: Rippling, half: float) -> bool:
-    """Whether more of a run would not tell more of it."""
+    """Whether a run has been drilled long enough to say whether it ripples."""
     drilled = run["drilled_length"][-1]
     if wave.ripples:
         return drilled >= EARLIEST * half and FALLING < wave.growth * wave.wavelength < RISING
     if wave.state is State.NONE:
         recent = run["drilled_length"] >= drilled - STRAIGHT_OVER * half
-        left = without_trend(run["drilled_length"][recent], run["borehole_inclination"][recent])
-        return float(np.ptp(left)) / 2 < STRAIGHT
+        deviation = without_trend(run["drilled_length"][recent], run["borehole_inclination"][recent])
+        return float(np.ptp(deviation)) / 2 < STRAIGHT
     return wave.switching is False
 
 
 @dataclass(frozen=True)
 class CriticalDogleg:
-    """The smallest dogleg that tips a system over.
+    """The smallest dogleg that starts rippling.
 
     Parameters
     ----------
     angle
-        The turn of the hole over the last half of the BHA, rad: half-way between the smallest that tips, of those
-        tried, and the next smaller one. 0 if the straight hole ripples by itself or as soon as it turns by 0.001°, inf
-        if no turn up to the limit tips it.
+        The turn of the hole over the last half length of the BHA, rad: half-way between the smallest tried that starts
+        rippling and the next smaller one tried. 0 if the straight hole ripples by itself or after a turn of 0.001°, inf
+        if no turn up to the limit starts rippling.
     curvature
-        The same as a dogleg severity, rad/m.
+        The angle over half the length of the BHA, as a dogleg severity, rad/m.
     monotonic
-        False if a larger turn, of those tried, does not tip it.
+        Whether all larger turns that were tried start rippling, too.
     tried
-        (turn, whether it ripples) in order of the turn: one simulation each.
+        Each turn that was tried, rad, increasing, and whether the system ripples after it: one simulation each.
     """
 
     angle: float
@@ -168,7 +167,7 @@ def with_dogleg(case: Case, turn: float) -> Case:
     """
     half, depth = case.bha.half_length, case.survey.measured_depth
     behind = float(np.interp(depth[-1] - half, depth, case.survey.inclination))
-    return replace(case, survey=Survey((0.0, half), (behind, behind + float(turn))))  # numpy's own slow the core down
+    return replace(case, survey=Survey((0.0, half), (behind, behind + float(turn))))  # numpy's floats slow the core
 
 
 def critical_dogleg(
@@ -179,25 +178,31 @@ def critical_dogleg(
     tolerance: float = TOLERANCE,
     relative_tolerance: float = RELATIVE_TOLERANCE,
 ) -> CriticalDogleg:
-    """The smallest dogleg in the existing hole from which a system ripples.
+    """Find the smallest dogleg in the existing hole that starts rippling.
 
-    The straight hole and turns of `limit`, a half of it, … to 1/32 are tried first, and down to 1/1024 where the
-    straight hole ripples by itself; the interval below the smallest that tips is then halved (in proportion). In an
-    inclined hole gravity disturbs even the straight one, and the inclination changes on the way; the answer is
-    for where it starts.
+    Tried first are the straight hole and turns of `limit`, of half of it, … down to 1/32 of it; if the straight hole
+    ripples by itself, down to 1/1024. The interval below the smallest turn that starts rippling is then bisected, at
+    its geometric mean. In an inclined hole gravity disturbs even a straight hole, and the inclination changes as the
+    hole is drilled; the answer is for the inclination at the start.
 
     Parameters
     ----------
     case
-        The system, its weight on bit, its first steering force, and the inclination of its hole behind the bit.
+        The system, its weight on bit, its first steering force, and the inclination of its hole behind the bit. The
+        length has no influence.
     side
-        1: the hole turns up (builds), −1: down (drops).
+        1 if the hole turns up (builds), −1 if it turns down (drops).
     limit
-        Largest turn, rad.
+        Largest turn that is tried, rad.
     tolerance
         Width of the last interval over the turn.
     relative_tolerance
-        Of the integrator.
+        Error allowed in one step of the integrator, see `simulate`.
+
+    Returns
+    -------
+    CriticalDogleg
+        The angle over half the length of the BHA, and all turns that were tried.
 
     Raises
     ------
@@ -205,6 +210,14 @@ def critical_dogleg(
         If the limit or the tolerance is out of range.
     Stopped
         If the integrator cannot go on.
+
+    Examples
+    --------
+    >>> from math import degrees
+    >>> from boreprop import critical_dogleg, paper_case
+    >>> found = critical_dogleg(paper_case(), tolerance=0.1)
+    >>> round(degrees(found.angle), 2), found.monotonic
+    (0.42, True)
     """
     check_limits(limit, tolerance)
     tried: dict[float, bool] = {}
@@ -230,7 +243,7 @@ def critical_dogleg(
 
 
 def check_limits(limit: float, tolerance: float) -> None:
-    """Raise `ParameterError` unless the largest turn and the tolerance of a critical dogleg make sense."""
+    """Raise `ParameterError` unless the largest turn and the tolerance of a critical dogleg are in range."""
     check_number("limit", limit, above=0.0, at_most=pi / 2)
     check_number("tolerance", tolerance, above=0.0, at_most=1.0)
 
@@ -241,16 +254,16 @@ class DoglegMap:
 
     Parameters
     ----------
-    eta_pi, clearance
-        ηΠ, shape (m,), and the clearance of one stabilizer, m, shape (k,).
+    eta_pi
+        ηΠ, shape (m,).
+    clearance
+        Clearances of one stabilizer, m, shape (k,).
     stabilizer
         The number of that stabilizer, the first that can touch the wall.
-    angle
-        rad, shape (k, m); nan where a run could not go on.
-    monotonic
-        Shape (k, m).
+    angle, monotonic
+        Those fields of the critical doglegs, shape (k, m); the angle, rad, is nan where a run could not go on.
     stopped
-        Why that run stopped, "" elsewhere, shape (k, m).
+        The reason why that run stopped, elsewhere empty, shape (k, m).
     """
 
     eta_pi: NDArray[np.float64]
@@ -262,9 +275,10 @@ class DoglegMap:
 
 
 def usual_map(case: Case) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """ηΠ and clearances of the first stabilizer that can touch, m, for a map that shows where a case ripples, and it.
+    """ηΠ and clearances, m, of the first stabilizer that can touch, for a map of where a system ripples.
 
-    The ηΠ go from the case's, or less, up to where the BHA in contact no longer oscillates, or beyond the case's.
+    The map includes the case. Its ηΠ go from that of the case, or less, to where the BHA in contact no longer
+    oscillates, and at least to 1.5 times that of the case.
     """
     own = eta_pi(case.bha, case.bit, case.active_weight_on_bit)
     inclination = case.survey.inclination[-1]
@@ -290,11 +304,27 @@ def dogleg_map(
     workers: int | None = None,
     progress: Callable[[float], None] = lambda _: None,
 ) -> DoglegMap:
-    """`critical_dogleg` over ηΠ, reached by the weight, and the clearance, m, of the first stabilizer that can touch.
+    """Map `critical_dogleg` over ηΠ and the clearance of the first stabilizer that can touch the wall.
 
-    It works on `workers` processes, one for each core unless told otherwise; `boreprop.analysis.study` says what a
-    script must do for them. `progress` is called with the number of points done. A point of which a run cannot go on
-    is left out.
+    Parameters
+    ----------
+    case
+        The system.
+    eta_pi
+        ηΠ, shape (m,), reached by the weight on bit.
+    clearance
+        Clearances, m, shape (k,).
+    side, limit, tolerance, relative_tolerance
+        As in `critical_dogleg`.
+    workers
+        Number of processes; None: one for each core. A script must start them as `boreprop.study` says.
+    progress
+        Called with the number of points done.
+
+    Returns
+    -------
+    DoglegMap
+        The critical dogleg at every point. A point at which a run cannot go on has the reason instead.
 
     Raises
     ------
@@ -311,22 +341,22 @@ def dogleg_map(
     found: dict[int, CriticalDogleg | str] = {}
     with closing(work(compute, dict(enumerate(cases)), workers=workers)) as finished:
         for batch in finished:
-            found |= {key: str(one) if isinstance(one, WorkerLost) else one for key, one in batch}
+            found |= {key: str(result) if isinstance(result, WorkerLost) else result for key, result in batch}
             progress(len(found))
-    ordered = [found[key] for key in range(len(cases))]
+    points = [found[key] for key in range(len(cases))]
     shape = len(clearance), len(eta_pi)
     return DoglegMap(
         eta_pi,
         clearance,
         stabilizer,
-        angle=np.array([nan if isinstance(one, str) else one.angle for one in ordered]).reshape(shape),
-        monotonic=np.array([isinstance(one, str) or one.monotonic for one in ordered]).reshape(shape),
-        stopped=np.array([one if isinstance(one, str) else "" for one in ordered]).reshape(shape),
+        angle=np.array([nan if isinstance(point, str) else point.angle for point in points]).reshape(shape),
+        monotonic=np.array([isinstance(point, str) or point.monotonic for point in points]).reshape(shape),
+        stopped=np.array([point if isinstance(point, str) else "" for point in points]).reshape(shape),
     )
 
 
 def critical_dogleg_or_why(case: Case, **options: Any) -> CriticalDogleg | str:
-    """A `critical_dogleg`, or why a run could not go on."""
+    """The `critical_dogleg`, or the reason why a run could not go on."""
     try:
         return critical_dogleg(case, **options)
     except Stopped as error:

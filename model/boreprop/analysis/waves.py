@@ -1,6 +1,7 @@
-"""Waves at the end of a signal: how long they are, how alike, how large, and how their size changes.
+"""Waves at the end of a signal: their length, their similarity, their size and its growth.
 
-Nothing here knows what the signal is. Signals come as rows; where a function takes `x`, it may have any spacing.
+A signal is an array of rows. Where a function takes `x`, the rows may have any spacing; otherwise they are evenly
+spaced.
 """
 
 from dataclasses import dataclass
@@ -12,38 +13,38 @@ from numpy.typing import NDArray
 
 from ..arrays import Floats
 
-FEWEST_ROWS = 8  # of a wave: with fewer its steepest part lies between two rows
-FEWEST_WAVES = 5.0  # where waves are looked for: four whole ones, and a half at each end for their trend
-DEGREE = 3  # of the polynomial that is the trend while the wavelength is not known: it leaves five waves as they are
-SHALLOW = 0.8  # of a peak: an autocorrelation that has not fallen below it on the way there is a trend with noise
-AS_HIGH = 0.8  # of the highest peak: a peak as high at a shorter lag is the wavelength, the others its multiples
-FLANK = 0.15  # of a lag: how far from the top of a peak noise may make another one
-DRIFT = 0.1  # of a wavelength: how far a peak may lie from the multiple of the wavelength at which it is looked for
-ALMOST = 0.02  # of a wave: what may be missing of the last one, whose ends no rows need lie on
-LAST_LAG = 0.6  # of the rows: beyond it too few overlap
-KEPT = 64  # bases of polynomials, one for each number of rows: the cases of a study have the same few
+FEWEST_ROWS = 8  # rows in a wave: with fewer its steepest part lies between two rows
+FEWEST_WAVES = 5.0  # waves in a window: four whole ones, and half a one at each end to determine their trend
+DEGREE = 3  # of the polynomial taken as the trend before the wavelength is known: it hardly changes five waves
+SHALLOW = 0.8  # of a peak's height: an autocorrelation that stays above it up to the peak is that of a noisy trend
+AS_HIGH = 0.8  # of the highest peak: the first peak as high as this is at the wavelength, later ones at its multiples
+FLANK = 0.15  # of a lag: noise may split the top of a peak into several within this distance
+DRIFT = 0.1  # of a wavelength: a peak is searched for this far to both sides of a multiple of the wavelength
+ALMOST = 0.02  # of a wave that may be missing from the last one, since its ends need not fall on rows
+LAST_LAG = 0.6  # of the rows: at larger lags too few rows overlap
+KEPT = 64  # bases of polynomials kept, one for each number of rows: the cases of a study share a few of them
 
 Integers = NDArray[np.intp]
 
 
 def without_trend(x: Floats, signal: Floats) -> Floats:
-    """A signal less the polynomial of degree `DEGREE` in x that fits it best, shape (rows,)."""
-    return _less(_polynomials(2 * (x - x[0]) / (x[-1] - x[0]) - 1), signal)
+    """A signal less its least-squares polynomial of degree `DEGREE` in x, shape (rows,)."""
+    return _without(_polynomials(2 * (x - x[0]) / (x[-1] - x[0]) - 1), signal)
 
 
 def without_even_trend(signal: Floats) -> Floats:
-    """The same of a signal whose rows are evenly spaced."""
-    return _less(_even_polynomials(len(signal)), signal)
+    """A signal of evenly spaced rows less its least-squares polynomial of degree `DEGREE`, shape (rows,)."""
+    return _without(_even_polynomials(len(signal)), signal)
 
 
-def _less(basis: Floats, signal: Floats) -> Floats:
-    """A signal less its part in an orthonormal basis, shape (rows, k)."""
+def _without(basis: Floats, signal: Floats) -> Floats:
+    """A signal less its projection on an orthonormal basis, shape (rows, k)."""
     trend: Floats = basis @ (basis.T @ signal)
     return signal - trend
 
 
 def _polynomials(x: Floats) -> Floats:
-    """An orthonormal basis of the polynomials of degree `DEGREE` over x, from −1 to 1: shape (rows, DEGREE + 1)."""
+    """An orthonormal basis of the polynomials up to degree `DEGREE`, shape (rows, DEGREE + 1); x is from −1 to 1."""
     return np.linalg.qr(np.polynomial.legendre.legvander(x, DEGREE)).Q
 
 
@@ -53,19 +54,19 @@ def _even_polynomials(rows: int) -> Floats:
 
 
 def slope(x: Floats, y: Floats) -> float:
-    """The slope of the least-squares line through points, shape (rows,) each."""
+    """Slope of the least-squares line through the points (x, y), shape (rows,) each."""
     away = x - x.mean()
     return float(away @ y / (away @ away))
 
 
 def autocorrelation(signal: Floats, lags: int) -> Floats:
-    """Correlation of a signal with itself `lag` rows ago, for lag = 0, 1, …, `lags` − 1, fewer than the rows.
+    """Correlation of a signal, shape (rows,), with itself shifted by 0, 1, …, `lags` − 1 rows, shape (lags,).
 
-    The signal is evenly spaced, shape (rows,). Each lag is taken over the rows that overlap: a wave that grows or dies
-    has 1 at its wavelength, like one that lasts.
+    There are fewer lags than rows. Each correlation is normalized over the rows that overlap, so a wave that grows or
+    dies has 1 at its wavelength, like one that lasts.
     """
     rows = len(signal)
-    padded = 2 ** (rows + lags - 1).bit_length()  # scipy.fft takes as long, and half a second more to import
+    padded = 2 ** (rows + lags - 1).bit_length()  # numpy's FFT: scipy's is no faster and takes longer to import
     spectrum = np.fft.rfft(signal, padded)
     products = np.fft.irfft(spectrum.real**2 + spectrum.imag**2, padded)[:lags]
     energy = np.concatenate(([0.0], np.cumsum(signal**2)))
@@ -76,9 +77,9 @@ def autocorrelation(signal: Floats, lags: int) -> Floats:
 
 
 def likeness(signal: Floats, lag: float) -> float:
-    """How alike a signal and itself `lag` rows ago are: the `autocorrelation` there, 1 for a wave of that length.
+    """The autocorrelation of a signal near a lag, in rows: 1 for a wave of that length.
 
-    The highest at the three whole numbers of rows about `lag`.
+    It is the highest of those at the three whole numbers nearest to `lag`.
     """
     near = round(lag)
     if len(signal) <= near + 2:
@@ -87,16 +88,16 @@ def likeness(signal: Floats, lag: float) -> float:
 
 
 def _correlation(late: Floats, early: Floats) -> float:
-    """Of two signals about zero, shape (rows,) each; 0 if one is nothing but zero."""
+    """The correlation of two signals of mean zero, shape (rows,) each; 0 if one of them is zero everywhere."""
     scale = float((late @ late) * (early @ early)) ** 0.5
     return float(late @ early) / scale if scale else 0.0
 
 
 def wavelength_in_rows(signal: Floats) -> tuple[float, float]:
-    """The wavelength of a signal without trend, in rows, and the autocorrelation there; (nan, 0) if nothing comes back.
+    """The wavelength of a signal without trend, in rows, and the autocorrelation there; (nan, 0) if there is no wave.
 
-    It is the shortest lag of a high peak of the autocorrelation, of at least `FEWEST_ROWS` and at most a
-    `FEWEST_WAVES`-th of the rows; the peaks at two, four, … times that lag tell it ever better.
+    The wavelength is the shortest lag at which the autocorrelation has a high peak, from `FEWEST_ROWS` to the number of
+    rows over `FEWEST_WAVES`. The peaks at two, four, … times that lag then determine it ever more precisely.
     """
     rows = len(signal)
     longest = int(rows / FEWEST_WAVES)
@@ -122,16 +123,17 @@ def wavelength_in_rows(signal: Floats) -> tuple[float, float]:
 
 
 def _summit(values: Floats, top: int) -> float:
-    """Where the parabola through the highest of some values and its neighbours is highest."""
+    """The index, not whole, of the vertex of the parabola through the value at `top` and its two neighbours."""
     before, here, after = values[top - 1 : top + 2].tolist()
     bend = before - 2 * here + after
     return top + min(max((before - after) / (2 * bend), -0.5), 0.5) if bend < 0 else top
 
 
 def mean_over(x: Floats, y: NDArray[Any], width: float) -> tuple[slice, NDArray[Any]]:
-    """The mean of `y`, real or complex, over `width` around each x: which x have as much on both sides, and the means.
+    """The mean of `y`, real or complex, over the interval of a given width around each x.
 
-    Over one wavelength it keeps nothing of a wave and of its harmonics. x increases, shape (rows,).
+    x increases, shape (rows,). Returned are the slice of those x whose whole interval has data, and the means there. A
+    mean over one wavelength removes a wave and all its harmonics.
     """
     if not len(x):
         return slice(0), y
@@ -145,7 +147,7 @@ def mean_over(x: Floats, y: NDArray[Any], width: float) -> tuple[slice, NDArray[
 
 
 def large_since(x: Floats, y: Floats, wavelength: float, least: float) -> float:
-    """The x from which on the root mean square of a wave, over each wavelength, has been at least `least`."""
+    """The x from which on the root mean square of a wave over one wavelength is at least `least`."""
     inside, trend = mean_over(x, y, wavelength)
     at = x[inside]
     inside, square = mean_over(at, (y[inside] - trend) ** 2, wavelength)
@@ -155,16 +157,16 @@ def large_since(x: Floats, y: Floats, wavelength: float, least: float) -> float:
 
 @dataclass(frozen=True)
 class LastWaves:
-    """The last whole waves of a signal, less its mean over one wavelength.
+    """The last whole waves of a signal, about a trend that is its mean over one wavelength.
 
     Parameters
     ----------
     wavelength
-        In the unit of x.
+        The wavelength, in the unit of x.
     x, deviation, trend
-        The rows of these waves: their place, the signal less its trend, and the trend, shape (rows,) each.
+        At the rows of these waves: x, the signal less its trend, and the trend, shape (rows,) each.
     count
-        How many waves there are.
+        The number of waves.
     """
 
     wavelength: float
@@ -175,7 +177,7 @@ class LastWaves:
 
     @classmethod
     def of(cls, x: Floats, y: Floats, wavelength: float, most: int) -> "LastWaves":
-        """Of a signal that increases in x; at most `most` of them, and perhaps none."""
+        """The last waves of a signal y over increasing x: at most `most`, perhaps none."""
         first = int(np.searchsorted(x, x[-1] - (most + 1 + ALMOST) * wavelength)) - 1
         x, y = x[max(first, 0) :], y[max(first, 0) :]
         inside, trend = mean_over(x, y, wavelength)
@@ -188,13 +190,13 @@ class LastWaves:
 
     @cached_property
     def place(self) -> Floats:
-        """Of each row, in waves from the start of the first one."""
+        """The position of each row, in wavelengths from the start of the first wave, shape (rows,)."""
         place: Floats = self.count - (self.x[-1] - self.x) / self.wavelength
         return place
 
     @cached_property
     def wave(self) -> Integers:
-        """The wave that each row is of, from 0."""
+        """The number of the wave to which each row belongs, from 0, shape (rows,)."""
         return np.minimum(self.place.astype(np.intp), self.count - 1)
 
     @cached_property
@@ -204,7 +206,7 @@ class LastWaves:
         return np.sqrt(np.bincount(self.wave, self.deviation**2, self.count) / rows)
 
     def growth(self) -> tuple[float, float]:
-        """Change of the logarithm of the size from wave to wave, by least squares, and twice its standard error."""
+        """The growth per wave of the logarithm of the size, by least squares, and twice its standard error."""
         middle = np.arange(self.count) - (self.count - 1) / 2
         square = float(middle @ middle)
         logarithm = np.log(np.maximum(self.sizes, 1e-6 * self.sizes.max()))
@@ -213,10 +215,10 @@ class LastWaves:
         return rate, 2 * float(residual @ residual / self.count / (square * (1 - 2 / self.count))) ** 0.5
 
     def height(self, deviation: Floats | None = None) -> float:
-        """Between the highest and the lowest of the mean wave, of the deviation or of other values at the same rows.
+        """The height from trough to crest of the mean wave, of the deviation or of other values at the same rows.
 
-        The rows of all waves in order of phase, each the mean of as many neighbours as half the waves: a wave may have
-        steps, whose edges a mean over more of it would round.
+        The mean wave is made of the rows of all waves in order of phase, each replaced by the mean of as many
+        neighbours as half the number of waves. A wave may have steps, whose edges more neighbours would round.
         """
         values = self.deviation if deviation is None else deviation
         folded = values[np.argsort(self.place - self.wave, kind="stable")]
@@ -226,11 +228,11 @@ class LastWaves:
         return float(means.max() - means.min()) / neighbours
 
     def starts(self) -> Floats:
-        """Where the waves rise through zero without their harmonics, in the unit of x: one more than there are lengths.
+        """The x at which the waves, freed of their harmonics, rise through zero.
 
-        Of their trend only the polynomial is taken off: it keeps nothing of waves of two lengths in turn.
-
-        A mean over half a wavelength keeps nothing of the even harmonics, one over a third of it nothing of each third.
+        A mean over half a wavelength removes the even harmonics, one over a third of it every third harmonic. Of the
+        trend only its polynomial part is removed: the full trend would also remove the difference between waves of two
+        alternating lengths.
         """
         x, smooth = self.x, self.deviation + without_trend(self.x, self.trend)
         for part in (2, 3):

@@ -1,1 +1,1 @@
-"""Cases: what is drilled, and the files that say so."""
+"""Cases, which say what is drilled, and their files."""

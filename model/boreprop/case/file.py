@@ -1,7 +1,7 @@
-"""A case: what is drilled, with what, from where, under which steering force. Read from and written to TOML.
+"""Reads and writes case files, which are TOML.
 
-The file speaks the field's language (long names, degrees), a `Case` the core's (SI, radians). The table of quantities
-says which key of the file is which field of the case.
+A file has angles in degrees, a `Case` in radians. The table of quantities says which key of the file is which field of
+the case.
 """
 
 import tomllib
@@ -19,7 +19,40 @@ from .schema import TABLES, parse
 
 
 def load_case(path: str | Path) -> Case:
-    """Read a case file; `InputError` if it cannot be read or breaks a constraint."""
+    r"""Read a case file.
+
+    Parameters
+    ----------
+    path
+        The TOML file. Files that it names (a survey, a schedule) are looked up relative to its directory.
+
+    Returns
+    -------
+    Case
+        What is drilled, in SI units.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, a key is missing or unknown, or a value breaks its constraint. The message names file,
+        key, constraint and value.
+
+    Examples
+    --------
+    A file that lacks a table is refused, in one line:
+
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from boreprop import BorepropError, load_case
+    >>> with TemporaryDirectory() as directory:
+    ...     path = Path(directory, "case.toml")
+    ...     _ = path.write_text("[drilling]\nlength = 100.0\nactive_weight_on_bit = 6e4\n")
+    ...     try:
+    ...         load_case(path)
+    ...     except BorepropError as error:
+    ...         print(str(error).partition("case.toml: ")[2])
+    bha: must be given, got nothing (and 3 more)
+    """
     try:
         text = Path(path).read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
@@ -28,25 +61,25 @@ def load_case(path: str | Path) -> Case:
 
 
 def parse_case(text: str, source: str | Path) -> Case:
-    """The case that `text` (TOML) describes.
+    """The case that the text of a case file describes.
 
     Parameters
     ----------
     text
-        The content of a case file.
+        The content of the file, TOML.
     source
-        Its path: named in errors, and the files that it refers to are looked up beside it.
+        The path of the file. Errors name it, and files that the text names are looked up relative to its directory.
 
     Raises
     ------
     InputError
-        If the text is no TOML, breaks a constraint, or refers to a file that does.
+        If the text, or a file that it names, is malformed or breaks a constraint.
     """
     return parse(text, Path(source))
 
 
 def read_run(text: str) -> dict[str, str]:
-    """What the text of a case file says of a run of the case: see `dump_case`. Nothing, if it is no case file."""
+    """The table [run] of a case file, which `dump_case` wrote; empty if the text has none or is not TOML."""
     try:
         run = tomllib.loads(text).get("run", {})
         return {key: str(value) for key, value in run.items()}
@@ -55,15 +88,15 @@ def read_run(text: str) -> dict[str, str]:
 
 
 def dump_case(case: Case, **run: str | None) -> str:
-    """`case` as the text of a case file that refers to no other file; `parse_case` gives the same case back.
+    """The text of a case file that names no other file. `parse_case` gives the same case back.
 
     Parameters
     ----------
     case
-        What to write.
+        The case to write.
     run
-        What to say of a run of it: ``engine``, and ``stopped``, why it stopped before its end. `read_run` gives that
-        back.
+        Facts about a run of the case, written to the table [run]: ``engine``, and ``stopped``, the reason why the run
+        ended early. None is not written. `read_run` gives them back.
     """
     document: dict[str, dict[str, Any]] = {table: {} for table in TABLES if table != "run"}
     for quantity in QUANTITIES:
@@ -72,13 +105,13 @@ def dump_case(case: Case, **run: str | None) -> str:
             value = attrgetter(quantity.field)(case)
             written = _file_degrees if key.endswith("_deg") else float
             document[table][key] = list(map(written, value)) if isinstance(value, tuple) else written(value)
-    told = {key: text for key, text in run.items() if text is not None}
-    if told:
-        document["run"] = told
+    facts = {key: text for key, text in run.items() if text is not None}
+    if facts:
+        document["run"] = facts
     return tomli_w.dumps(document)
 
 
 def _file_degrees(angle: float) -> float:
-    """The degrees that a person would have written for `angle`, rad, if there are such; else the nearest."""
+    """`angle`, rad, in degrees: a number of ten decimals or fewer if that reads back as the same angle."""
     short = round(degrees(angle), 10)
     return short if radians(short) == angle else degrees(angle)

@@ -11,17 +11,34 @@ FLEXURAL_STIFFNESS = 7.2e6  # N·m²
 
 
 def paper_case(tilt_limit: float = radians(2.0), clearance: float = 1e-3) -> Case:
-    """The paper's drilling system at ηΠ = 0.01 in an almost vertical hole, without steering.
+    """The paper's drilling system (section VI) at ηΠ = 0.01 in an almost vertical hole, without steering: it ripples.
 
-    The paper prints no ε and no existing hole; ε = 0.1 reproduces its stability limit ηΠ = 0.147, and the hole turns
-    from vertical to 0.5° over the last ℓ₁.
+    The paper prints neither ε nor the existing hole. ε = 0.1 reproduces its stability limit ηΠ = 0.147. The existing
+    hole is chosen here: vertical, then turning to 0.5° over the last ℓ₁ before the bit.
 
     Parameters
     ----------
     tilt_limit
-        ψ*, rad.
+        ψ*, the limit of the bit tilt, rad.
     clearance
-        y* of the first stabilizer, over ℓ₁.
+        y*, the clearance of the first stabilizer over ℓ₁, dimensionless.
+
+    Returns
+    -------
+    Case
+        The case, 60 ℓ₁ long.
+
+    Raises
+    ------
+    ParameterError
+        If a value is out of range.
+
+    Examples
+    --------
+    >>> from boreprop import paper_case
+    >>> case = paper_case(clearance=2e-3)
+    >>> case.bha.stabilizer_positions, case.bha.stabilizer_clearances
+    ((3.66, 7.32), (0.00732,))
     """
     l1 = LENGTH_SCALE
     return Case(

@@ -1,4 +1,4 @@
-"""Flat names ↔ a case: the one mapping between ``stabilizer_position[2]`` and the `Case` that has it."""
+"""The mapping between scalar names such as ``stabilizer_position[2]`` and the fields of a `Case`."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -7,13 +7,14 @@ from ..core.quantities import INPUTS, PARAMETERS, fields_of, scalar_names, value
 from ..errors import InputError
 from .case import Case, Schedule
 
-PARTS = ("bha", "bit")  # of a case, which have parameters
+PARTS = ("bha", "bit")  # the fields of a case that are dataclasses of parameters
 
 
 def parameters(case: Case) -> dict[str, float]:
     """The inputs and parameters of a case by the scalar names of the table of quantities, SI units, in its order.
 
-    The force is the first one of the schedule. What no case has (the rate of penetration) is not among them.
+    "rss_force" is the first force of the schedule. Quantities that a case does not have, such as the rate of
+    penetration, are left out.
     """
     values = values_of("", case) | values_of("schedule", case.schedule)
     for part in PARTS:
@@ -28,14 +29,14 @@ def with_parameters(case: Case, values: Mapping[str, float]) -> Case:
     Parameters
     ----------
     case
-        What all else is taken from.
+        The case to start from.
     values
-        Names of `parameters` → values, SI units. A "rss_force" acts from the start to the end, instead of the schedule.
+        Scalar name, see `parameters` → value in SI units. An "rss_force" replaces the schedule by a constant force.
 
     Raises
     ------
     InputError
-        If there is no parameter of a name.
+        If a name is not among those of `parameters`.
     ParameterError
         If a value is out of range.
     """

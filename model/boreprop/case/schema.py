@@ -1,4 +1,7 @@
-"""What a case file must look like: the table of quantities has its keys, the dataclasses of the core their types."""
+"""Checks a case file and makes a `Case` of it.
+
+The keys are those of the table of quantities; the types are those of the dataclasses that make up a `Case`.
+"""
 
 import json
 import tomllib
@@ -24,12 +27,12 @@ from .tables import read_schedule, read_survey
 Document = dict[str, dict[str, Any]]  # table → key → value
 
 BY_KEY = {quantity.key: quantity for quantity in QUANTITIES if quantity.key}
-TABLES = ("bha", "bit", "drilling", "hole", "rss", "run")  # in the order in which a file has them
+TABLES = ("bha", "bit", "drilling", "hole", "rss", "run")  # of a file, in the order in which they are written
 OF_FILES: dict[str, tuple[str, Callable[[Path], Survey | Schedule]]] = {
     "hole.survey": ("survey", read_survey),
     "rss.schedule": ("schedule", read_schedule),
 }
-"""Key that names a file of columns → the part of a `Case` that they are, and what reads them."""
+"""Key that names a CSV file → the field of a `Case` that the file holds, and the function that reads it."""
 
 _CASE = TypeAdapter(Case)
 
@@ -43,16 +46,19 @@ def parse(text: str, source: Path) -> Case:
     check_keys(document, source)
     fields = case_fields(document) | read_files(document, source)
     try:
-        # as JSON, in which strict types still make a dataclass of a table and a tuple of a list
+        # Validated as JSON: there, even strict types accept an object for a dataclass and an array for a tuple.
         return _CASE.validate_json(json.dumps(fields, default=str), strict=True)
     except ValidationError as error:
         errors = error.errors(include_url=False)
         more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
-        raise InputError(f"{source}: {_told(errors[0], document)}{more}") from error
+        raise InputError(f"{source}: {_message(errors[0], document)}{more}") from error
 
 
 def check_keys(document: dict[str, Any], source: Path) -> None:
-    """Raise `InputError` unless all keys are known, texts are texts, and columns are here or in a file, not both."""
+    """Raise `InputError` unless every key exists, and columns stand either in the case file or in a file that it names.
+
+    Keys whose values are texts are checked for their type too; pydantic checks all other types.
+    """
     for table, content in document.items():
         if table not in TABLES:
             raise InputError(f"{source}: {table}: {_unknown(table)}, got {shown(content)}")
@@ -73,7 +79,7 @@ def check_keys(document: dict[str, Any], source: Path) -> None:
 
 
 def case_fields(document: Document) -> dict[str, Any]:
-    """What a file says, as the fields of a `Case` and of its parts, in SI units."""
+    """The values of a case file as the fields of a `Case` and of its parts, in SI units."""
     fields: dict[str, Any] = {}
     for table, content in document.items():
         for key, value in content.items():
@@ -85,7 +91,7 @@ def case_fields(document: Document) -> dict[str, Any]:
 
 
 def read_files(document: Document, source: Path) -> dict[str, Any]:
-    """The same of the columns that are in files of their own, which are looked up beside the case file."""
+    """The fields of a `Case` whose columns stand in files of their own, looked up beside the case file."""
     fields = {}
     for where, (part, read) in OF_FILES.items():
         table, _, key = where.partition(".")
@@ -95,7 +101,7 @@ def read_files(document: Document, source: Path) -> dict[str, Any]:
 
 
 def _unknown(key: str) -> str:
-    """That a key is not known, with the one that may be meant, by its name in the file or in the model."""
+    """The constraint that an unknown key breaks, with the key that was probably meant."""
     names = {table: table for table in TABLES}
     for where, quantity in BY_KEY.items():
         names |= {quantity.name: where, quantity.attribute: where, where.partition(".")[2]: where}
@@ -104,7 +110,7 @@ def _unknown(key: str) -> str:
 
 
 def _radians(value: Any) -> Any:
-    """Degrees in radians; what is no number, or too large for one, is left for the check of types to find."""
+    """Degrees in radians. Anything but a number of usual size is returned as it is: the check of types reports it."""
     if isinstance(value, list):
         return [_radians(element) for element in value]
     with suppress(OverflowError):
@@ -113,14 +119,14 @@ def _radians(value: Any) -> Any:
     return value
 
 
-def _told(error: ErrorDetails, document: Document) -> str:
-    """A wrong value as "TABLE.KEY: CONSTRAINT, got VALUE", in the words and units of the file."""
+def _message(error: ErrorDetails, document: Document) -> str:
+    """The message for a wrong value, "TABLE.KEY: CONSTRAINT, got VALUE", in the names and units of the file."""
     if error["type"] == "value_error":
         return _out_of_range(error["ctx"]["error"], document)
     field = ".".join(part for part in error["loc"] if isinstance(part, str))
     index = next((part + 1 for part in error["loc"] if isinstance(part, int)), None)
     quantity = next((quantity for quantity in BY_KEY.values() if quantity.field == field), None)
-    if quantity is None:  # a part: then its table is not there
+    if quantity is None:  # the field is a whole part of a case: its table is missing
         where = next(key for key, quantity in BY_KEY.items() if quantity.part == field).partition(".")[0]
     else:
         where = quantity.key + (f"[{index}]" if index else "")
@@ -140,7 +146,7 @@ def _out_of_range(error: ParameterError, document: Document) -> str:
 
 
 def _in_degrees(quantity: Quantity, value: Any) -> str:
-    """What the range of an angle asks of a value in degrees; empty if it is met."""
+    """The constraint that an angle in degrees breaks; empty if it breaks none."""
     bounds: dict[str, Any] = {bound: degrees(getattr(quantity, bound)) for bound in ("above", "at_least", "at_most")}
     try:
         if isinstance(value, (int, float)):
@@ -151,7 +157,7 @@ def _in_degrees(quantity: Quantity, value: Any) -> str:
 
 
 def _written(document: Document, where: str) -> Any:
-    """What the file says under "table.key" or "table.key[i]"."""
+    """The value that the file has under "table.key" or "table.key[i]"."""
     where, _, index = where.partition("[")
     table, key = where.split(".")
     value = document[table][key]

@@ -1,4 +1,4 @@
-"""Tables that people keep in files of their own: surveys and force schedules, as CSV."""
+"""Reads surveys and force schedules from CSV files."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,12 +14,12 @@ from .case import Schedule
 
 
 def read_survey(path: str | Path) -> Survey:
-    """Read a survey: a CSV file with columns measured_depth (m) and inclination_deg.
+    """Read a survey: a CSV file with the columns measured_depth (m) and inclination_deg (degrees).
 
     Raises
     ------
     InputError
-        If it cannot be read, or the depths do not increase.
+        If the file cannot be read, or the depths do not increase.
     """
     with _naming(path):
         measured_depth, inclination_deg = read_columns(path, columns_of("hole"))
@@ -27,12 +27,12 @@ def read_survey(path: str | Path) -> Survey:
 
 
 def read_schedule(path: str | Path) -> Schedule:
-    """Read a force schedule: a CSV file with columns drilled_length (m) and force (N).
+    """Read a force schedule: a CSV file with the columns drilled_length (m) and force (N).
 
     Raises
     ------
     InputError
-        If it cannot be read, does not start at 0, or the lengths do not increase.
+        If the file cannot be read, or the lengths do not start at 0 or do not increase.
     """
     with _naming(path):
         return Schedule(*read_columns(path, columns_of("rss")))
@@ -40,7 +40,7 @@ def read_schedule(path: str | Path) -> Schedule:
 
 @contextmanager
 def _naming(path: str | Path) -> Iterator[None]:
-    """Turn what is wrong with the columns of a file into an `InputError` that names the file."""
+    """Turn errors about the columns of a file into an `InputError` that names the file."""
     try:
         yield
     except TableError as error:

@@ -7,7 +7,7 @@ from .lazy import new_group
 
 COMMANDS = {  # name → module and what it does
     "simulate": ("boreprop.cli.simulate", "Simulate a case and write the run to a file."),
-    "summary": ("boreprop.cli.summary", "Print a run in a dozen numbers."),
+    "summary": ("boreprop.cli.summary", "Print a run in a dozen numbers, and whether it ripples."),
     "steering": ("boreprop.cli.steering", "Print how fast a steady steering force turns the hole, and draw it."),
     "study": ("boreprop.cli.study", "Simulate many cases on all cores: over a grid, or of uncertain parameters."),
     "dogleg": (
@@ -25,7 +25,7 @@ app = new_group("Borehole propagation of a directional drilling system.", COMMAN
 
 def main() -> NoReturn:
     """Run the command `boreprop`."""
-    console.run(app)
+    console.execute(app)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
-"""What the three commands share with the terminal: one-line errors, exit statuses, progress.
+"""One-line errors, exit statuses and progress bars, for all three commands.
 
-Bad input of any kind ends a command with exit status 2 and one line on stderr, a run that stops before its end with 3;
-Ctrl-C ends it with 130.
+Bad input of any kind ends a command with one line on stderr and exit status 2, a run that stops early with exit status
+3, and Ctrl-C with 130.
 """
 
 import os
@@ -16,7 +16,7 @@ import typer
 from ..errors import BorepropError, InputError
 
 BAD_INPUT, INTERRUPTED = 2, 130  # exit statuses
-EXTRAS = {  # a package → the extra that brings it
+EXTRAS = {  # package → the extra that installs it
     "matplotlib": "plot",
     "pyarrow": "study",
     "xarray": "study",
@@ -27,8 +27,8 @@ EXTRAS = {  # a package → the extra that brings it
 }
 
 
-def run(app: typer.Typer) -> NoReturn:
-    """Run `app` on the arguments of the process, and exit."""
+def execute(app: typer.Typer) -> NoReturn:
+    """Execute `app` with the arguments of the process, and exit."""
     try:
         sys.exit(app(standalone_mode=False))
     except typer.TyperException as error:
@@ -40,7 +40,7 @@ def run(app: typer.Typer) -> NoReturn:
         package = (error.name or "").partition(".")[0]
         if package not in EXTRAS:
             raise  # a bug
-        fail(f"{package} must be installed for this: pip install 'boreprop[{EXTRAS[package]}]', got: {error}")
+        fail(f"{package} must be installed for this, got: {error}; pip install 'boreprop[{EXTRAS[package]}]'")
     except OSError as error:
         fail(f"{error.filename}: {error.strerror}" if error.filename else str(error))
     except (KeyboardInterrupt, typer.Abort):
@@ -54,17 +54,17 @@ def fail(message: str, status: int = BAD_INPUT) -> NoReturn:
 
 
 def warn(message: str) -> None:
-    """Tell of something that is not as asked, on one line of stderr; the command goes on."""
+    """Print `message` as a warning on one line of stderr; the command continues."""
     print("warning:", " ".join(message.split()), file=sys.stderr)
 
 
 def check_output(path: str | Path, suffixes: tuple[str, ...] = ()) -> Path:
-    """`path`, if a file of that name could be written: called before the work, so that the work is not for nothing.
+    """Check before the work that the file `path` can be written; return it.
 
     Raises
     ------
     InputError
-        If the name does not end in one of `suffixes`, its directory cannot be written to, or it is a directory itself.
+        If the path does not end in one of `suffixes`, its directory cannot be written to, or it is a directory.
     """
     path = Path(path)
     if suffixes and path.suffix not in suffixes:
@@ -78,14 +78,11 @@ def check_output(path: str | Path, suffixes: tuple[str, ...] = ()) -> Path:
 
 @contextmanager
 def progress(description: str, total: float) -> Iterator[Callable[[float], None]]:
-    """A progress bar on stderr; yields the function that takes the amount completed so far, of `total`.
-
-    Nothing is shown where stderr is not a terminal.
-    """
+    """Show a progress bar on stderr, if that is a terminal. Yields a function that takes the part of `total` done."""
     if not sys.stderr.isatty():
         yield lambda _: None
         return
-    from rich.console import Console  # here: rich takes longer to load than a short run to compute
+    from rich.console import Console  # imported here, since importing rich takes longer than a short run
     from rich.progress import Progress
 
     with Progress(console=Console(stderr=True), transient=True) as bar:

@@ -10,7 +10,7 @@ from . import console
 
 
 def figures_command(
-    output: Annotated[Path, typer.Argument(metavar="OUT/", help="The directory to put them in.")],
+    output: Annotated[Path, typer.Argument(metavar="OUT/", help="The directory to write them to.")],
 ) -> None:
     """Draw the paper's figures 6, 7 and 8 (PNG)."""
     output.mkdir(parents=True, exist_ok=True)

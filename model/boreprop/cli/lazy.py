@@ -1,4 +1,4 @@
-"""Applications whose commands are loaded when they are called: help and mistakes cost nothing that a command needs."""
+"""Applications that import a command only when it is called, so that help and mistakes are answered fast."""
 
 from collections.abc import Mapping
 from importlib import import_module
@@ -11,7 +11,7 @@ from .options import Version
 
 
 def new_app(description: str) -> typer.Typer:
-    """An application with one command, which is added to it; `console.run` starts it."""
+    """An application to which one command is to be added; `console.execute` starts it."""
     return typer.Typer(help=description, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
@@ -23,7 +23,7 @@ def new_group(description: str, commands: Mapping[str, tuple[str, str]]) -> type
     description
         What the application does.
     commands
-        Name of a command → the module that has it, as the function ``name_command``, and the sentence that says what it
+        Name of a command → the module in which it is the function ``name_command``, and a sentence that says what it
         does.
     """
 
@@ -42,7 +42,7 @@ def new_group(description: str, commands: Mapping[str, tuple[str, str]]) -> type
 
 
 def load_command(name: str, commands: Mapping[str, tuple[str, str]]) -> Any:
-    """The command of this name, with its options, from its module."""
+    """Import the command of this name, with its options, from its module."""
     module, _ = commands[name]
     app = new_app("")
     app.command(name)(getattr(import_module(module), f"{name}_command"))

@@ -1,4 +1,4 @@
-"""Options that several commands share, and the texts that they take."""
+"""Options that several commands share, and the parsers of their values."""
 
 from importlib.metadata import version
 from math import inf, nan
@@ -49,8 +49,8 @@ Tolerance = Annotated[
     typer.Option(
         parser=tolerance,
         metavar="X",
-        help="Local error allowed in one step of the integrator, relative to 1 rad and to the length ℓ₁ from the bit "
-        "to the first stabilizer. Default: 1e-7.",
+        help="Error allowed in one step of the integrator, relative to 1 rad and to the length ℓ₁ from the bit to the "
+        "first stabilizer. Default: 1e-7.",
     ),
 ]
 """The option --tolerance of a command that drills: ``tolerance: Tolerance = None``."""
@@ -68,6 +68,6 @@ EtaPiRange = Annotated[str | None, typer.Option(metavar="START:STOP:COUNT", help
 
 ClearanceRange = Annotated[
     str | None,
-    typer.Option(metavar="START:STOP:COUNT", help="Clearances of the first stabilizer that can touch the wall, mm."),
+    typer.Option(metavar="START:STOP:COUNT", help="Clearances, mm, of the first stabilizer that can touch the wall."),
 ]
 """The option --clearance-mm: ``clearance_mm: ClearanceRange = None``; see `ranges.parse_range`."""

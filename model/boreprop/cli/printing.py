@@ -14,7 +14,7 @@ def print_table(
     caption: str | None = None,
     width: int | None = None,
 ) -> None:
-    """Print `lines`, each with a cell under each heading; `width` in characters, if not that of the terminal."""
+    """Print a table: `lines`, each with a cell under each heading. `width`, in characters, is else the terminal's."""
     table = Table(*headings, title=title, caption=caption)
     for line in lines:
         table.add_row(*line)

@@ -1,4 +1,4 @@
-"""The numbers and distributions that texts on the command line stand for."""
+"""Parses ranges, lists and distributions given on the command line."""
 
 from collections.abc import Callable, Iterable
 from math import inf, nan
@@ -12,7 +12,7 @@ from ..errors import InputError
 
 T = TypeVar("T")
 
-MOST_VALUES = 5000  # on an axis of a picture: more than it has pixels
+MOST_VALUES = 5000  # on an axis of a picture, which has fewer pixels
 
 DISTRIBUTIONS: dict[str, tuple[str, Callable[..., tuple[float, ...]]]] = {
     "normal": ("norm", lambda mean, deviation: (mean, deviation)),
@@ -20,11 +20,11 @@ DISTRIBUTIONS: dict[str, tuple[str, Callable[..., tuple[float, ...]]]] = {
     "uniform": ("uniform", lambda low, high: (low, high - low)),
     "triangular": ("triang", lambda low, mode, high: ((mode - low) / (high - low), low, high - low)),
 }
-"""Name → the name in scipy.stats and, from our arguments, those that it takes."""
+"""Name → the name in scipy.stats, and a function from our arguments to those of scipy."""
 
 
 def parse_range(option: str, text: str) -> Floats:
-    """The evenly spaced values that START:STOP:COUNT stands for; `InputError` names the `option`."""
+    """The evenly spaced values of a text START:STOP:COUNT; an `InputError` names the `option`."""
     try:
         start, stop, count = text.split(":")
         low, high, number = float(start), float(stop), int(count)
@@ -37,18 +37,18 @@ def parse_range(option: str, text: str) -> Floats:
 
 
 def parse_each(parse: Callable[[str], tuple[str, T]], texts: Iterable[str]) -> dict[str, T]:
-    """What `parse_axis` or `parse_distribution` makes of each text, by name; `InputError` if a name comes twice."""
+    """Parse each text with `parse_axis` or `parse_distribution`: name → value. `InputError` if a name comes twice."""
     found: dict[str, T] = {}
     for text in texts:
         name, value = parse(text)
         if name in found:
-            raise InputError(f"{name}: must be varied once, got {text!r} besides")
+            raise InputError(f"{name}: must be given once, got {text!r} in addition")
         found[name] = value
     return found
 
 
 def parse_axis(text: str) -> tuple[str, Floats]:
-    """Name and values of "NAME=START:STOP:COUNT", evenly spaced, or "NAME=VALUE,VALUE,…"; `InputError` if neither."""
+    """The name and the values of "NAME=START:STOP:COUNT", evenly spaced, or of "NAME=VALUE,VALUE,…"."""
     name, _, values = text.partition("=")
     try:
         if ":" not in values:
@@ -60,8 +60,8 @@ def parse_axis(text: str) -> tuple[str, Floats]:
 
 
 def parse_distribution(text: str) -> tuple[str, Distribution]:
-    """Name and distribution of "NAME=normal(MEAN,DEVIATION)" or another of `DISTRIBUTIONS`; `InputError` if neither."""
-    from scipy import stats  # here: it takes longer to load than a small grid to compute, which needs none of it
+    """The name and the distribution of "NAME=normal(MEAN,DEVIATION)" or another of `DISTRIBUTIONS`."""
+    from scipy import stats  # imported here, since that takes longer than a small grid, which does not need it
 
     name, _, call = text.partition("=")
     kind, _, numbers = call.strip().partition("(")

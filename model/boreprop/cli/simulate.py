@@ -16,7 +16,7 @@ from ..run.trajectory import Stopped
 from . import console
 from .options import CaseFile, Tolerance, positive
 
-MAX_ROWS = 10_000_000  # a file of some gigabytes
+MAX_ROWS = 10_000_000  # more would be a file of many gigabytes
 
 
 def simulate_command(
@@ -32,20 +32,20 @@ def simulate_command(
         str,
         typer.Option(
             metavar="auto|native|python",
-            help="What computes: native, compiled code; python, the same model in Python, many times slower; auto, "
-            "native where it is there.",
+            help="The engine: native (compiled code), python (the same model in Python, many times slower), or auto "
+            "(native if it is installed, else python).",
         ),
     ] = "auto",
     tolerance: Tolerance = None,
 ) -> None:
     """Simulate a case and write the run to a file.
 
-    Its rows are at whole multiples of the sample interval, from 0. If the run cannot go on to its end, the rows so far
-    are written all the same; the exit status is then 3.
+    Its rows are at whole multiples of the sample interval, from 0. If the run cannot go on to its end, the rows up to
+    there are written, and the exit status is 3.
     """
     console.check_output(output, SUFFIXES)
     if case_path(output).resolve() == case_file.resolve():
-        raise InputError(f"{output}: must have another name, as its case would replace the case file, got {case_file}")
+        raise InputError(f"{output}: must have another name, since its case would overwrite the case file {case_file}")
     case = load_case(case_file)
     if length is not None:
         case = replace(case, length=length)

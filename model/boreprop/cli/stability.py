@@ -21,7 +21,7 @@ from .options import CaseFile, EtaPiRange, Inclination, positive
 from .printing import print_table
 from .ranges import parse_range
 
-WIDE = 110  # characters: so that a mode fits on a line
+WIDE = 110  # characters, so that the line of a mode is not wrapped
 
 
 def roots_command(
@@ -30,23 +30,24 @@ def roots_command(
     contact: Annotated[
         str | None,
         typer.Option(
-            metavar="1,2", help="Print the roots of one mode: that in which these stabilizers touch, '' for none."
+            metavar="1,2", help="Print the roots of the mode in which these stabilizers touch the wall; '' for none."
         ),
     ] = None,
-    saturated: Annotated[bool, typer.Option("--saturated", help="With the bit tilt at its limit.")] = False,
+    saturated: Annotated[bool, typer.Option("--saturated", help="Take modes with the bit tilt at its limit.")] = False,
     inclination_deg: Inclination = None,
     as_json: Annotated[
-        bool, typer.Option("--json", help="Print the roots of one mode as JSON; without --contact, of that with none.")
+        bool, typer.Option("--json", help="Print the roots of one mode as JSON. Default mode: no stabilizer touches.")
     ] = False,
-    every: Annotated[bool, typer.Option("--all", help="With --json: a list of all modes.")] = False,
+    every: Annotated[bool, typer.Option("--all", help="With --json: print a list of all modes.")] = False,
 ) -> None:
     """Print whether each mode of a case is stable, drifts or oscillates.
 
-    A mode is which stabilizers touch the wall, and whether the bit tilt is at its limit. For each the table says how
-    fast it drifts or oscillates, and in which waves. With --contact or --json the rightmost roots of one mode.
+    A mode is a set of stabilizers that touch the wall, with the bit tilt at its limit or not. The table says for each
+    mode how fast a small disturbance grows or dies out, and in which waves. With --contact or --json, the rightmost
+    roots of one mode are printed instead.
     """
     if every and contact is not None:
-        raise InputError(f"--all: must be without --contact, got --contact {contact!r}")
+        raise InputError(f"--all: must not be given with --contact, got --contact {contact!r}")
     touching = parse_contact(contact or "")
     if inclination_deg is not None:
         check_number("--inclination-deg", inclination_deg)
@@ -73,7 +74,7 @@ def roots_command(
 
 
 def _print_modes(case: Case, modes: list[Roots], eta_pi: float, inclination: float) -> None:
-    """A line for each mode."""
+    """Print a table with a line for each mode."""
     weight, forces = _weight(case, eta_pi), case.schedule.rss_force
     here = steady_mode(replace(case, active_weight_on_bit=weight), forces[0], inclination)
     met = contacts_met(case.bha, case.bit, inclination, forces)
@@ -87,7 +88,7 @@ def _print_modes(case: Case, modes: list[Roots], eta_pi: float, inclination: flo
 
 
 def _weight(case: Case, eta_pi: float) -> float:
-    """The active weight on bit, N, at some ηΠ."""
+    """The active weight on bit at some ηΠ, N."""
     return eta_pi * case.bha.force_scale / case.bit.lateral_steering_resistance
 
 
@@ -105,11 +106,11 @@ def stability_command(
 ) -> None:
     """Draw the stability chart of a case over ηΠ and λ₂, and print its limits.
 
-    The hole is straight, at the inclination at the end of the existing one. There is a panel for each mode that
-    matters: at most four ways in which stabilizers can touch, among them that in which the case drills steadily, each
-    with the bit tilt saturated and not.
+    The hole is straight, at the inclination of the end of the existing hole. At most four sets of touching stabilizers
+    are shown, among them the set with which the case drills steadily. For each there are two panels, with the bit tilt
+    not saturated and saturated.
     """
-    from ..report.figures.drawing import save  # here: `roots` needs no matplotlib
+    from ..report.figures.drawing import save  # imported here, since `roots` needs no matplotlib
     from ..report.figures.stability import draw
 
     console.check_output(output, (".png",))

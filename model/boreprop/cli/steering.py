@@ -39,7 +39,7 @@ def steering_command(
     print_table(lines(summary), (str(case_file), ""))
     print_table(piece_lines(summary.curve), HEADINGS)
     if output is not None:
-        from ..report.figures.drawing import save  # here: only a picture needs matplotlib
+        from ..report.figures.drawing import save  # imported here, since only a picture needs matplotlib
         from ..report.figures.steering import draw
 
         save(draw(summary), output)

@@ -7,9 +7,9 @@ from typing import Annotated
 import typer
 
 from ..analysis.study.cluster import on_cluster
+from ..analysis.study.compute import study
 from ..analysis.study.design import Study, grid, sample
 from ..analysis.study.figures import key_figures
-from ..analysis.study.run import study
 from ..case.file import load_case
 from ..core.checks import check_number
 from ..errors import InputError
@@ -27,24 +27,24 @@ def study_command(
     case_file: CaseFile,
     output: Annotated[
         Path,
-        typer.Option(metavar="STUDY.parquet", help="The file of results. If it exists already, the study goes on."),
+        typer.Option(metavar="STUDY.parquet", help="The file of results. If it exists, the study continues from it."),
     ],
     vary: Annotated[
         list[str] | None,
         typer.Option(
             metavar="NAME=START:STOP:COUNT",
-            help="An axis of a grid, or NAME=VALUE,VALUE,…; may be given several times.",
+            help="Values of a parameter: an axis of a grid. Also NAME=VALUE,VALUE,… May be given several times.",
         ),
     ] = None,
     uncertain: Annotated[
         list[str] | None,
         typer.Option(
             metavar="NAME=normal(MEAN,DEVIATION)",
-            help="The distribution of an uncertain parameter, also lognormal(MEDIAN,DEVIATION OF THE LOG), "
-            "uniform(LOW,HIGH) or triangular(LOW,MODE,HIGH); may be given several times.",
+            help="The distribution of an uncertain parameter. Also lognormal(MEDIAN,DEVIATION OF THE LOG), "
+            "uniform(LOW,HIGH) or triangular(LOW,MODE,HIGH). May be given several times.",
         ),
     ] = None,
-    draws: Annotated[int, typer.Option("--sample", metavar="N", help="Number of draws.")] = 200,
+    draws: Annotated[int, typer.Option("--sample", metavar="N", help="Number of draws with --uncertain.")] = 200,
     seed: Annotated[int, typer.Option(metavar="S", help="Seed of the draws.")] = 1,
     workers: Annotated[
         int | None, typer.Option(metavar="K", help="Number of processes. Default: one for each core.")
@@ -56,7 +56,8 @@ def study_command(
 ) -> None:
     """Simulate many cases on all cores: over a grid, or of uncertain parameters.
 
-    NAME is an input or parameter of the case in SI units (stabilizer_clearance[1]), eta_pi or bit_tilt_limit_deg.
+    NAME is an input or parameter of the case, such as stabilizer_clearance[1], in SI units; or eta_pi; or
+    bit_tilt_limit_deg.
     """
     console.check_output(output, (".parquet",))
     check_number("--sample", draws, at_least=1)
@@ -72,7 +73,7 @@ def study_command(
             results = study(cases, figures, output=output, executor=executor, workers=workers, progress=done)
     except KeyboardInterrupt:
         if output.exists():
-            console.warn(f"{output}: keeps the cases that are done; the same command goes on from there")
+            console.warn(f"{output}: keeps the cases that are done; the same command continues from there")
         raise
     quantiles = QUANTILES_OF_SAMPLE if uncertain else QUANTILES_OF_GRID
     print_table(lines(results, quantiles.values()), (str(output), *quantiles))
@@ -82,7 +83,7 @@ def study_command(
 def _cases(case_file: Path, vary: list[str], uncertain: list[str], draws: int, seed: int) -> Study:
     """The cases of the study: a grid, or a sample."""
     if bool(vary) == bool(uncertain):
-        raise InputError(f"must be given either --vary or --uncertain, got {'both' if vary else 'neither'}")
+        raise InputError(f"--vary, --uncertain: exactly one must be given, got {'both' if vary else 'neither'}")
     case = load_case(case_file)
     if vary:
         return grid(case, parse_each(parse_axis, vary))

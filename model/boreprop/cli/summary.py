@@ -16,13 +16,14 @@ from .printing import print_table
 def summary_command(
     run_file: Annotated[Path, typer.Argument(metavar="RUN.csv", help="A result file, .csv or .parquet.")],
     case_file: Annotated[
-        Path | None, typer.Option("--case", metavar="CASE.toml", help="Its case, if the file does not carry one.")
+        Path | None,
+        typer.Option("--case", metavar="CASE.toml", help="The case of the run. Default: the one stored with it."),
     ] = None,
 ) -> None:
-    """Print a run in a dozen numbers."""
+    """Print a run in a dozen numbers, and whether it ripples."""
     trajectory = read_trajectory(run_file, load_case(case_file) if case_file else None)
     if trajectory.case is None:
-        raise InputError(f"{run_file}: must carry its case, or be given one with --case, got neither")
+        raise InputError(f"{run_file}: must come with its case, got none: give it with --case")
     if trajectory.row_count < 2:
         raise InputError(f"{run_file}: must have at least 2 rows, got {trajectory.row_count}")
     print_table(lines(summarize(trajectory)), (str(run_file), ""))

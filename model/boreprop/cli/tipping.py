@@ -1,4 +1,4 @@
-"""The commands `boreprop dogleg` and `boreprop hysteresis`: what tips a system that can ripple and need not."""
+"""The commands `boreprop dogleg` and `boreprop hysteresis`: what starts and what ends a ripple."""
 
 from math import radians
 from pathlib import Path
@@ -25,7 +25,7 @@ from .ranges import parse_range
 def dogleg_command(
     case_file: CaseFile,
     output: Annotated[
-        Path | None, typer.Option(metavar="MAP.png", help="Draw a map over weight and clearance into this file.")
+        Path | None, typer.Option(metavar="MAP.png", help="Draw a map over weight and clearance to this file.")
     ] = None,
     eta_pi: EtaPiRange = None,
     clearance_mm: ClearanceRange = None,
@@ -36,8 +36,8 @@ def dogleg_command(
 ) -> None:
     """Print the smallest kink in the existing hole that starts rippling, and map it.
 
-    The hole is straight and turns over half the length of the BHA before the bit. The map is over weight, as ηΠ, and
-    clearance; without --eta-pi or --clearance-mm around those of the case.
+    The hole is straight, then turns over half the length of the BHA before the bit. The map is over weight, as ηΠ, and
+    clearance. Without --eta-pi or --clearance-mm, the values include those of the case.
     """
     if output is not None:
         console.check_output(output, (".png",))
@@ -52,7 +52,7 @@ def dogleg_command(
 
 
 def _draw_map(case: Case, output: Path, across: Floats | None, up: Floats | None, limit: float, error: float) -> None:
-    from ..report.figures.drawing import save  # here: only a picture needs matplotlib
+    from ..report.figures.drawing import save  # imported here, since only a picture needs matplotlib
     from ..report.figures.tipping import draw
 
     usual_across, usual_up = usual_map(case)
@@ -73,21 +73,21 @@ def hysteresis_command(
         typer.Option(
             parser=positive,
             metavar="A",
-            help="Turn of the straight holes over half the BHA before the bit, on the way down, degrees.",
+            help="Turn, over half the BHA before the bit, of the otherwise straight holes on the way down, degrees.",
         ),
     ] = 0.5,
     tolerance: Tolerance = None,
 ) -> None:
     """Draw where a ripple dies out on the way up, and returns on the way down.
 
-    What goes up and down is the weight, with --eta-pi, or the clearance, with --clearance-mm.
+    Either the weight goes up and down (--eta-pi) or the clearance (--clearance-mm).
     """
-    from ..report.figures.drawing import save  # here: `dogleg` without a picture needs no matplotlib
+    from ..report.figures.drawing import save  # imported here, since `dogleg` can do without matplotlib
     from ..report.figures.hysteresis import draw
 
     console.check_output(output, (".png",))
     if (eta_pi is None) == (clearance_mm is None):
-        raise InputError(f"must be given one of --eta-pi and --clearance-mm, got {'both' if eta_pi else 'neither'}")
+        raise InputError(f"--eta-pi, --clearance-mm: exactly one must be given, got {'both' if eta_pi else 'neither'}")
     case = load_case(case_file)
     if eta_pi is not None:
         name, values = "eta_pi", parse_range("--eta-pi", eta_pi).tolist()

@@ -1,1 +1,1 @@
-"""Runs: the engines, what a run gives, and its files."""
+"""Runs: the engines that drill, trajectories and their files."""

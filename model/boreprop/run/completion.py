@@ -1,8 +1,9 @@
-"""What a run lacks and its other columns determine: a tool records what it likes, the viewer draws more.
+"""Computes the columns that a run lacks from those that it has.
 
-Two tables of formulas. Those of `ROW_BY_ROW` are exact, so what one gives may go into the next. Those of
-`ALONG_THE_HOLE` integrate or difference over the rows: they are as good as the rows are close together, and what they
-give goes nowhere else, as a hundredth of a degree in ⟨Θ⟩_i is tens of newtons at the bit.
+A file of another tool may hold few columns, and the viewer draws many. There are two tables of formulas. Those of
+`ROW_BY_ROW` are exact, so the result of one may enter another. Those of `ALONG_THE_HOLE` integrate or difference over
+the rows, so their error depends on the spacing of the rows. Their results enter no other formula: an error of 0.01° in
+⟨Θ⟩_i would be tens of newtons at the bit.
 """
 
 from collections.abc import Callable
@@ -23,10 +24,10 @@ from .trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
-INDISPENSABLE = ("bit_inclination", "average_inclination", "stabilizer_force")  # without them there is no BHA to draw
-FORCE_ROUNDING = 1e-9  # of F*, millinewtons: far above what the rounding of a file of twelve digits leaves of a balance
-RATE_DECIMALS = 7  # of m/s: the rest is rounding of lengths and times
-AT_LIMIT = 1e-4  # of ψ*: a tilt this close to its limit is at it, in a file of six digits
+INDISPENSABLE = ("bit_inclination", "average_inclination", "stabilizer_force")  # the BHA cannot be drawn without them
+FORCE_ROUNDING = 1e-9  # F*, some millinewtons: far above the rounding errors of a balance in a file of twelve digits
+RATE_DECIMALS = 7  # of a rate in m/s: the further ones are rounding errors of lengths and times
+AT_LIMIT = 1e-4  # ψ*: a tilt this close to its limit counts as at it, so that files of six digits serve
 
 
 def complete(run: Trajectory) -> Trajectory:
@@ -40,32 +41,35 @@ def complete(run: Trajectory) -> Trajectory:
     Returns
     -------
     Trajectory
-        The columns of `run` as they are, then the new ones. What is neither there nor determined stays missing.
+        The columns of `run` as they are, then the new ones. A column that nothing determines stays missing.
 
     Raises
     ------
     InputError
         If the run lacks its case, drilled_length, or one of the `INDISPENSABLE` that nothing determines.
     """
-    columns = KnownColumns(run, case_of(run))
+    columns = Columns(run, case_of(run))
     while columns.add(ROW_BY_ROW):
         pass
     columns.add(ALONG_THE_HOLE)
     completed = replace(run, columns=columns.by_name)
     for name in INDISPENSABLE:
-        completed.stack(name)  # raises if it is not there
+        completed.stack(name)  # raises if it is missing
     return completed
 
 
 def case_of(run: Trajectory) -> Case:
     """The case of a run; `InputError` if it has none."""
     if run.case is None:
-        raise InputError("the run must have its case, got none: give it with --case or --fmu")
+        raise InputError("the run must come with its case, got none: give it with --case or --fmu")
     return run.case
 
 
-class KnownColumns:
-    """The columns known so far, by the names of quantities: (rows,), or (rows, n) or (rows, n − 1) by stabilizer."""
+class Columns:
+    """The columns of a run by name of quantity, to which formulas add more.
+
+    The values of a quantity have the shape (rows,), those of a quantity of each stabilizer (rows, n) or (rows, n − 1).
+    """
 
     def __init__(self, run: Trajectory, case: Case) -> None:
         self.by_name, self.row_count = dict(run), run.row_count
@@ -86,7 +90,7 @@ class KnownColumns:
         return [name] if name == "time" else BY_NAME[name].names(len(self.scaled.s))
 
     def add(self, formulas: "tuple[Formula, ...]") -> bool:
-        """Add what formulas give that is not there, from what is; whether that was anything."""
+        """Add every missing quantity for which a formula has all that it needs. Returns whether any was added."""
         before = len(self.by_name)
         for formula in formulas:
             if formula.gives not in self and all(name in self for name in formula.needs):
@@ -98,108 +102,111 @@ class KnownColumns:
 
 
 class Formula(NamedTuple):
-    """How a quantity follows from others; `values` gives None where those of this run do not determine it."""
+    """How a quantity follows from others; `values` returns None where the values of a run do not determine it."""
 
     gives: str
     needs: tuple[str, ...]
-    values: Callable[[KnownColumns], Array | None]
+    values: Callable[[Columns], Array | None]
 
 
-# Row by row. The core's formulas of the beam are plain arithmetic: they take columns for floats.
+# Row by row. The core's formulas for the beam are plain arithmetic, so they also work on columns.
 
 
-def eta_pi(columns: KnownColumns) -> Array:
+def eta_pi(columns: Columns) -> Array:
     """ηΠ = η (Π F*)/F*, (3) and (9)."""
     return columns.case.bit.lateral_steering_resistance * columns["active_weight_on_bit"] / columns.force
 
 
-def active_weight_on_bit(columns: KnownColumns) -> Array:
+def active_weight_on_bit(columns: Columns) -> Array:
     """Π F*, (3) and (9)."""
     return columns["eta_pi"] * columns.force / columns.case.bit.lateral_steering_resistance
 
 
-def bit_inclination(columns: KnownColumns) -> Array:
+def bit_inclination(columns: Columns) -> Array:
     """θ = Θ + ψ, (16)."""
     return columns["borehole_inclination"] + columns["bit_tilt"]
 
 
-def borehole_inclination(columns: KnownColumns) -> Array:
+def borehole_inclination(columns: Columns) -> Array:
     """Θ = θ − ψ, (16)."""
     return columns["bit_inclination"] - columns["bit_tilt"]
 
 
-def bit_tilt(columns: KnownColumns) -> Array:
+def bit_tilt(columns: Columns) -> Array:
     """ψ = θ − Θ, (16)."""
     return columns["bit_inclination"] - columns["borehole_inclination"]
 
 
-def bit_tilt_from_force(columns: KnownColumns) -> Array:
+def bit_tilt_from_force(columns: Columns) -> Array:
     """ψ = clip(F_0/(ηΠ), −ψ*, ψ*), (10) and (11)."""
     psi_star = columns.scaled.psi_star
     return np.clip(columns["bit_lateral_force"] / columns.force / columns["eta_pi"], -psi_star, psi_star)
 
 
-def bit_tilt_saturation(columns: KnownColumns) -> Array:
-    """The side on which ψ is at its limit ±ψ*, (11)."""
+def bit_tilt_saturation(columns: Columns) -> Array:
+    """1 where ψ is at +ψ*, −1 where it is at −ψ*, 0 in between, (11)."""
     psi = columns["bit_tilt"]
     return np.where(np.abs(psi) >= (1 - AT_LIMIT) * columns.scaled.psi_star, np.sign(psi), 0.0)
 
 
 class LoadColumns(NamedTuple):
-    """What bends the BHA besides the contacts, as `Loads`, but in columns."""
+    """`Loads` of all rows, each field a column: what bends the BHA besides the contact forces."""
 
     e: list[Any]
     F_rss: Any
     sin_Theta_1: Any
 
 
-def loads(columns: KnownColumns, rss_force: Any) -> LoadColumns:
-    """e_i = Σ_{k≤i} λ_k (⟨Θ⟩_k − θ), F_RSS and sin⟨Θ⟩_1."""
+def loads(columns: Columns, rss_force: Any) -> LoadColumns:
+    """e_i = Σ_{k≤i} λ_k (⟨Θ⟩_k − θ), F_RSS and sin⟨Θ⟩_1, dimensionless."""
     averages = columns["average_inclination"]
     turns = (averages - columns["bit_inclination"][:, None]) * columns.scaled.lambda_
     return LoadColumns(list(np.cumsum(turns, axis=1).T), rss_force / columns.force, np.sin(averages[:, 0]))
 
 
-def contacts(columns: KnownColumns) -> Any:
-    """F_1 … F_{n−1}, in columns."""
+def contacts(columns: Columns) -> Any:
+    """F_1 … F_{n−1}, dimensionless, a column for each."""
     return list(columns["stabilizer_force"].T / columns.force)
 
 
-def bit_lateral_force(columns: KnownColumns, rss_force: Any) -> Any:
+def bit_lateral_force(columns: Columns, rss_force: Any) -> Any:
     """F_0 under an RSS force, (14)."""
     at = loads(columns, rss_force)
     return columns.force * columns.beam.bit_force(at.e[-1], contacts(columns), at.F_rss, at.sin_Theta_1)
 
 
-def bit_moment(columns: KnownColumns, rss_force: Any) -> Any:
+def bit_moment(columns: Columns, rss_force: Any) -> Any:
     """M_0 = −M under an RSS force, (17)."""
     at = loads(columns, rss_force)
     M = columns.beam.bit_moment(at.e[-1], contacts(columns), at.F_rss, at.sin_Theta_1)
     return -columns.force * columns.length * M
 
 
-def rss_force_from_force(columns: KnownColumns) -> Array | None:
-    """F_RSS from the balance (14) of forces at the bit."""
+def rss_force_from_force(columns: Columns) -> Array | None:
+    """F_RSS from the lateral force on the bit, (14)."""
     rest = columns["bit_lateral_force"] - bit_lateral_force(columns, 0.0)
     return rounded_force(columns, rest, columns.beam.F0_rss)
 
 
-def rss_force_from_moment(columns: KnownColumns) -> Array | None:
-    """F_RSS from the balance (17) of moments at the bit."""
+def rss_force_from_moment(columns: Columns) -> Array | None:
+    """F_RSS from the moment on the bit, (17)."""
     rest = columns["bit_moment"] - bit_moment(columns, 0.0)
     return rounded_force(columns, rest, -columns.length * columns.beam.M_rss)
 
 
-def rounded_force(columns: KnownColumns, rest: Array, per_force: float) -> Array | None:
-    """The RSS force that a balance leaves, rid of rounding; None where the pads are at a support that bears it all."""
+def rounded_force(columns: Columns, rest: Array, per_force: float) -> Array | None:
+    """The RSS force that accounts for the rest of a balance, without its rounding errors.
+
+    None where the pads push at a support, which bears their force: then the balance does not depend on it.
+    """
     if per_force == 0.0:
         return None
     decimals = -floor(log10(FORCE_ROUNDING * columns.force))
     return np.round(rest / per_force, decimals)
 
 
-def stabilizer_force(columns: KnownColumns) -> Array:
-    """F_i from the contacts that satisfy (7) and (21)."""
+def stabilizer_force(columns: Columns) -> Array:
+    """F_i from the contact conditions (7) and the deflections (21)."""
     modes, bending = Modes(columns.scaled), loads(columns, columns["rss_force"])
     contact = (0,) * len(columns.scaled.y_star)
     values = np.empty((columns.row_count, len(contact)))
@@ -210,7 +217,7 @@ def stabilizer_force(columns: KnownColumns) -> Array:
     return columns.force * values
 
 
-def stabilizer_deflection(columns: KnownColumns) -> Array:
+def stabilizer_deflection(columns: Columns) -> Array:
     """δ = q̃ + K⁻¹F, (21)."""
     at = loads(columns, columns["rss_force"])
     q_tilde = columns.beam.q_tilde(at.e, at.F_rss, at.sin_Theta_1)
@@ -218,21 +225,23 @@ def stabilizer_deflection(columns: KnownColumns) -> Array:
     return columns.length * delta
 
 
-# Along the hole: the existing one and then the rows, the inclination linear in between.
+# Along the hole: the stations of the existing hole, then one for each row; the inclination is linear in between.
 
 
 class Stations:
-    """Stations of the hole; where the inclination jumps there are two at one length.
+    """Stations of the existing and the drilled hole. Where the inclination jumps, two stations have the same length.
 
     Attributes
     ----------
-    length, inclination
-        m from the start of the run, negative in the existing hole; rad.
+    length
+        Length of each station from the start of the run, m, negative in the existing hole, shape (N,).
+    inclination
+        Inclination of the hole at each station, rad, shape (N,).
     start
-        Which station is the bit at the start of the run; the rows follow it.
+        Index of the station at which the bit starts the run; the rows follow it.
     """
 
-    def __init__(self, columns: KnownColumns) -> None:
+    def __init__(self, columns: Columns) -> None:
         survey = columns.case.survey
         existing = np.array(survey.measured_depth) - survey.measured_depth[-1]
         above = existing[0] - columns.case.bha.stabilizer_positions[-1]  # straight above the first station
@@ -254,10 +263,11 @@ class Stations:
         return np.append(0.0, np.cumsum(pieces))[station] + (length - self.length[station]) * mean
 
 
-def path(length: Array, inclination: Array) -> Array:
-    """Positions (x, z) of the stations of a hole, (N, 2), the first one at the origin.
+def axis_of(length: Array, inclination: Array) -> Array:
+    """The axis of a hole: positions (x, z) of its stations, m, shape (N, 2), the first one at the origin.
 
-    The inclination (N,) is linear in length (N,) in between, so each piece is an arc of a circle: exact.
+    Between stations the inclination, shape (N,), is linear in the length, shape (N,). So each piece of the hole is an
+    arc of a circle, and the positions are exact.
     """
     mean = (inclination[1:] + inclination[:-1]) / 2
     chord = np.diff(length) * np.sinc(np.diff(inclination) / (2 * np.pi))
@@ -265,29 +275,29 @@ def path(length: Array, inclination: Array) -> Array:
     return np.concatenate((np.zeros((1, 2)), np.cumsum(pieces, axis=0)))
 
 
-def drilled(columns: KnownColumns) -> Array:
+def drilled(columns: Columns) -> Array:
     """Positions (x, z) of the bit, (rows, 2), from where the run starts."""
     at = Stations(columns)
-    return path(at.length[at.start :], at.inclination[at.start :])[1:]
+    return axis_of(at.length[at.start :], at.inclination[at.start :])[1:]
 
 
-def average_inclination(columns: KnownColumns) -> Array:
+def average_inclination(columns: Columns) -> Array:
     """⟨Θ⟩_i = (Y(ξ−s_{i−1}) − Y(ξ−s_i))/λ_i, (6)."""
     behind = np.append(0.0, columns.case.bha.stabilizer_positions)
     lateral = Stations(columns).lateral_at(columns["drilled_length"][:, None] - behind)
     return -np.diff(lateral, axis=1) / np.diff(behind)
 
 
-def borehole_curvature(columns: KnownColumns) -> Array:
-    """Change of Θ over the last ℓ₁, per length."""
+def borehole_curvature(columns: Columns) -> Array:
+    """Change of Θ over the last ℓ₁, divided by ℓ₁."""
     behind = Stations(columns).inclination_at(columns["drilled_length"] - columns.length)
     return (columns["borehole_inclination"] - behind) / columns.length
 
 
-def rate_of_penetration(columns: KnownColumns) -> Array | None:
-    """Drilled length per time from each row to the next; None if no time passes.
+def rate_of_penetration(columns: Columns) -> Array | None:
+    """Drilled length per time from each row to the next; None if no time passes in the whole run.
 
-    A row that repeats its time, and the last one, have the rate of their neighbour.
+    A row at which the time stands still, and the last row, have the rate of a neighbour.
     """
     time = np.diff(columns["time"])
     pieces = np.flatnonzero(time > 0.0)
@@ -298,8 +308,8 @@ def rate_of_penetration(columns: KnownColumns) -> Array | None:
     return rates[np.minimum(piece, pieces.size - 1)]
 
 
-ANGLES = ("bit_inclination", "average_inclination")  # with the RSS force, the loads
-BENDING = (*ANGLES, "stabilizer_force")  # with the RSS force, all that bends the BHA
+ANGLES = ("bit_inclination", "average_inclination")  # these and the RSS force make up the `loads`
+BENDING = (*ANGLES, "stabilizer_force")  # these and the RSS force are all that bends the BHA
 
 ROW_BY_ROW = (
     Formula("eta_pi", ("active_weight_on_bit",), eta_pi),

@@ -1,11 +1,10 @@
-"""What a run gives: columns over the drilled length, and the files that hold them with their case.
+"""Writes and reads result files: the columns of a run, and its case.
 
-The case of a CSV file stands beside it (run.csv, run.case.toml), that of a Parquet file, for which pyarrow must be
-installed, in its metadata. With it stand, in its table [run], the engine that computed the run, and why the run stopped
-if it did.
+The case of a CSV file is in a file beside it (run.csv, run.case.toml); that of a Parquet file is in its metadata. In
+both, the table [run] says which engine computed the run and, if the run ended early, why. Parquet files need pyarrow.
 
-Files of other tools have our columns under longer names: with the path of the component before (OMSimulator and fmpy,
-model.root.borehole.bit_tilt) or what the variable is behind (libcosim up to 0.9, bit_tilt [6 real output]).
+Other tools write our columns under longer names. OMSimulator and fmpy put the path of the component before the name
+(model.root.borehole.bit_tilt); libcosim up to 0.9 puts the kind of variable after it (bit_tilt [6 real output]).
 """
 
 import re
@@ -29,14 +28,21 @@ CASE_KEY = b"boreprop.case"
 
 
 def write_trajectory(trajectory: Trajectory, path: str | Path) -> None:
-    """Write a run to a .csv or .parquet file; if its case is known, that too, with the engine and why the run stopped.
+    """Write a run to a .csv or .parquet file, with its case if it has one.
 
-    Nothing of that name changes before everything is written.
+    An existing file is replaced only once the new one is complete.
+
+    Parameters
+    ----------
+    trajectory
+        The run. Its engine and the reason why it stopped, if it did, are written with its case.
+    path
+        The file. The case of run.csv goes to run.case.toml beside it, that of a Parquet file into its metadata.
 
     Raises
     ------
     InputError
-        If `path` ends in neither, or what writes it is not installed.
+        If `path` ends in neither .csv nor .parquet, or if it ends in .parquet and pyarrow is not installed.
     OSError
         If the file cannot be written.
     """
@@ -50,22 +56,40 @@ def write_trajectory(trajectory: Trajectory, path: str | Path) -> None:
 def read_trajectory(path: str | Path, case: Case | None = None) -> Trajectory:
     """Read a run written by `write_trajectory` or by any FMI tool.
 
-    Columns that are not in the table of quantities are left out; of those that are, only drilled_length must be there.
-    In a file of a system, those of the component that has drilled_length are read. Several may have it, as an input
-    say: then the one that has every output that the others have.
+    Only drilled_length must be there. Columns that are not in the table of quantities are left out. A file of a system
+    of several components is read for the component that has drilled_length. If several have it (one of them may have it
+    as an input), the one is read that has every output that the others have.
 
     Parameters
     ----------
     path
         A .csv or .parquet file.
     case
-        The case that was run. None: the one that stands beside or in the file, if there is one.
+        The case that was drilled. None: the case that `write_trajectory` wrote with the run, if there is one.
+
+    Returns
+    -------
+    Trajectory
+        The columns in SI units, shape (rows,), at least one row; its case, engine and reason of stopping where the file
+        has them.
 
     Raises
     ------
     InputError, TableError
-        If the file cannot be read, drilled_length is missing or that of several components, a row is ragged, a value is
-        not a finite number, or the case has another number of stabilizers.
+        If the file cannot be read, drilled_length is missing or no single component has every output, a line has too
+        few or too many values, a value is not a finite number, or the case has another number of stabilizers.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from boreprop import paper_case, read_trajectory, simulate, write_trajectory
+    >>> run = simulate(paper_case(), length=10.0, sample_interval=0.5)
+    >>> with TemporaryDirectory() as directory:
+    ...     write_trajectory(run, Path(directory, "run.csv"))
+    ...     again = read_trajectory(Path(directory, "run.csv"))
+    >>> again.case == run.case, bool((again["bit_tilt"] == run["bit_tilt"]).all())
+    (True, True)
     """
     path = Path(path)
     read = {".csv": _read_csv, ".parquet": _read_parquet}.get(path.suffix)
@@ -81,18 +105,18 @@ def read_trajectory(path: str | Path, case: Case | None = None) -> Trajectory:
 
 
 def case_path(path: Path) -> Path:
-    """Where the case of a CSV file is: run.case.toml beside run.csv."""
+    """The file with the case of a CSV file: run.case.toml beside run.csv."""
     return path.with_suffix(".case.toml")
 
 
-IO_NAMES = {variable.name for variable in INPUTS + OUTPUTS}
-OUTPUT_NAMES = {variable.name for variable in OUTPUTS}
-# component.name [reference type causality]
+IO_NAMES = {quantity.name for quantity in INPUTS + OUTPUTS}
+OUTPUT_NAMES = {quantity.name for quantity in OUTPUTS}
+# the heading of a column of another tool: component.name [reference type causality]
 HEADING = re.compile(r"(?:(?P<component>.+)\.)?(?P<name>[^.\s]+)(?: \[\d+ [\w ]+\])?")
 
 
 def _ours(path: Path, headings: list[str]) -> dict[str, str]:
-    """Headings in the file of the time and of one borehole's inputs and outputs, by their scalar names."""
+    """Scalar names of the time and of one borehole's inputs and outputs → their headings in the file."""
     components: dict[str, dict[str, str]] = {}
     for heading in headings:
         match = HEADING.fullmatch(heading)
@@ -105,19 +129,19 @@ def _ours(path: Path, headings: list[str]) -> dict[str, str]:
     ours = [names for names, own in zip(drilling, outputs, strict=True) if own >= set().union(*outputs)]
     if len(ours) != 1:
         found = ", ".join(names["drilled_length"] for names in drilling)
-        raise InputError(f"{path}: must have drilled_length of one borehole, got {found}")
+        raise InputError(f"{path}: must have a single borehole with all its outputs, got several: {found}")
     times = [heading for heading in headings if heading.lower() == "time"]
     return dict(zip(("time",), times, strict=False)) | ours[0]
 
 
 def _typed(trajectory: Trajectory) -> dict[str, NDArray[Any]]:
-    """The columns, those of FMI's Integer variables as such."""
+    """The columns, with whole numbers for the quantities of kind Integer."""
     integers = {name for name in trajectory.columns if (v := BY_NAME.get(plain_name(name))) and v.kind == "Integer"}
     return {k: v.astype(np.int32) if k in integers else v for k, v in trajectory.columns.items()}
 
 
 def _case_text(trajectory: Trajectory, case: Case) -> str:
-    """The case of a run as a file has it, with what there is to tell of the run."""
+    """The text of the case file of a run, with the table [run]."""
     return dump_case(case, engine=trajectory.engine, stopped=trajectory.stopped)
 
 
@@ -130,14 +154,14 @@ def _write_csv(trajectory: Trajectory, path: Path) -> None:
             file.write(",".join(columns) + "\n")
             file.writelines(",".join(row) + "\n" for row in rows)
         if trajectory.case is None:
-            case_path(path).unlink(missing_ok=True)  # of a run that is overwritten
+            case_path(path).unlink(missing_ok=True)  # it belonged to the run that is overwritten
         else:
             with replacing(case_path(path)) as case_draft:
                 case_draft.write_text(_case_text(trajectory, trajectory.case), encoding="utf-8")
 
 
 def _read_csv(path: Path, case: Case | None) -> Trajectory:
-    read_columns(path, ())  # so the file is sound, and the next lines can be short
+    read_columns(path, ())  # raises if the file is not sound, so the next lines need not check
     with open(path, newline="", encoding="utf-8-sig") as file:
         headings = [heading.strip() for heading in next(filter(None, reader(file)), [])]
     ours = _ours(path, headings)
@@ -175,7 +199,7 @@ def _read_parquet(path: Path, case: Case | None) -> Trajectory:
 
 
 def _numbers(path: Path, name: str, column: Any) -> NDArray[np.float64]:
-    """A Parquet column as finite floats."""
+    """A Parquet column as finite floats; `InputError` if it holds anything else."""
     try:
         values = np.asarray(column.to_numpy(), dtype=np.float64)
     except (ValueError, TypeError) as error:
@@ -187,7 +211,7 @@ def _numbers(path: Path, name: str, column: Any) -> NDArray[np.float64]:
 
 
 def _pyarrow(path: Path) -> tuple[Any, Any]:
-    """The two modules; loaded here, as they take longer to load than a short run to compute."""
+    """The modules pyarrow and pyarrow.parquet, imported only where needed: that takes longer than a short run."""
     try:
         import pyarrow
         import pyarrow.parquet

@@ -1,4 +1,4 @@
-"""A schedule in, a trajectory out."""
+"""Simulates a case: drills it under its force schedule and gives the trajectory."""
 
 from collections.abc import Callable
 
@@ -14,10 +14,10 @@ from ..core.quantities import OUTPUTS, scalar_names
 from .engines import chosen, start
 from .trajectory import Stopped, Trajectory
 
-SAMPLE_INTERVAL = 0.1  # m between the rows of a run, unless told otherwise: some 50 for each wave of a rippling hole
-PARTS = 100  # a run reports its progress about so often
-LONGEST_LEG = 50.0  # ℓ₁: an engine keeps the way back to where a leg began
-ROUNDING = 1e-9  # of a sample interval: a row this close before the end or a change of force counts as on it
+SAMPLE_INTERVAL = 0.1  # m, the usual distance between rows: about 50 rows for each wave of the paper's rippling hole
+PARTS = 100  # a run reports its progress about this many times
+LONGEST_LEG = 50.0  # ℓ₁, to limit memory: an engine keeps all that it needs to return to the beginning of a leg
+ROUNDING = 1e-9  # sample intervals: a row this close before the end, or before a change of force, counts as on it
 
 
 def simulate(
@@ -29,7 +29,7 @@ def simulate(
     progress: Callable[[float], None] | None = None,
     engine: str = "auto",
 ) -> Trajectory:
-    """Drill a case under its force schedule.
+    """Drill a case under its force schedule: solve the paper's equations (5) to (18) over the drilled length.
 
     Parameters
     ----------
@@ -39,28 +39,39 @@ def simulate(
         Drilled length between rows, m. Rows are at k times the interval, k = 0, 1, …; where the force changes on a
         row, the row holds the values after the change.
     length
-        Length to drill, m; without it, the case's.
+        Length to drill, m; without it, that of the case.
     relative_tolerance
-        Local error allowed in one step of the integrator, relative to 1 rad and to ℓ₁.
+        Error allowed in one step of the integrator, relative to 1 rad and to ℓ₁, 1e-12 to 1e-2.
     progress
         Called with the drilled length, m, about a hundred times.
     engine
-        "native": compiled code; "python": the same model in Python, which agrees but for rounding and is many times
-        slower; "auto": native where it is there. The trajectory says which one drilled it.
+        "native" is compiled code. "python" is the same model in Python, many times slower; the two agree but for
+        rounding. "auto" is the native engine if it is installed, else the Python one. The trajectory says which one
+        drilled it.
 
     Returns
     -------
     Trajectory
-        The inputs `rss_force` and `active_weight_on_bit` and every output of the table of quantities.
+        Columns `rss_force` and `active_weight_on_bit`, and one for every output of the table of quantities, shape
+        (rows,), SI units.
 
     Raises
     ------
     ParameterError
         If a value is out of range.
     Stopped
-        If the integrator cannot go on; its `trajectory` holds the rows so far, its cause is the `CannotContinue`.
+        If the integrator cannot go on; its `trajectory` holds the rows up to there, its cause is the `CannotContinue`.
     KernelError
-        If the native engine is not there.
+        If the native engine is asked for and is not installed.
+
+    Examples
+    --------
+    >>> from boreprop import paper_case, simulate
+    >>> run = simulate(paper_case(), length=60.0, sample_interval=0.5)
+    >>> run.row_count
+    121
+    >>> round(float(run["stabilizer_force[1]"].max()) / 1e3, 1)  # kN
+    27.5
     """
     length = case.length if length is None else length
     check_number("length", length, above=0.0)
@@ -84,7 +95,7 @@ def simulate(
         if progress:
             progress(drilling.drilled_length)
     drilled = np.count_nonzero(~np.isnan(table[:, 0]))
-    outputs = np.ascontiguousarray(table[:drilled].T)  # whoever reads a run reads it by columns
+    outputs = np.ascontiguousarray(table[:drilled].T)  # a run is read column by column
     columns = {"rss_force": forces[rows >= 0][:drilled], "active_weight_on_bit": np.full(drilled, weight)}
     stopped = f"after {drilling.drilled_length:g} m of {length:g} m: {failure}" if failure else None
     trajectory = Trajectory(columns | dict(zip(names, outputs, strict=True)), case, stopped, engine)
@@ -94,7 +105,10 @@ def simulate(
 
 
 def _legs(schedule: Schedule, count: int, sample_interval: float) -> tuple[Floats, Floats, NDArray[np.intc]]:
-    """Where the legs of a run end, m, the force along each, N, and the row that each ends on; −1: the force changes."""
+    """The ends of the legs of a run, m, the force along each, N, and the row on which each ends; −1 if on none.
+
+    A leg ends at every row and, on no row, wherever the force changes.
+    """
     at = sample_interval * np.arange(count)
     changes = np.array(schedule.drilled_length[1:])
     before = np.searchsorted(at + ROUNDING * sample_interval, changes)
@@ -108,7 +122,7 @@ def _legs(schedule: Schedule, count: int, sample_interval: float) -> tuple[Float
 def _in_parts(
     lengths: Floats, forces: Floats, rows: NDArray[np.intc], longest: float
 ) -> tuple[Floats, Floats, NDArray[np.intc]]:
-    """The same legs, each in so many parts that none is longer than `longest`, m; only its last ends on a row."""
+    """The same legs, each cut into parts no longer than `longest`, m. Only the last part of a leg ends on its row."""
     starts = np.concatenate([[0.0], lengths[:-1]])
     parts = int(np.ceil((lengths - starts).max() / longest)) or 1
     ends = starts[:, None] + np.outer(lengths - starts, np.arange(1, parts + 1) / parts)

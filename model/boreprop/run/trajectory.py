@@ -1,4 +1,4 @@
-"""What a run gives: columns over the drilled length."""
+"""The trajectory of a run: columns over the drilled length."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -18,14 +18,23 @@ class Trajectory(Mapping[str, Floats]):
     Parameters
     ----------
     columns
-        Scalar name of the table of quantities ("drilled_length", "stabilizer_force[1]", …) → values in SI units,
-        shape (rows,).
+        Scalar name ("drilled_length", "stabilizer_force[1]", …) → values in SI units, shape (rows,). The names, units
+        and meanings are those of the table of quantities.
     case
-        The case that was run, if it is known.
+        The case that was drilled; None if a file does not say it.
     stopped
-        Why it ended before its end, if it did.
+        The reason why the run ended early; None if it reached its end.
     engine
-        What computed it, "native" or "python", if that is known.
+        The engine that computed the run, "native" or "python"; None if a file does not say it.
+
+    Examples
+    --------
+    >>> from boreprop import paper_case, simulate
+    >>> run = simulate(paper_case(), length=10.0, sample_interval=2.5)
+    >>> run["drilled_length"].tolist()
+    [0.0, 2.5, 5.0, 7.5, 10.0]
+    >>> run.row_count, run.n, "bit_tilt" in run, run.stack("average_inclination").shape
+    (5, 2, True, (5, 2))
     """
 
     columns: dict[str, Floats]
@@ -34,7 +43,7 @@ class Trajectory(Mapping[str, Floats]):
     engine: str | None = None
 
     def __getitem__(self, name: str) -> Floats:
-        """The column `name`; `MissingColumn` if the run has none."""
+        """The values of the column `name`, shape (rows,); `MissingColumn` if the run does not have it."""
         if name not in self.columns:
             raise MissingColumn(f"the run must have a column {name!r}, got {', '.join(self.columns)}")
         return self.columns[name]
@@ -48,37 +57,43 @@ class Trajectory(Mapping[str, Floats]):
     def __repr__(self) -> str:
         length = f" over {self['drilled_length'][-1]:g} m" if self.row_count else ""
         engine = f", {self.engine} engine" if self.engine else ""
-        case = "" if self.case else ", case not known"
+        case = "" if self.case else ", without its case"
         stopped = ", stopped before its end" if self.stopped else ""
         return f"<Trajectory: {len(self)} columns, {self.row_count} rows{length}{engine}{case}{stopped}>"
 
     @property
     def row_count(self) -> int:
-        """Number of rows."""
+        """The number of rows."""
         return len(self["drilled_length"])
 
     @property
     def n(self) -> int:
-        """Number of stabilizers: the case's, or as many as there are average inclinations."""
+        """The number of stabilizers: that of the case or, without a case, the number of average inclinations."""
         if self.case is not None:
             return len(self.case.bha.stabilizer_positions)
         return sum(plain_name(name) == "average_inclination" for name in self)
 
     def stack(self, name: str) -> Floats:
-        """The columns ``name[1]``, ``name[2]``, … side by side, shape (rows, n) or (rows, n − 1)."""
+        """The columns ``name[1]``, ``name[2]``, … side by side, shape (rows, n) or (rows, n − 1).
+
+        Raises
+        ------
+        MissingColumn
+            If the run lacks one of them.
+        """
         columns = [self[scalar] for scalar in BY_NAME[name].names(self.n)]
         return np.column_stack(columns) if columns else np.empty((self.row_count, 0))
 
 
 class Stopped(BorepropError):
-    """A run could not go on to its end. The message says where it stopped and what helps.
+    """A run could not go on to its end. The message says where it stopped and what to do.
 
     Parameters
     ----------
     message
-        One line.
+        The message, one line.
     trajectory
-        The rows so far, where they are kept; its `stopped` is the message.
+        The rows up to there; its `stopped` is the message. None where the rows are not kept.
     """
 
     exit_status = 3
@@ -89,5 +104,5 @@ class Stopped(BorepropError):
 
 
 def plain_name(scalar_name: str) -> str:
-    """The quantity that a column holds: bit_tilt, or of stabilizer_force[1] stabilizer_force."""
+    """The name of the quantity in a column: "stabilizer_force" for "stabilizer_force[1]"."""
     return scalar_name.partition("[")[0]

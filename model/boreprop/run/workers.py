@@ -1,4 +1,4 @@
-"""One function on many items, on all cores or on a cluster, though workers may die."""
+"""Applies one function to many items on all cores or on a cluster, and survives workers that die."""
 
 import os
 import pickle
@@ -18,15 +18,15 @@ from typing import TypeVar
 T = TypeVar("T")
 R = TypeVar("R")
 
-CHUNK = 0.25  # s: quick items go to a worker together, as many as take about this long
-TICK = 0.25  # s between two looks up from waiting
-AHEAD = 2  # chunks submitted for each process of ours
-SUBMITTED = 1000  # chunks submitted to an executor of whose size nothing is known
-LIVES = 2  # workers that an item may cost, alone
+CHUNK = 0.25  # s of work sent to a worker at once: more would delay progress, less would be spent on sending
+TICK = 0.25  # s of waiting for a result after which control returns to the caller, who may save or report progress
+AHEAD = 2  # chunks submitted for each of our processes: one at work and one waiting, so that none stands idle
+SUBMITTED = 1000  # chunks submitted to an executor of the caller's, whose number of workers is not known
+LIVES = 2  # an item is given up once this many workers have died while working on it alone
 
 
 class WorkerLost(Exception):
-    """What became of a worker that an item did not leave alive."""
+    """An item whose worker died every time it was tried. The message is that of the last death."""
 
 
 def work(
@@ -35,36 +35,37 @@ def work(
     executor: Executor | None = None,
     workers: int | None = None,
 ) -> Generator[list[tuple[int, R | WorkerLost]]]:
-    """Apply `function` to every item and yield what is done, as it comes.
+    """Apply `function` to every item and yield the results as they come.
 
-    Items that were with a worker when it died are tried again one by one: so it shows which of them killed it. Closing
-    the generator cancels what has not begun.
+    Items that were with a worker when it died are tried again one by one, which shows which of them killed it. Closing
+    the generator cancels all items that have not been started.
 
     Parameters
     ----------
     function
-        Of one item. Picklable, as the items and what it returns.
+        Takes one item. The function, the items and the results must be picklable.
     items
-        By key.
+        Key → item.
     executor
-        Where to work; it is left open. None: on processes of this machine, started again when one dies.
+        Where to compute; the caller closes it. None: on processes of this machine, started again when one dies.
     workers
-        Number of those processes; None: one for each core.
+        Number of processes on this machine; None: one for each core.
 
     Yields
     ------
     list of (key, result)
-        `WorkerLost` for an item that cost `LIVES` workers. Empty if nothing was done for a moment.
+        The results since the last time. The result is a `WorkerLost` for an item that `LIVES` workers died of. The list
+        is empty if there was none for a moment.
 
     Raises
     ------
     Exception
-        What the function raises.
+        Any that the function raises.
     BrokenExecutor
-        If workers die and there has not been one result, or if the given executor is broken.
+        If workers die before there is a single result, or if the given executor is broken.
     """
     if executor is None:
-        pickle.dumps(function)  # what cannot travel is an error here; our pool might wait for it for ever
+        pickle.dumps(function)  # raises here if it cannot be pickled, where our pool might wait for ever
     workers = _cores() if workers is None else workers
     slots = SUBMITTED if executor else AHEAD * workers
     pool = executor or _processes(workers)
@@ -127,20 +128,20 @@ def work(
 
 
 def _cores() -> int:
-    """How many cores this process may use; no more than Windows can wait for."""
+    """The number of cores that this process may use. On Windows at most 61 processes can be waited for."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return min(os.cpu_count() or 1, 61)
 
 
 def _processes(workers: int) -> ProcessPoolExecutor:
-    """Processes that start in the same way on every system."""
+    """A pool of processes, spawned rather than forked, so that they start in the same way on every system."""
     return ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_prepare)
 
 
 def _prepare() -> None:
-    """In a process of ours: Ctrl-C ends it without a word, and so does the end of the process that started it."""
-    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:  # as in the background
+    """Set up a worker process: it ends silently on Ctrl-C, and when the process that started it ends."""
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:  # a process in the background ignores Ctrl-C
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     Thread(target=_end_with_parent, daemon=True).start()
 
@@ -153,12 +154,15 @@ def _end_with_parent() -> None:
 
 
 def _apply(function: Callable[[T], R], items: list[T], _serial: int) -> tuple[list[R], float]:
-    """In the worker: the results and the seconds they took. Dask takes equal calls for one, so they are numbered."""
+    """Called in the worker: returns the results and the seconds they took.
+
+    Dask computes equal calls only once, so a serial number makes each call different.
+    """
     begin = perf_counter()
     return [function(item) for item in items], perf_counter() - begin
 
 
 def _lost(error: Exception) -> bool:
-    """Whether an error tells of the worker rather than of the function."""
-    dask = type(error).__module__.partition(".")[0] == "distributed"  # KilledWorker and others that have no common base
+    """Whether an error means that the worker was lost, rather than that the function failed."""
+    dask = type(error).__module__.partition(".")[0] == "distributed"  # Dask's errors have no base class in common
     return dask or isinstance(error, BrokenExecutor | CancelledError)

@@ -1,1 +1,1 @@
-"""Straight holes: the roots of their modes, and where they lose stability."""
+"""Local stability of straight holes: the roots of each mode, and the ηΠ at which it becomes stable."""

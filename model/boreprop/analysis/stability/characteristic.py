@@ -1,6 +1,6 @@
 """The characteristic function of one mode of a straight hole, section V, and where its roots cross the imaginary axis.
 
-In a mode (which stabilizers touch, tilt saturated or not) a small perturbation of a straight hole of inclination Θ₀
+In a mode (which stabilizers touch, tilt saturated or not) a small disturbance of a straight hole of inclination Θ₀
 is a sum of terms e^{νξ}. With Θ ~ e^{νξ} the lateral coordinate gives Y(ξ) − Y(ξ−s_i) = B_i(ν) Θ with
 B_i = (1 − e^{−ν s_i})/ν, and sin⟨Θ⟩_1 becomes cos Θ₀ B_1 Θ, so
 
@@ -11,7 +11,7 @@ and ν is a root of
     unsaturated:   P = (εηΠν − m_θ)(ηΠ + f) − (ηΠ − f_θ) m
     saturated:     P = εηΠν − m_θ − m .
 
-B_i is entire: that the hole may be moved sideways makes no root.
+B_i is entire, so the freedom to shift the whole hole sideways adds no root.
 """
 
 from dataclasses import dataclass
@@ -29,23 +29,23 @@ from ...core.linear import dot
 from ...core.modes import Mode
 from ...core.system import Scaled
 
-NEAR_ZERO = 1e-4  # |ν s| below which B'(ν) is the start of its series
-FREQUENCIES = np.concatenate([[0.0], np.logspace(-3.0, 9.0, 300)])  # where bounds on the roots are looked for
-LADDER = 4.0 ** np.arange(12)  # likewise of ηΠ, over the smallest
-ABSCISSAS = np.concatenate([np.linspace(0.0, 5.0, 101) ** 2, np.logspace(1.45, 5.0, 30)])
-SAMPLES = 36  # per period of the fastest wave in P, where crossings are looked for
-LOW = np.logspace(-7.0, -0.2, 48)  # further samples below the first, in steps
-PARTS = 8  # into which the space between two samples is divided where crossings may hide
-REFINEMENTS = 5  # of the samples, at most
-IS_A_ROOT = 1e-11  # |P| over the size of its terms
+NEAR_ZERO = 1e-4  # |ν| below which B and B′ are taken from their series, where the closed form of B′ cancels
+FREQUENCIES = np.concatenate([[0.0], np.logspace(-3.0, 9.0, 300)])  # Im ν at which bounds on the roots are evaluated
+LADDER = 4.0 ** np.arange(12)  # ηΠ over the smallest one at which these bounds are evaluated
+ABSCISSAS = np.concatenate([np.linspace(0.0, 5.0, 101) ** 2, np.logspace(1.45, 5.0, 30)])  # Re ν, likewise
+SAMPLES = 36  # samples in a period of e^{−iωs} at the last stabilizer, the fastest term of P, to find crossings
+LOW = np.logspace(-7.0, -0.2, 48)  # further samples at low frequency, over the spacing of the others
+PARTS = 8  # an interval between two samples in which crossings may hide is divided into this many
+REFINEMENTS = 5  # such divisions, at most
+IS_A_ROOT = 1e-11  # |P| over the sum of the moduli of its terms: below it P is zero to rounding
 
 
 class Crossings(NamedTuple):
-    """Where P(iω) = 0 with ω > 0: arrays of one length, ηΠ increasing."""
+    """The solutions (ηΠ, ω) of P(iω) = 0 with ω > 0: arrays of one length, ηΠ increasing."""
 
     eta_pi: Floats
     omega: Floats
-    direction: Floats  # 1 where the pair moves into the right half plane as ηΠ grows, −1 where out of it
+    direction: Floats  # 1 where the pair of roots enters the right half plane as ηΠ grows, −1 where it leaves it
 
 
 @dataclass(frozen=True)
@@ -53,9 +53,9 @@ class Characteristic:
     """The characteristic function P of one mode, over arrays of ν of any shape."""
 
     s: Floats  # s_1 … s_n
-    m: Floats  # m_1 … m_n, the first with m_g
-    f: Floats  # f_1 … f_n, the first with f_g
-    m_g: float  # the weight's part
+    m: Floats  # m_1 … m_n; m_1 includes m_g
+    f: Floats  # f_1 … f_n; f_1 includes f_g
+    m_g: float  # the terms of the weight
     f_g: float
     m_theta: float
     f_theta: float
@@ -66,10 +66,10 @@ class Characteristic:
     def of(
         cls, scaled: Scaled, contact: tuple[int, ...], saturated: bool, inclination: float = 0.0
     ) -> "Characteristic":
-        """Of the mode with `contact` (0 where a stabilizer is free) in a straight hole of `inclination`, rad."""
+        """That of the mode with `contact` (0 where a stabilizer is free) in a straight hole of `inclination`, rad."""
         mode = Mode(Beam(scaled), scaled.y_star, contact)
         s = list(scaled.s)
-        weight = round(cos(inclination), 15)  # none in a horizontal hole
+        weight = round(cos(inclination), 15)  # exactly zero in a horizontal hole
         m_g, f_g = mode.M.g * weight, mode.F_0.g * weight
         return cls(
             s=np.array(s),
@@ -84,7 +84,7 @@ class Characteristic:
         )
 
     def __call__(self, nu: Complexes, eta_pi: float | Floats) -> tuple[Complexes, Complexes]:
-        """P(ν) and P'(ν), for one ηΠ or one for each ν."""
+        """P(ν) and P'(ν), for a single ηΠ or for one at each ν."""
         m, f, m_slope, f_slope = np.zeros((4, *nu.shape), complex)
         for s_i, m_i, f_i in self._terms.tolist():
             B, slope = lag(nu, s_i)
@@ -99,7 +99,7 @@ class Characteristic:
         return turning * (eta_pi + f) - rest * m, drag * (eta_pi + f) + turning * f_slope - rest * m_slope
 
     def size(self, nu: Complexes, eta_pi: Floats) -> Floats:
-        """The sum of the moduli of the terms of P: what rounding in P is measured by."""
+        """The sum of the moduli of the terms of P: rounding errors of P are proportional to it."""
         m, f = np.zeros(nu.shape), np.zeros(nu.shape)
         for s_i, m_i, f_i in self._terms.tolist():
             B = abs(lag(nu, s_i)[0])
@@ -110,12 +110,12 @@ class Characteristic:
 
     @cached_property
     def _terms(self) -> Floats:
-        """s_i, m_i, f_i of the stabilizers that matter in this mode, a row for each."""
+        """(s_i, m_i, f_i) of the stabilizers that enter P in this mode, shape (k, 3)."""
         terms = np.column_stack([self.s, self.m, self.f])
         return terms[terms[:, 1:].any(axis=1)]
 
     def on_grid(self, x: Floats, y: Floats, eta_pi: float) -> Complexes:
-        """νP at ν = x + iy, shape (len(y), len(x)): cheap, as e^{−ν s} is a product."""
+        """νP at ν = x + iy, shape (len(y), len(x)): fast, since e^{−ν s} is a product of functions of x and y."""
         nu = np.asarray(x + 1j * y[:, None], complex)
         m, f = np.full(nu.shape, self.m.sum(), complex), np.full(nu.shape, self.f.sum(), complex)
         for s_i, m_i, f_i in self._terms.tolist():
@@ -129,13 +129,16 @@ class Characteristic:
         return value
 
     def at_zero(self) -> tuple[float, float]:
-        """P(0) = b ηΠ + c: b and c, both zero without weight and in a horizontal hole, where turning is neutral."""
+        """The coefficients b and c in P(0) = b ηΠ + c.
+
+        Both are zero without weight and in a horizontal hole, where ν = 0 is a root.
+        """
         if self.saturated:
             return 0.0, -self.m_g
         return -self.m_g, self.f_theta * self.m_g - self.m_theta * self.f_g
 
     def on_real_axis(self, nu: Floats) -> tuple[Floats, Floats, Floats]:
-        """P = a ηΠ² + b ηΠ + c at real ν > 0: a, b and c."""
+        """The coefficients a, b and c in P = a ηΠ² + b ηΠ + c at real ν > 0."""
         m, f = np.zeros((2, *nu.shape))
         for s_i, m_i, f_i in self._terms.tolist():
             B = -np.expm1(-nu * s_i) / nu
@@ -147,28 +150,28 @@ class Characteristic:
         return drag, drag * f - self.m_theta - m, self.f_theta * m - self.m_theta * f
 
     def on_imaginary_axis(self, omega: Floats, waves: tuple[Floats, Floats] | None = None) -> Complexes:
-        """The ηΠ at which iω is a root, ω > 0: complex, two for each ω (one if saturated), shape (2, k) or (1, k).
+        """The complex ηΠ at which iω is a root, ω > 0: two for each ω (one if saturated), shape (2, k) or (1, k).
 
         P is quadratic in ηΠ. A pair of roots ±iω lies on the imaginary axis where one of these ηΠ is real and positive.
-        `waves` are sin ωs and 1 − cos ωs, if known.
+        `waves` are sin ωs and 1 − cos ωs, if the caller has computed them already.
         """
         s, m_f = self._terms[:, :1], self._terms[:, 1:].T
-        sine, versine = waves or (np.sin(s * omega), 2 * np.sin(s * omega / 2) ** 2)  # exact for small ω, too
+        sine, versine = waves or (np.sin(s * omega), 2 * np.sin(s * omega / 2) ** 2)  # does not cancel for small ω
         m, f = (m_f @ sine - 1j * (m_f @ versine)) / omega
         drag = 1j * self.epsilon * omega
         if self.saturated:
-            one: Complexes = ((self.m_theta + m) / drag)[None]
-            return one
+            single: Complexes = ((self.m_theta + m) / drag)[None]
+            return single
         b, c = drag * f - self.m_theta - m, self.f_theta * m - self.m_theta * f
         root = np.sqrt(b * b - 4 * drag * c)
         sum_ = b + np.where((b * root.conj()).real < 0, -root, root)
         return np.stack([-sum_ / (2 * drag), -2 * c / sum_])
 
     def crossings(self, smallest: float) -> Crossings:
-        """All crossings of the imaginary axis at ηΠ >= `smallest`, but for those at ω = 0.
+        """All crossings of the imaginary axis at ηΠ >= `smallest`, except those at ω = 0.
 
         Let x(ω) be the complex ηΠ at which iω is a root. A pair crosses where Im x changes its sign, and moves right as
-        ηΠ grows if Im x grows with ω, since dν/dηΠ = i/x'(ω). What is returned are roots to rounding.
+        ηΠ grows if Im x grows with ω, since dν/dηΠ = i/x'(ω). All are checked to be roots within rounding.
         """
         omega, x = self._sampled(smallest)
         branch, at = np.nonzero((x[:, 1:].imag > 0) != (x[:, :-1].imag > 0))
@@ -212,14 +215,14 @@ class Characteristic:
         return omega, np.where(is_root, eta_pi, np.nan)
 
     def _on_branch(self, omega: Floats, a: Floats, b: Floats, x_a: Complexes, x_b: Complexes) -> Complexes:
-        """Of the values of x at ω, between a and b, the one nearest to the line from x_a to x_b."""
+        """The value of x at ω, between a and b, on the branch from x_a to x_b: the one nearest to the straight line."""
         x = self.on_imaginary_axis(omega)
         expected = x_a + (x_b - x_a) * (omega - a) / (b - a)
         nearest: Complexes = x[np.argmin(abs(x - expected), axis=0), np.arange(len(omega))]
         return nearest
 
     # νP = Q_0 + Σ Q_i e^{−ν s_i} with polynomials Q, so there is no root where Σ |Q_i e^{−ν s_i}| < |Q_0|. The ratio of
-    # the two has no maximum within a region that holds no zero of Q_0: what it is on the edge decides.
+    # the two has no maximum inside a region without zeros of Q_0, so it need only be checked on the edge.
 
     def highest_on_axis(self, smallest: float) -> float:
         """A bound on |Im ν| of the roots on the imaginary axis at any ηΠ >= `smallest`."""
@@ -236,8 +239,8 @@ class Characteristic:
         """
         abscissas = abscissa + ABSCISSAS
         may = self._delayed_share(abscissas[:, None] + 1j * FREQUENCIES, np.array(eta_pi)) >= 1
-        may = np.logical_or.accumulate(may[::-1, ::-1], axis=0)  # there or further right
-        may = np.logical_or.accumulate(may, axis=1)[::-1, ::-1]  # or further up
+        may = np.logical_or.accumulate(may[::-1, ::-1], axis=0)  # there may be a root here or further right …
+        may = np.logical_or.accumulate(may, axis=1)[::-1, ::-1]  # … or further up
         for zero in self._free_roots(np.array(eta_pi)):
             may |= (abscissas <= zero.real)[:, None] & (FREQUENCIES <= abs(zero.imag))
         columns = np.count_nonzero(may, axis=0)
@@ -271,7 +274,10 @@ class Characteristic:
 
 
 def even_waves(turn: Floats, number: int) -> tuple[Floats, Floats]:
-    """Values of sin kx and 1 − cos kx for k = 1 … number, x in `turn`, shape (m, 1): cheap, as e^{ikx} is a product."""
+    """The values of sin kx and 1 − cos kx for k = 1 … number and each x in `turn`, shape (m, 1).
+
+    This is fast, since e^{ikx} is a product of two factors, each from a table of about √number values.
+    """
     short = int(number**0.5) + 1
     fine, coarse = np.exp(1j * turn * np.arange(1, short + 1)), np.exp(1j * turn * short * np.arange(short))
     product = (coarse[:, :, None] * fine[:, None, :]).reshape(len(turn), -1)[:, :number]
@@ -279,9 +285,10 @@ def even_waves(turn: Floats, number: int) -> tuple[Floats, Floats]:
 
 
 def follow(x: Complexes) -> None:
-    """Put the two values at each sample, x of shape (2, k), in the order in which they follow those before; one: as is.
+    """Sort the two values at each sample so that each row of x, shape (2, k), follows one branch; x is changed.
 
-    Each pair goes on where it moves least.
+    Of the two orders the one is taken in which the values move least from the sample before. A single branch, shape
+    (1, k), stays as it is.
     """
     if len(x) == 2:
         stay, change = moves(x)
@@ -290,15 +297,16 @@ def follow(x: Complexes) -> None:
 
 
 def moves(x: Complexes) -> tuple[Floats, Floats]:
-    """How far two values move from each sample to the next in their order, and if they changed places."""
+    """How far two values move from each sample to the next, in their present order and in the other one."""
     return abs(x[:, 1:] - x[:, :-1]).max(axis=0), abs(x[::-1, 1:] - x[:, :-1]).max(axis=0)
 
 
 def doubtful(x: Complexes) -> NDArray[np.bool_]:
-    """Between which samples Im x may have two zeros more, or the order of the two branches is not sure.
+    """The intervals between samples in which Im x may have two more zeros, or the order of the branches is uncertain.
 
-    Beside a sample where |Im x| is least, and less than the second difference of Im x: a parabola dips by an eighth of
-    that. Where Im x merely changes its sign, that difference is small.
+    Two zeros may hide beside a sample at which |Im x| has a minimum that is smaller than the second difference of Im x:
+    between samples a parabola dips by up to an eighth of that. Where Im x merely changes its sign, the second
+    difference is small.
     """
     size = abs(x.imag)
     bend = abs(x.imag[:, 2:] - 2 * x.imag[:, 1:-1] + x.imag[:, :-2])
@@ -312,7 +320,7 @@ def doubtful(x: Complexes) -> NDArray[np.bool_]:
 
 
 def lag(nu: Complexes, s: float) -> tuple[Complexes, Complexes]:
-    """B(ν) = (1 − e^{−νs})/ν and its slope."""
+    """B(ν) = (1 − e^{−νs})/ν and its derivative."""
     safe = np.where(abs(nu) < NEAR_ZERO, NEAR_ZERO, nu)
     less = -np.expm1(-safe * s)
     B, decay = less / safe, 1 - less

@@ -1,7 +1,7 @@
-"""The stability chart, figure 6: the verdict of each mode over ηΠ and λ₂, by D-decomposition.
+"""The stability chart, figure 6: the verdict on each mode over ηΠ and λ₂, by D-decomposition.
 
 For one mode and one λ₂ the number of roots in the right half plane is known for ηΠ → ∞, and it changes only where roots
-cross the imaginary axis. Those ηΠ have a closed form, so no root is ever looked for.
+cross the imaginary axis. Those ηΠ have a closed form, so no roots need to be found.
 """
 
 from collections.abc import Callable, Sequence
@@ -21,16 +21,17 @@ from .characteristic import Characteristic
 from .contacts import Contact, charted
 from .roots import SMALLEST_ETA_PI, Verdict, touching_stabilizers
 
-VERDICTS = tuple(Verdict)  # by their codes in a chart
+VERDICTS = tuple(Verdict)  # the index of a verdict is its code in a chart
 STABLE, DRIFT, OSCILLATORY = range(3)
 REAL_AXIS = np.concatenate([np.logspace(-7.0, -2.0, 16), np.arange(0.02, 3.0, 0.03), np.logspace(0.5, 4.0, 60)])
+"""The ν > 0 between which real roots are located: two roots between neighbours are not seen."""
 SMALLEST_LAMBDA2 = 0.05
 
 Integers = NDArray[np.int64]
 
 
 class Band(NamedTuple):
-    """What there is along ηΠ: increasing ends, and the codes before, between and after them."""
+    """Bands along ηΠ: the ends between them, increasing, shape (k,), and the code of each band, shape (k + 1,)."""
 
     ends: Floats
     codes: Integers
@@ -38,20 +39,20 @@ class Band(NamedTuple):
 
 @dataclass(frozen=True)
 class Panel:
-    """The verdicts of one mode.
+    """The verdicts on one mode.
 
     Parameters
     ----------
     contact
-        The stabilizers that touch, by number.
+        The numbers of the stabilizers that touch.
     saturated
         Whether the bit tilt is at its limit.
     verdicts
-        Indices into `VERDICTS`, shape (len(lambda2), len(eta_pi)).
+        Codes of the verdicts, 0 stable, 1 drift, 2 oscillatory, shape (k, m): λ₂, then ηΠ.
     bands
-        For each λ₂ where the verdict changes.
+        For each λ₂ the bands of equal verdict along ηΠ.
     doubling
-        The drilled length in which a drift doubles, m, shape (len(lambda2), len(eta_pi)); nan where it does not drift.
+        The drilled length in which a drift doubles, m, shape (k, m); nan where the verdict is not drift.
     characteristics
         The characteristic function for each λ₂.
     """
@@ -66,16 +67,26 @@ class Panel:
 
 @dataclass(frozen=True)
 class Chart:
-    """Modes over ηΠ (increasing) and λ₂: for each contact one with the bit tilt not saturated and one with it so."""
+    """The verdicts on several modes over ηΠ and λ₂.
+
+    Parameters
+    ----------
+    eta_pi, lambda2
+        The grid, both increasing, shape (m,) and (k,).
+    inclination
+        Inclination of the straight hole, rad.
+    panels
+        Two for each set of contacts: one with the bit tilt not saturated, then one with it saturated.
+    """
 
     eta_pi: Floats
     lambda2: Floats
-    inclination: float  # of the straight hole, rad
+    inclination: float
     panels: tuple[Panel, ...]
 
 
 def usual_grid(bha: BottomHoleAssembly, eta_pi: float, critical: float = 0.15) -> tuple[Floats, Floats]:
-    """ηΠ and λ₂ of a chart that shows what matters: the case, at `eta_pi`, and the `critical` ηΠ well inside."""
+    """The ηΠ and λ₂ of a chart whose range includes the case, at `eta_pi`, and the `critical` ηΠ well inside."""
     lambda2 = lambda_2(bha)
     highest = max(4.0 * critical, 1.5 * eta_pi, 300 * SMALLEST_ETA_PI)
     return (
@@ -90,7 +101,7 @@ def lambda_2(bha: BottomHoleAssembly) -> float:
     Raises
     ------
     ParameterError
-        If there is no second one.
+        If there is no second stabilizer.
     """
     first, *others = bha.stabilizer_positions
     if not others:
@@ -107,22 +118,28 @@ def stability_chart(
     contacts: Sequence[Contact] | None = None,
     progress: Callable[[float], None] = lambda _: None,
 ) -> Chart:
-    """The verdicts of modes over ηΠ and λ₂, the distance from the first to the second stabilizer over ℓ₁.
+    """Compute the verdict on modes of a straight hole over ηΠ and λ₂, as in figure 6 of the paper.
 
-    Stabilizers beyond the second keep their distances from it. Those without clearance touch in every mode.
+    λ₂ is the distance from the first to the second stabilizer over ℓ₁. Stabilizers beyond the second keep their
+    distances from it. Stabilizers without clearance touch in every mode.
 
     Parameters
     ----------
     case
         The drilling system, of two stabilizers or more.
     eta_pi, lambda2
-        The grid, both increasing, see `usual_grid`; shape (m,) and (k,).
+        The grid, both increasing, shape (m,) and (k,); ηΠ >= 1e-4 and λ₂ >= 0.05.
     inclination
-        Of the straight hole, rad; without it, that of the case's hole at the bit.
+        Inclination of the straight hole, rad; without it, that of the existing hole at the bit.
     contacts
-        The stabilizers that touch, by number: two panels for each. Without it those of `contacts.charted`.
+        Sets of numbers of stabilizers that touch; each gives two panels. Without it, at most four sets that occur.
     progress
         Called with the fraction done.
+
+    Returns
+    -------
+    Chart
+        The verdicts, a panel for each mode.
 
     Raises
     ------
@@ -155,12 +172,12 @@ def stability_chart(
     panels = []
     for done, (numbers, saturated) in enumerate(modes):
         touching = touching_stabilizers(bha, numbers)
-        characteristics, rows = [], []
+        characteristics, found = [], []
         for distance in lambda2.tolist():
             characteristics.append(Characteristic.of(respaced(scaled, distance), touching, saturated, inclination))
-            rows.append(chart_row(characteristics[-1], eta_pi))
-            progress((done + len(rows) / len(lambda2)) / len(modes))
-        codes, bands, growth = zip(*rows, strict=True)
+            found.append(verdicts_along(characteristics[-1], eta_pi))
+            progress((done + len(found) / len(lambda2)) / len(modes))
+        codes, bands, growth = zip(*found, strict=True)
         with np.errstate(divide="ignore"):
             doubling = log(2) / np.array(growth) * bha.length_scale
         panels.append(Panel(numbers, saturated, np.array(codes), bands, doubling, tuple(characteristics)))
@@ -168,13 +185,16 @@ def stability_chart(
 
 
 def respaced(scaled: Scaled, lambda2: float) -> Scaled:
-    """`scaled` with the second stabilizer, and all beyond it, moved to λ₂ from the first."""
+    """`scaled` with the second stabilizer, and all beyond it, moved so that it is λ₂ from the first."""
     shift = 1.0 + lambda2 - scaled.s[1]
     return replace(scaled, s=(1.0, *(s_i + shift for s_i in scaled.s[1:])))
 
 
 def all_crossings(characteristic: Characteristic, smallest: float) -> tuple[Floats, Floats]:
-    """ηΠ >= `smallest` where roots cross the imaginary axis, increasing, and how many more are to the right beyond."""
+    """The ηΠ >= `smallest` at which roots cross the imaginary axis, increasing, and the change in number to the right.
+
+    The change is that of the number of roots in the right half plane as ηΠ grows beyond the crossing.
+    """
     pairs = characteristic.crossings(smallest)
     at, change = pairs.eta_pi, 2 * pairs.direction
     b, c = characteristic.at_zero()
@@ -186,7 +206,7 @@ def all_crossings(characteristic: Characteristic, smallest: float) -> tuple[Floa
 
 
 def unstable_roots(characteristic: Characteristic, eta_pi: Floats) -> tuple[Integers, Integers]:
-    """The number of roots in the right half plane, and of real ones among them, for each ηΠ (increasing)."""
+    """The number of roots in the right half plane, and of the real ones among them, for each ηΠ (increasing)."""
     total = all_roots(characteristic, eta_pi, *all_crossings(characteristic, float(eta_pi[0])))
     return total, real_roots(characteristic, eta_pi, total)[0]
 
@@ -195,15 +215,15 @@ def all_roots(characteristic: Characteristic, eta_pi: Floats, at: Floats, change
     """The number of roots in the right half plane for each ηΠ (increasing), given `all_crossings`."""
     to_come = np.append(np.cumsum(change[::-1])[::-1], 0.0)
     b, c = characteristic.at_zero()
-    # ηΠ → ∞ leaves one root near zero, on the side that the sign of P(0) tells
+    # as ηΠ → ∞ a single root stays near zero, on the side that the sign of P(0) decides
     number: Integers = np.rint(((b or c) < 0) - to_come[np.searchsorted(at, eta_pi)]).astype(int)
     return number
 
 
 def real_roots(characteristic: Characteristic, eta_pi: Floats, total: Integers) -> tuple[Integers, Floats]:
-    """The number of positive roots, and roughly the largest (nan if there is none), for each ηΠ.
+    """The number of positive real roots, and an estimate of the largest (nan if there is none), for each ηΠ.
 
-    `total` is the number of roots in the right half plane: if that is odd, one at least is real.
+    `total` is the number of roots in the right half plane. If there is only one, it is real.
     """
     number, largest = total.copy(), np.full(len(eta_pi), np.nan)
     some = np.flatnonzero(total)
@@ -226,21 +246,21 @@ def real_roots(characteristic: Characteristic, eta_pi: Floats, total: Integers) 
     return number, largest
 
 
-def chart_row(characteristic: Characteristic, eta_pi: Floats) -> tuple[Integers, Band, Floats]:
-    """The verdict at each ηΠ (increasing), as an index into `VERDICTS`, where it changes, and the growth of a drift.
+def verdicts_along(characteristic: Characteristic, eta_pi: Floats) -> tuple[Integers, Band, Floats]:
+    """The code of the verdict at each ηΠ (increasing), the bands of equal verdict, and the growth of a drift.
 
-    The growth is per ℓ₁, and nan where the verdict is another one.
+    The growth is per ℓ₁, and nan where the verdict is not drift.
     """
     at, change = all_crossings(characteristic, float(eta_pi[0]))
     between = np.clip(at, eta_pi[0], eta_pi[-1])
-    every = np.append(eta_pi, (between[1:] + between[:-1]) / 2)  # no band between two crossings is passed over
+    every = np.append(eta_pi, (between[1:] + between[:-1]) / 2)  # so that no band between two crossings is missed
     order = np.argsort(every, kind="stable")
     x = every[order]
     total = all_roots(characteristic, x, at, change)
     real, growth = real_roots(characteristic, x, total)
     codes = np.where(total > real, OSCILLATORY, np.where(real > 0, DRIFT, STABLE))
     before = np.flatnonzero(codes[1:] != codes[:-1])
-    # a crossing brings the change, but for a pair that becomes two real roots
+    # the verdict changes at a crossing, unless a pair in the right half plane becomes two real roots
     nearest = np.append(at, np.inf)[np.searchsorted(at, x[before])]
     ends = np.where(nearest <= x[before + 1], nearest, (x[before] + x[before + 1]) / 2)
     on_grid = order < len(eta_pi)

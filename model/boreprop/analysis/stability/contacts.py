@@ -1,6 +1,6 @@
-"""The modes that a drilling system can be in: which stabilizers touch the wall together, and the one it drills in.
+"""The modes of a drilling system: which stabilizers can touch the wall together, and the mode in which a case drills.
 
-Stability is a matter of one mode. A blade that no hole brings to the wall has no part in it.
+Stability is a property of a mode. A stabilizer that touches the wall in no hole takes part in none.
 """
 
 from collections.abc import Iterable
@@ -16,17 +16,17 @@ from ..steering import offsets, steady_response
 from .roots import critical_of
 
 SHARPEST_TURN = radians(10.0) / 30.0  # rad/m: steerable systems hardly turn a hole faster
-TILTS = 21  # of the bit, from one limit to the other
-MOST_SETS = 4  # in a chart, each with the tilt saturated and not
+TILTS = 21  # bit tilts that are tried, from one limit to the other; fewer might miss a contact of a short range
+MOST_SETS = 4  # sets of contacts in a chart, each with the tilt saturated and not: eight panels
 
 Contact = tuple[int, ...]
 """The numbers of the stabilizers that touch, increasing."""
 
 
 def all_contacts(bha: BottomHoleAssembly, among: Iterable[int] | None = None) -> tuple[Contact, ...]:
-    """The contacts that stabilizers with `among` these numbers can make (without it all), most stabilizers first.
+    """All sets that the stabilizers numbered in `among` (None: all non-ideal ones) can form, the largest sets first.
 
-    Those without clearance are in each.
+    Stabilizers without clearance are in every set.
     """
     always = always_touching(bha)
     free = [i for i in numbers(bha) if i not in always and (among is None or i in among)]
@@ -42,16 +42,16 @@ def contacts_met(
     Parameters
     ----------
     bha, bit
-        The drilling system. The bit tilts as far as its limit to both sides.
+        The drilling system. Bit tilts up to the limit to both sides are tried.
     inclination
-        Of the hole, rad.
+        Inclination of the hole, rad.
     rss_forces
-        N; and without a force.
+        Steering forces, N. No force is always tried.
 
     Returns
     -------
     frozenset of Contact
-        The contacts met in one of these holes at one of these tilts under one of these forces.
+        The contacts that occur in any of these holes at any of these tilts under any of these forces.
     """
     scaled = scale(bha, bit)
     modes = Modes(scaled)
@@ -66,7 +66,7 @@ def contacts_met(
 
 
 def can_touch(bha: BottomHoleAssembly, bit: BitRock, inclination: float, rss_forces: Iterable[float] = ()) -> Contact:
-    """The stabilizers that touch in one of `contacts_met`: all but those whose clearance no hole uses up."""
+    """The stabilizers that touch in any of `contacts_met`: all whose clearance some hole uses up."""
     return tuple(sorted(set().union(*contacts_met(bha, bit, inclination, rss_forces))))
 
 
@@ -77,7 +77,7 @@ def first_that_touches(case: Case) -> int:
 
 
 def steady_mode(case: Case, rss_force: float, inclination: float) -> tuple[Contact, bool]:
-    """The mode of the steady response to a force, in which a case drills once transients have died out.
+    """The mode of the steady response to a force: that in which a case drills once transients have died out.
 
     Parameters
     ----------
@@ -97,10 +97,11 @@ def steady_mode(case: Case, rss_force: float, inclination: float) -> tuple[Conta
 def charted(
     bha: BottomHoleAssembly, bit: BitRock, inclination: float, rss_forces: Iterable[float] = (), first: Contact = ()
 ) -> tuple[Contact, ...]:
-    """The contacts that a chart shows, at most four, most stabilizers first.
+    """The sets of contacts that a chart shows, at most four, the largest sets first.
 
-    All that the stabilizers that `can_touch` make if there are no more than four. Else all of them together, the
-    contact `first` (that of the steady mode), and of `contacts_met` those that oscillate up to the largest ηΠ.
+    These are all sets of the stabilizers that `can_touch`, if there are no more than four. Otherwise they are the set
+    of all of them, the set `first` (that of the steady mode) and, of `contacts_met`, those that oscillate up to the
+    largest ηΠ.
     """
     met = contacts_met(bha, bit, inclination, rss_forces)
     touching = set(first).union(*met)

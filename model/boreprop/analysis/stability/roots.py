@@ -20,38 +20,39 @@ from ...errors import InputError, RootsNotFound
 from .characteristic import Characteristic
 from .zeros import Strip, find_zeros
 
-SMALLEST_ETA_PI = 1e-4  # the number of roots to the right of any abscissa grows as 1/ηΠ
-ABSCISSA = -0.5  # roots are listed right of it
-DAMPING = 5.0  # nor do roots matter that shrink by e^-3 on the way from the bit to the last stabilizer
-MARGIN = 0.2  # left of the abscissa, times s_n, for a contour that keeps clear of the roots
-MOST_ROOTS = 500_000  # that are looked for
-NEUTRAL = 1e-9  # a root this close to the imaginary axis is on it
-SMOOTH = 6.0  # times 1/s_n: e^-6 is nothing to be seen on the grid
-SPACING = 0.5  # of the grid on which roots are looked for, times s_n
+SMALLEST_ETA_PI = 1e-4  # smaller values would take too long: the number of roots right of an abscissa grows as 1/ηΠ
+ABSCISSA = -0.5  # per ℓ₁: usually roots right of this are listed, …
+DAMPING = 5.0  # … and for a long BHA those whose disturbance shrinks by less than e⁻⁵ over its length
+MARGIN = 0.2  # 1/s_n: room left of the abscissa in which a contour can keep clear of the roots
+MOST_ROOTS = 500_000  # more are refused, since finding them would take too long
+NEUTRAL = 1e-9  # per ℓ₁: a root this close to the imaginary axis counts as on it
+SMOOTH = 6.0  # 1/s_n: at larger Re ν the delayed terms are below e⁻⁶, and the grid may be coarser
+SPACING = 0.5  # 1/s_n: of the first grid in the search for roots; with a coarser one more roots are missed at first
 
 
 class Verdict(StrEnum):
-    """What becomes of a small perturbation."""
+    """What becomes of a small disturbance."""
 
-    STABLE = "stable"  # no root in the right half plane
-    DRIFT = "drift"  # real ones only
-    OSCILLATORY = "oscillatory"  # a complex pair
+    STABLE = "stable"  # there is no root in the right half plane
+    DRIFT = "drift"  # there are only real ones
+    OSCILLATORY = "oscillatory"  # there is a complex pair
 
 
 @dataclass(frozen=True)
 class Roots:
-    """The roots of a mode right of an abscissa, all of them: the argument principle counted them.
+    """All roots of a mode right of an abscissa. The argument principle has confirmed that none is missing.
 
     Parameters
     ----------
     eta_pi
         ηΠ.
     contact
-        The stabilizers that touch, by number.
+        The numbers of the stabilizers that touch.
     saturated
         Whether the bit tilt is at its limit.
     roots
-        Per ℓ₁, rightmost first, one of each pair (imaginary part >= 0), a multiple root as often as it is one.
+        The roots ν, per ℓ₁, the rightmost first. Of each pair only the root with imaginary part > 0 is listed; a
+        multiple root is repeated.
     """
 
     eta_pi: float
@@ -61,7 +62,7 @@ class Roots:
 
     @property
     def verdict(self) -> Verdict:
-        """What the roots in the right half plane make of a small perturbation."""
+        """What becomes of a small disturbance, by the roots in the right half plane."""
         return verdict(self.roots)
 
 
@@ -74,7 +75,7 @@ class CriticalEtaPi:
     eta_pi
         ηΠ.
     active_weight_on_bit
-        The same as a force, N.
+        The active weight on bit at that ηΠ, N.
     frequency
         ω, per ℓ₁.
     wavelength
@@ -96,22 +97,29 @@ def find_roots(
     inclination: float | None = None,
     abscissa: float | None = None,
 ) -> Roots:
-    """All roots of a mode right of an abscissa, or the nearest beyond it if there are none.
+    """Find all roots of a mode of a straight hole right of an abscissa: solve the characteristic equation (19).
+
+    If there are none, the abscissa is moved to the left until there are.
 
     Parameters
     ----------
     case
         The drilling system.
     eta_pi
-        ηΠ, at least `SMALLEST_ETA_PI`; without it, the case's.
+        ηΠ, at least 1e-4; without it, that of the case.
     contact
-        Numbers of the stabilizers that touch, from 1; those without clearance always do.
+        Numbers of the stabilizers that touch, from 1; those without clearance always touch.
     saturated
         Whether the bit tilt is at its limit.
     inclination
-        Of the straight hole, rad; without it, that of the case's hole at the bit.
+        Inclination of the straight hole, rad; without it, that of the existing hole at the bit.
     abscissa
-        Per ℓ₁, at most 0.
+        The largest real part that is left out, per ℓ₁, at most 0; without it −0.5, or nearer to 0 for a long BHA.
+
+    Returns
+    -------
+    Roots
+        The roots ν of the growth e^{νξ} of a small disturbance, per ℓ₁, and the verdict on them.
 
     Raises
     ------
@@ -147,20 +155,25 @@ def critical_eta_pi(
     saturated: bool = False,
     inclination: float | None = None,
 ) -> CriticalEtaPi | None:
-    """The largest ηΠ at which a complex pair of a mode lies on the imaginary axis.
+    """Find the largest ηΠ at which a complex pair of roots of a mode lies on the imaginary axis.
 
-    Above it the mode does not oscillate; None if it never does, for any ηΠ >= `SMALLEST_ETA_PI`.
+    At larger ηΠ the mode does not oscillate. The roots are those of section V, equation (19).
 
     Parameters
     ----------
     case
-        The drilling system.
+        The drilling system. Its weight on bit has no influence.
     contact
         Numbers of the stabilizers that touch; without it all non-ideal ones, the mode that makes a hole ripple.
     saturated
         Whether the bit tilt is at its limit.
     inclination
-        Of the straight hole, rad; without it, that of the case's hole at the bit.
+        Inclination of the straight hole, rad; without it, that of the existing hole at the bit.
+
+    Returns
+    -------
+    CriticalEtaPi or None
+        That ηΠ, as a weight on bit too, and the wave at it; None if the mode oscillates at no ηΠ >= 1e-4.
 
     Raises
     ------
@@ -185,7 +198,7 @@ def critical_of(
     check_number("inclination", inclination)
     touching = touching_stabilizers(bha, range(1, len(bha.stabilizer_positions)) if contact is None else contact)
     characteristic = Characteristic.of(scale(bha, bit), touching, saturated, inclination)
-    for smallest in (0.1, 0.01, 0.001, SMALLEST_ETA_PI):  # the smaller, the more of them there are
+    for smallest in (0.1, 0.01, 0.001, SMALLEST_ETA_PI):  # from above, since there are ever more crossings below
         crossings = characteristic.crossings(smallest)
         if len(crossings.eta_pi):
             eta_pi, frequency = float(crossings.eta_pi[-1]), float(crossings.omega[-1])
@@ -205,16 +218,16 @@ def touching_stabilizers(bha: BottomHoleAssembly, numbers: Iterable[int]) -> tup
     wanted, last = set(numbers), len(bha.stabilizer_clearances)
     for number in wanted:
         if not 1 <= number <= last:
-            raise ParameterError("contact", f"must be non-ideal stabilizers, here {last} from the bit up", number)
+            raise ParameterError("contact", f"must be numbers of non-ideal stabilizers, 1 to {last} here", number)
     return tuple(int(i in wanted or not clearance) for i, clearance in enumerate(bha.stabilizer_clearances, 1))
 
 
 def parse_contact(text: str) -> tuple[int, ...]:
-    """The stabilizer numbers in a list such as "1,2"; `InputError` if it is none."""
+    """The stabilizer numbers in a text such as "1,2"; `InputError` if it is not such a list."""
     try:
         return tuple(int(number) for number in text.split(",")) if text else ()
     except ValueError:
-        raise InputError(f"--contact: must be numbers of stabilizers with commas between, got {text!r}") from None
+        raise InputError(f"--contact: must be numbers of stabilizers, separated by commas, got {text!r}") from None
 
 
 def stabilizer_numbers(touching: tuple[int, ...]) -> tuple[int, ...]:
@@ -223,7 +236,7 @@ def stabilizer_numbers(touching: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def verdict(roots: Iterable[complex]) -> Verdict:
-    """The verdict on roots that hold all of the right half plane."""
+    """The verdict on roots, which must include all those in the right half plane."""
     unstable = [root for root in roots if root.real > NEUTRAL]
     if any(root.imag for root in unstable):
         return Verdict.OSCILLATORY
@@ -233,16 +246,16 @@ def verdict(roots: Iterable[complex]) -> Verdict:
 def rightmost_roots(
     characteristic: Characteristic, eta_pi: float, abscissa: float | None = None
 ) -> tuple[complex, ...]:
-    """All roots with Re ν >= `abscissa` (<= 0); if there are none, as far left as it takes.
+    """All roots with Re ν >= `abscissa` (<= 0), the rightmost first; if there are none, further left until there are.
 
-    Rightmost first, one of each pair (imaginary part >= 0), a multiple root as often as it is one.
+    Of each pair only the root with imaginary part > 0 is listed; a multiple root is repeated.
 
     Raises
     ------
     ParameterError
         If there are too many roots right of the abscissa.
     RootsNotFound
-        If the argument principle counts more than are found.
+        If the argument principle counts more roots than are found.
     """
     reach = float(characteristic.s[-1])
     if abscissa is None:
@@ -250,7 +263,7 @@ def rightmost_roots(
     frequencies, rightmost = characteristic.outline(eta_pi, abscissa - MARGIN / reach)
     if frequencies[-1] * reach > 2 * pi * MOST_ROOTS:
         raise ParameterError(
-            "abscissa", f"must be nearer to 0: right of it lie too many roots at ηΠ = {eta_pi:g}", abscissa
+            "abscissa", f"must be nearer to 0, too many roots lie right of it at ηΠ = {eta_pi:g}", abscissa
         )
     try:
         roots = find_zeros(
@@ -263,7 +276,7 @@ def rightmost_roots(
             SMOOTH / reach,
         )
     except ArithmeticError as error:
-        raise RootsNotFound(f"the roots at ηΠ = {eta_pi:.6g}: {error}; take an ηΠ beside it (--eta-pi)") from error
+        raise RootsNotFound(f"the roots at ηΠ = {eta_pi:.6g}: {error}; use a slightly other --eta-pi") from error
     roots = roots[roots.real >= abscissa]
     if not len(roots):
         return rightmost_roots(characteristic, eta_pi, abscissa + usual_abscissa(characteristic))
@@ -271,5 +284,5 @@ def rightmost_roots(
 
 
 def usual_abscissa(characteristic: Characteristic) -> float:
-    """Right of which roots are listed, if nobody says another one."""
+    """The abscissa right of which roots are listed if none is given."""
     return max(ABSCISSA, -DAMPING / float(characteristic.s[-1]))

@@ -1,6 +1,7 @@
-"""All zeros of an analytic function in a half strip, with a proof that none is missing.
+"""Finds all zeros of an analytic function in a strip, and proves by the argument principle that none is missing.
 
-For functions that are real on the real axis: zeros are real or come in pairs, and the upper half plane is enough.
+The function must be real on the real axis. Its zeros are then real or come in conjugate pairs, so only the upper half
+plane is searched.
 """
 
 from collections.abc import Callable, Iterator
@@ -13,27 +14,27 @@ from scipy.spatial import KDTree
 
 from ...arrays import Complexes, Floats
 
-SAME = 1e-7  # zeros closer than this are one
-GRIDS = 4  # tried in turn, each twice as fine as the one before
-SEARCHES = 4  # beside the zeros that are known
-BLOCK = 2**17  # points of a grid or a contour at a time
-NEWTON_STEPS = 60
-CONVERGED = 1e-13  # step of Newton's method after which another would find rounding only
-BESIDE = 1e-3 * (1 + 1j)  # from a known zero to the start for the next
-STEADY = 0.5  # largest change of the function along a piece of a contour, over its value
+SAME = 1e-7  # zeros closer than this are the same zero: Newton's method finds a double zero only to about 1e-8
+GRIDS = 4  # grids tried in turn, each twice as fine as the last
+SEARCHES = 4  # searches beside the zeros found, before the next grid
+BLOCK = 2**17  # points of a grid or contour evaluated at a time, which limits memory to some megabytes
+NEWTON_STEPS = 60  # at most, for each start
+CONVERGED = 1e-13  # a step of Newton's method this small ends it: the next would be rounding
+BESIDE = 1e-3 * (1 + 1j)  # from a zero that was found to the start for another one near it
+LARGEST_CHANGE = 0.5  # of the function along a piece of a contour, over its value: so its argument cannot jump by π
 
 Function = Callable[[Complexes], tuple[Complexes, Complexes]]
-"""A function and its derivative, on arrays of any shape."""
+"""Returns the function and its derivative, for arrays of any shape."""
 OnGrid = Callable[[Floats, Floats], Complexes]
-"""The function at x + iy, shape (len(y), len(x)); extra zeros do no harm."""
+"""Returns the function at x + iy, shape (len(y), len(x)); it may have further zeros."""
 
 
 Right = Callable[[float], float]
-"""A bound on Re ν of the zeros with Im ν above the argument."""
+"""Returns a bound on Re ν of the zeros whose Im ν is above the argument."""
 
 
 class Strip(NamedTuple):
-    """left < Re ν < right, |Im ν| < top."""
+    """The strip left < Re ν < right, |Im ν| < top."""
 
     left: float
     right: float
@@ -49,32 +50,32 @@ def find_zeros(
     right: Right | None = None,
     smooth: float = inf,
 ) -> Complexes:
-    """All zeros in a strip.
+    """Find all zeros in a strip.
 
-    On a grid the modulus has minima next to zeros only. Newton's method polishes them, and the argument principle tells
-    how many are missing: those are looked for beside the ones found, then on a finer grid. The grid and the contour are
-    gone through in pieces: only the zeros themselves need memory.
+    The modulus of an analytic function has minima only at zeros, so Newton's method starts from the minima on a grid.
+    The argument principle then tells how many zeros are missing. These are searched for beside those found, then on a
+    finer grid. Grid and contour are evaluated in pieces, so memory is needed for the zeros only.
 
     Parameters
     ----------
     function, on_grid
         The function.
     strip
-        With no zero on its upper and right edges.
+        The strip. No zero may lie on its upper and right edges.
     margin
-        How far beyond the left edge of the strip the count may go, to keep clear of zeros.
+        The left edge of the contour may be moved this far to the left to keep clear of zeros.
     spacing
-        Of the first grid.
+        Spacing of the first grid.
     right
-        A bound on Re ν of the zeros above a given Im ν, if that is less than the strip's further up.
+        A bound on Re ν of the zeros above a given Im ν, where that is less than the right edge of the strip.
     smooth
-        The abscissa > 0 right of which the function changes more slowly: the grid is twice as coarse right of its
-        double, and so on.
+        The abscissa > 0 right of which the function changes more slowly. The spacing of the grid is doubled right of
+        twice this abscissa, doubled again right of four times, and so on.
 
     Returns
     -------
     zeros
-        Real or in the upper half plane, perhaps some of the margin too, a multiple zero as often as it is one.
+        The zeros, real or in the upper half plane; a multiple zero is repeated. Some may lie in the margin.
 
     Raises
     ------
@@ -93,16 +94,16 @@ def find_zeros(
             if missing < 0:
                 break
             zeros = np.concatenate([zeros, beside(function, zeros)])
-    raise ArithmeticError(f"{missing} zeros more were counted in {counted} than found")
+    raise ArithmeticError(f"{missing} more zeros lie in {counted} than were found")
 
 
 def number(zeros: Complexes, left: float) -> int:
-    """How many zeros lie right of `left`, both of each pair."""
+    """The number of zeros right of `left`, counting both of each pair."""
     return int(np.where(zeros.imag > 0, 2, 1)[zeros.real > left].sum())
 
 
 def clear_abscissa(zeros: Complexes, lowest: float, highest: float) -> float:
-    """The middle of the widest gap between real parts."""
+    """The middle of the widest gap, between two bounds, in the real parts of the zeros."""
     within = zeros.real[(zeros.real > lowest) & (zeros.real < highest)]
     marks = np.sort(np.concatenate([[lowest, highest], within]))
     widest = np.argmax(np.diff(marks))
@@ -129,7 +130,7 @@ def count(function: Function, strip: Strip, spacing: float) -> int:
 
 
 def turning(function: Function, at: Complexes) -> float:
-    """By how much the argument of a function grows along a line through the samples `at`, and more as needed.
+    """The growth of the argument of a function along a line through the samples `at`; more samples are added as needed.
 
     Raises
     ------
@@ -140,7 +141,7 @@ def turning(function: Function, at: Complexes) -> float:
     while True:
         length, size = abs(np.diff(at)), abs(value)
         change = length * np.maximum(abs(slope[:-1]), abs(slope[1:]))
-        coarse = np.flatnonzero(change > STEADY * np.minimum(size[:-1], size[1:]))
+        coarse = np.flatnonzero(change > LARGEST_CHANGE * np.minimum(size[:-1], size[1:]))
         if not len(coarse):
             return float(np.angle(value[1:] / value[:-1]).sum())
         if length[coarse].min() < SAME**2:
@@ -153,15 +154,15 @@ def turning(function: Function, at: Complexes) -> float:
 
 
 def minima(on_grid: OnGrid, strip: Strip, spacing: float, right: Right, smooth: float) -> Iterator[Complexes]:
-    """The points of a grid over the upper half of a strip at which the modulus is least among nine, in pieces."""
+    """The points of a grid over the upper half of a strip at which the modulus is least among nine, piece by piece."""
     left, end = strip.left, min(2 * smooth, strip.right)
     while left < strip.right:
         y = 0.0
         while y < strip.top and left < right(y):
             x = np.arange(left - 2 * spacing, min(end, right(y)) + 2 * spacing, spacing)
-            rows = spacing * np.arange(-1.5, BLOCK // len(x) + 2)  # about y, and so symmetric about the real axis
-            yield least_among_nine(x, y + rows[rows < strip.top - y + 3 * spacing], on_grid)
-            y += rows[-1] - spacing / 2
+            above = spacing * np.arange(-1.5, BLOCK // len(x) + 2)  # symmetric about the real axis for y = 0
+            yield least_among_nine(x, y + above[above < strip.top - y + 3 * spacing], on_grid)
+            y += above[-1] - spacing / 2
         left, end, spacing = end, min(2 * end, strip.right), 2 * spacing
 
 
@@ -177,20 +178,20 @@ def least_among_nine(x: Floats, y: Floats, on_grid: OnGrid) -> Complexes:
     return found
 
 
-def beside(function: Function, known: Complexes) -> Complexes:
-    """Zeros beside the `known` ones: each is divided out in turn, and Newton's method goes on from there.
+def beside(function: Function, zeros: Complexes) -> Complexes:
+    """Further zeros near the given ones: each of these is divided out in turn, and Newton's method starts beside it.
 
     A multiple zero is found again.
     """
-    found = newton(function, known + BESIDE, known)
-    multiple = found[abs(found - known) < SAME]
+    found = newton(function, zeros + BESIDE, zeros)
+    multiple = found[abs(found - zeros) < SAME]
     others = distinct(found)
-    far = KDTree(plane(known)).query(plane(others))[0] > SAME
+    far = KDTree(plane(zeros)).query(plane(others))[0] > SAME
     return np.concatenate([multiple, others[far]])
 
 
 def distinct(points: Complexes) -> Complexes:
-    """`points` without nan, and one of those that are the same zero."""
+    """`points` without nan, and without repetitions of the same zero."""
     points = points[~np.isnan(points)]
     return np.delete(points, KDTree(plane(points)).query_pairs(SAME, output_type="ndarray")[:, 1])
 
@@ -201,19 +202,19 @@ def plane(points: Complexes) -> Floats:
 
 
 def newton(function: Function, starts: Complexes, divided_out: Complexes | None = None) -> Complexes:
-    """Where Newton's method ends, real or in the upper half plane; nan where it does not converge.
+    """The limits of Newton's method, real or in the upper half plane; nan where it does not converge.
 
-    With `divided_out`, one known zero for each start, that zero and its conjugate are divided out of the function.
+    With `divided_out`, a zero for each start, that zero and its conjugate are divided out of the function.
     """
     zeros, moved = starts.copy(), np.full(len(starts), np.inf)
     active = np.arange(len(zeros))
-    with np.errstate(all="ignore"):  # a start that runs away
+    with np.errstate(all="ignore"):  # a start may diverge
         for _ in range(NEWTON_STEPS):
             at = zeros[active]
             value, slope = function(at)
             if divided_out is not None:
-                known = divided_out[active]
-                slope = slope - value / (at - known) - np.where(known.imag > 0, value / (at - known.conj()), 0)
+                zero = divided_out[active]
+                slope = slope - value / (at - zero) - np.where(zero.imag > 0, value / (at - zero.conj()), 0)
             step = value / slope
             zeros[active] = at - step
             moved[active] = abs(step)

@@ -1,1 +1,1 @@
-"""Many cases: how they are chosen, computed and kept."""
+"""Studies of many cases: how the cases are chosen, computed and kept."""

@@ -1,4 +1,4 @@
-"""A Dask cluster as the place where a study computes."""
+"""Lets a study compute on a Dask cluster."""
 
 import logging
 from collections.abc import Generator
@@ -7,12 +7,12 @@ from contextlib import contextmanager
 
 from ...errors import InputError
 
-PATIENCE = 10.0  # s that a scheduler may take to answer: those of a cluster that is there answer at once
+PATIENCE = 10.0  # s that a scheduler may take to answer: one that is running answers within a second
 
 
 @contextmanager
 def on_cluster(address: str | None) -> Generator[Executor | None]:
-    """The workers of the Dask scheduler at an address, tcp://HOST:PORT; None: no cluster, the cores of this machine.
+    """Yield an executor on the workers of the Dask scheduler at an address, tcp://HOST:PORT; None for no address.
 
     Raises
     ------
@@ -25,8 +25,8 @@ def on_cluster(address: str | None) -> Generator[Executor | None]:
     try:
         from distributed import Client
     except ImportError as error:
-        raise InputError("--dask: needs Dask: pip install distributed") from error
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what matters comes as an exception
+        raise InputError("--dask: must have Dask installed, got none: pip install distributed") from error
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # errors come as exceptions, too
     try:
         client = Client(address, timeout=PATIENCE)  # type: ignore[no-untyped-call]
     except (OSError, TypeError, ValueError) as error:

@@ -1,4 +1,4 @@
-"""What a study is made of: cases that differ from one in some parameters, on a grid or drawn from distributions."""
+"""The cases of a study: they differ in some parameters, which lie on a grid or are drawn from distributions."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -19,30 +19,43 @@ MOST_VALUES = 5000  # on an axis of a picture
 
 
 class Distribution(Protocol):
-    """What a parameter may be drawn from: any frozen distribution of scipy.stats."""
+    """A distribution from which a parameter may be drawn: any frozen distribution of scipy.stats."""
 
     def ppf(self, q: Any, /) -> Any:
-        """The value below which a draw lies with probability `q`."""
+        """The quantile `q`: a draw is below it with probability `q`."""
 
 
 def vary(case: Case, values: Mapping[str, float]) -> Case:
-    """`case` with other values of some parameters.
+    """Make a case that differs from another in some parameters.
 
     Parameters
     ----------
     case
-        What all else is taken from.
+        The case to start from.
     values
-        Names of `parameters` → values, SI units. Besides: "eta_pi", reached by the weight on bit, with the other
-        values in place; an angle in degrees, "bit_tilt_limit_deg". A "rss_force" acts from the start to the end,
-        instead of the schedule.
+        Name → value in SI units. The names are those of the inputs and parameters in the table of quantities, such as
+        "active_weight_on_bit" or "stabilizer_clearance[1]". "eta_pi" stands for the weight on bit that gives this ηΠ
+        with the other values in place. An angle may be given in degrees: "bit_tilt_limit_deg". An "rss_force" replaces
+        the schedule by a constant force.
+
+    Returns
+    -------
+    Case
+        The new case.
 
     Raises
     ------
     InputError
-        If a name is not among these, or two names are for one parameter.
+        If a name is not among these, or two names stand for the same parameter.
     ParameterError
         If a value is out of range.
+
+    Examples
+    --------
+    >>> from boreprop import paper_case, vary
+    >>> case = vary(paper_case(), {"eta_pi": 0.02, "stabilizer_clearance[1]": 2e-3, "bit_tilt_limit_deg": 1.0})
+    >>> round(case.active_weight_on_bit, 1), case.bha.stabilizer_clearances
+    (3224.9, (0.002,))
     """
     check_names(case, tuple(values))
     wanted = {
@@ -58,7 +71,7 @@ def vary(case: Case, values: Mapping[str, float]) -> Case:
 
 
 def parameter_of(name: str) -> str:
-    """The parameter that is varied under a name: of "eta_pi" the weight, of an angle in degrees the angle."""
+    """The parameter for which a name stands: the weight on bit for "eta_pi", the angle for an angle in degrees."""
     if name == "eta_pi":
         return "active_weight_on_bit"
     angle = BY_NAME.get(name.removesuffix("_deg"))
@@ -66,31 +79,31 @@ def parameter_of(name: str) -> str:
 
 
 def check_names(case: Case, names: tuple[str, ...]) -> None:
-    """Raise `InputError` unless each of `names` can be varied, and no two are for one parameter."""
-    known = parameters(case)
-    besides = ["eta_pi", *(f"{name}_deg" for name in known if quantity_of(name).unit == "rad")]
+    """Raise `InputError` unless each of `names` can be varied, and no two stand for the same parameter."""
+    own = parameters(case)
+    besides = ["eta_pi", *(f"{name}_deg" for name in own if quantity_of(name).unit == "rad")]
     meant = [parameter_of(name) for name in names]
     for name, parameter in zip(names, meant, strict=True):
-        if parameter not in known:
-            raise InputError(f"what is varied must be one of {', '.join([*known, *besides])}, got {name!r}")
+        if parameter not in own:
+            raise InputError(f"a varied parameter must be one of {', '.join([*own, *besides])}, got {name!r}")
         if meant.count(parameter) > 1:
             raise InputError(f"{parameter}: must be varied under one name, got {', '.join(names)}")
 
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """Cases that differ from one in some parameters. `grid` and `sample` make the usual ones.
+    """Cases that differ in some parameters. `grid` and `sample` make the usual ones.
 
     Parameters
     ----------
     case
-        What they have in common.
+        The case from which all differ.
     names
-        The parameters that are varied, see `vary`.
+        The names of the parameters that are varied, see `vary`.
     values
-        A row for each case, a column for each name, shape (cases, names).
+        Their values in each case, SI units, shape (cases, names).
     axes
-        Of a grid, whose last axis varies fastest: name → values. None: the cases are in no order.
+        Name → values along the axes of a grid, whose last axis varies fastest. None: the cases do not form a grid.
 
     Raises
     ------
@@ -111,22 +124,34 @@ class Study:
 
 
 def grid(case: Case, axes: Mapping[str, ArrayLike]) -> Study:
-    """Every combination of the values of some parameters.
+    """Make the cases of a grid: every combination of the values of some parameters.
 
     Parameters
     ----------
     case
-        What the cases have in common.
+        The case from which all differ.
     axes
-        Name of a parameter, see `vary` → its values, shape (values,).
+        Name of a parameter, see `vary` → its values in SI units, shape (values,).
+
+    Returns
+    -------
+    Study
+        The cases; the last axis varies fastest.
 
     Raises
     ------
     InputError
-        If a name cannot be varied or has no values, or there is none.
+        If there is no axis, a name cannot be varied, or an axis has no values.
+
+    Examples
+    --------
+    >>> from boreprop import grid, paper_case
+    >>> cases = grid(paper_case(), {"eta_pi": [0.01, 0.1], "rss_force": [0.0, 5e3]})
+    >>> len(cases), cases.values.tolist()
+    (4, [[0.01, 0.0], [0.01, 5000.0], [0.1, 0.0], [0.1, 5000.0]])
     """
     if not axes:
-        raise InputError("a grid must have at least one axis, got none")
+        raise InputError("axes: a grid must have at least one axis, got none")
     values = {name: np.asarray(axis, dtype=np.float64) for name, axis in axes.items()}
     for name, axis in values.items():
         if axis.ndim != 1 or not axis.size:
@@ -136,26 +161,39 @@ def grid(case: Case, axes: Mapping[str, ArrayLike]) -> Study:
 
 
 def sample(case: Case, uncertain: Mapping[str, Distribution], n: int, seed: int) -> Study:
-    """Cases whose uncertain parameters are drawn from distributions, independently.
+    """Make the cases of a sample: their uncertain parameters are drawn from distributions, independently.
 
-    The draws of a parameter follow from the seed and its name: they stay the same when others come or go, and the
-    first ones of a larger sample are those of a smaller one.
+    The draws of a parameter depend on the seed and on its name only: they do not change when another parameter is added
+    or removed, and a larger sample begins with the draws of a smaller one.
 
     Parameters
     ----------
     case
-        What the cases have in common.
+        The case from which all differ.
     uncertain
-        Name of a parameter, see `vary` → its distribution, say ``scipy.stats.norm(60e3, 6e3)``.
+        Name of a parameter, see `vary` → its distribution in SI units, for example ``scipy.stats.norm(60e3, 6e3)``.
     n
-        Number of cases.
+        Number of cases, at least 1.
     seed
-        ≥ 0.
+        Seed of the draws, a whole number >= 0.
+
+    Returns
+    -------
+    Study
+        The cases.
 
     Raises
     ------
     InputError
-        If a name cannot be varied, a distribution draws what is no finite number, or n or the seed are out of range.
+        If a name cannot be varied, a draw is not a finite number, or n or the seed is out of range.
+
+    Examples
+    --------
+    >>> from scipy.stats import norm
+    >>> from boreprop import paper_case, sample
+    >>> cases = sample(paper_case(), {"active_weight_on_bit": norm(60e3, 6e3)}, n=3, seed=1)
+    >>> cases.values.round().ravel().tolist()
+    [53538.0, 50886.0, 58882.0]
     """
     for name, number, least in (("n", n, 1), ("seed", seed, 0)):
         if number < least:

@@ -1,4 +1,4 @@
-"""A simulation in a dozen numbers: what a study tells of each case unless told otherwise."""
+"""The key figures of a simulation: the results that a study computes of each case if no function is given."""
 
 from collections.abc import Callable, Mapping
 from math import nan
@@ -11,13 +11,14 @@ from ..rippling import State, last_wave
 from ..summary import sum_up
 
 Function = Callable[[Case], Mapping[str, float]]
-"""What a study computes of a case: numbers by name."""
+"""A function that a study can compute of each case: it returns numbers by name."""
 
 
 def key_figures(case: Case, relative_tolerance: float = RELATIVE_TOLERANCE) -> dict[str, float]:
-    """A simulation in a dozen numbers, SI units: what a `boreprop.analysis.summary.Summary` says, one name for each.
+    """Simulate a case and give its key figures: the fields of a `Summary`, in SI units, each a number with a name.
 
-    Only what is reported is computed: a study spends its time on the model.
+    The simulation has a row every 0.1 m. Fields of a `Rippling` that are not reported are not computed, so that a study
+    spends its time on the model.
 
     Examples
     --------
@@ -45,7 +46,7 @@ def key_figures(case: Case, relative_tolerance: float = RELATIVE_TOLERANCE) -> d
     }
 
 
-FIGURES = {  # unit and meaning
+FIGURES = {  # name → unit and meaning
     "end_inclination": ("rad", "inclination at the end"),
     "build_rate": ("rad/m", "build rate, mean"),
     "largest_build_rate": ("rad/m", "build rate, largest over 30 m"),

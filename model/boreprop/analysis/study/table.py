@@ -1,4 +1,4 @@
-"""The table of a study, a line for each case, and the Parquet file that keeps it while the study goes on."""
+"""The table of a study, with a line for each case, and the Parquet file to which it is saved meanwhile."""
 
 import json
 import tomllib
@@ -17,14 +17,14 @@ from ...run.workers import WorkerLost
 from .design import Study
 from .figures import Function
 
-Line = dict[str, Any]  # "case", the varied parameters, the results, "error": None or what went wrong
+Line = dict[str, Any]  # has "case", the varied parameters, the results, and "error": None or the message
 
 STUDY_KEY = b"boreprop.study"
-WRITING = 0.02  # share of the time that goes into writing the file: a study is not slowed down by more
+WRITING = 0.02  # share of the time spent on writing the file: a larger one slows a study, a smaller one loses more
 
 
 class Table:
-    """The lines of a study by the number of their case, and the file that keeps them, if there is to be one."""
+    """The lines of a study by the number of their case, and the file that keeps them, if there is one."""
 
     def __init__(self, cases: Study, function: Function, path: Path | None) -> None:
         self._cases = cases
@@ -35,7 +35,7 @@ class Table:
         }
         self.case = dump_case(cases.case)
         self.lines: dict[int, Line] = {}
-        self.results: list[str] = []  # their names
+        self.results: list[str] = []  # the names of the results
         self._path = path
         self._unsaved, self._next_save = False, 0.0
         if path is not None:
@@ -43,17 +43,20 @@ class Table:
                 raise InputError(f"{path}: must end in .parquet, got {path.suffix!r}")
             if path.exists():
                 self._read(path)
-            else:  # so that a file that cannot be written says so before the work
+            else:  # raises now, before the work, if the file cannot be written
                 self._unsaved = True
                 self.save()
-                self._next_save = 0.0  # the first time takes longer than the next ones
+                self._next_save = 0.0  # the first save took longer than later ones will
 
     def add(self, case: int, outcome: dict[str, float] | str | WorkerLost) -> Line:
-        """Add what came of a case: its line of the table."""
+        """Add the outcome of a case to the table; returns its line."""
         results = outcome if isinstance(outcome, dict) else {}
         taken = {"case", "error", *self._cases.names} & set(results)
         if taken:
-            raise InputError(f"{self.identity['function']}: must call no result {taken.pop()!r}, a column of the study")
+            raise InputError(
+                f"{self.identity['function']}: must name its results otherwise than the study's own columns, "
+                f"got {taken.pop()!r}"
+            )
         self.results += [name for name in results if name not in self.results]
         varied = dict(zip(self._cases.names, self._cases.values[case].tolist(), strict=True))
         line = {"case": case, **varied, **results, "error": None if isinstance(outcome, dict) else str(outcome)}
@@ -67,7 +70,7 @@ class Table:
         return {**results, "error": [line["error"] for line in lines]}
 
     def save_now_and_then(self) -> None:
-        """Write the file if there is something new, and enough time has gone by to afford it."""
+        """Write the file if there is something new, and if enough time has passed since the last time."""
         if monotonic() >= self._next_save:
             self.save()
 
@@ -92,7 +95,7 @@ class Table:
         self._next_save = monotonic() + (thread_time() - begin) / WRITING
 
     def _read(self, path: Path) -> None:
-        """Take over the lines of the file, if it is of this study."""
+        """Read the lines of the file; `InputError` if it is not that of this study."""
         import pyarrow
         import pyarrow.parquet
 
@@ -113,15 +116,18 @@ class Table:
             for name, value in zip(self._cases.names, values, strict=True):
                 if case in self.lines and self.lines[case][name] != value:
                     self._refuse(f"{name} of case {case}", self.lines[case][name], value)
-        known = {"case", "error", *self._cases.names}
-        self.results = [name for name in table.column_names if name not in known]
+        others = {"case", "error", *self._cases.names}
+        self.results = [name for name in table.column_names if name not in others]
 
     def _refuse(self, what: str, theirs: object, ours: object) -> None:
-        raise InputError(f"{self._path}: {what}: must be {shown(theirs)}, as in the study it holds, got {shown(ours)}")
+        raise InputError(
+            f"{self._path}: {what}: must be {shown(theirs)} as in the study that the file holds, got {shown(ours)}; "
+            "use another --output for another study"
+        )
 
 
 def _name(function: Any) -> str:
-    """What a function is called, the same in every process."""
+    """The name of a function, which is the same in every process."""
     if isinstance(function, partial):
         arguments = [repr(value) for value in function.args]
         arguments += [f"{name}={value!r}" for name, value in function.keywords.items()]
@@ -130,5 +136,5 @@ def _name(function: Any) -> str:
 
 
 def _keys(case: str) -> dict[str, Any]:
-    """What a case file says: "table.key" → value."""
+    """The values of a case file: "table.key" → value."""
     return {f"{table}.{key}": value for table, content in tomllib.loads(case).items() for key, value in content.items()}

@@ -1,4 +1,4 @@
-"""What all figures share: colours, second axes, and how a picture gets into its file."""
+"""Colours, second axes and saving, for all figures."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -9,20 +9,20 @@ from matplotlib.figure import Figure
 from ...case.case import Case
 from ...replacing import replacing
 
-COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7")  # Okabe and Ito: told apart by the colour-blind
+COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7")  # of Okabe and Ito: the colour-blind can tell them apart
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a picture (PNG); nothing of that name changes before everything is written."""
+    """Write a picture (PNG). An existing file is replaced only once the new one is complete."""
     with replacing(path) as draft:
         figure.savefig(draft, dpi=150, format="png")
 
 
 def multiple(factor: float) -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:
-    """To and from the values of a second axis in another unit."""
+    """The functions to and from the values of a second axis, which are `factor` times those of the first."""
     return lambda x: x * factor, lambda x: x / factor
 
 
 def kilonewtons_per_eta_pi(case: Case) -> float:
-    """Active weight on bit for each unit of ηΠ, kN."""
+    """The active weight on bit at ηΠ = 1, kN."""
     return case.bha.force_scale / case.bit.lateral_steering_resistance / 1e3

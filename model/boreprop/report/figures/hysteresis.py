@@ -1,4 +1,4 @@
-"""The loop of a ripple that dies out later than it comes back, as a picture."""
+"""A hysteresis loop as a picture: where a ripple dies out and where it comes back."""
 
 from math import degrees, nan
 
@@ -12,7 +12,7 @@ from .drawing import COLOURS, kilonewtons_per_eta_pi, multiple
 
 
 def draw(case: Case, found: Hysteresis) -> Figure:
-    """The ripple on the way up and on the way down along a parameter."""
+    """Draw the size of the ripple over a parameter, on the way up and on the way down."""
     figure = Figure(figsize=(9, 6.5), layout="constrained")
     length = case.bha.half_length
     figure.suptitle(
@@ -48,7 +48,7 @@ def draw(case: Case, found: Hysteresis) -> Figure:
 
 
 def _size(wave: Rippling | None, what: str) -> float:
-    """An amplitude; 0 without a ripple, nan where the run stopped."""
+    """The field `what`, an amplitude; 0 without a ripple, nan where the run stopped."""
     if wave is None:
         return nan
     return float(getattr(wave, what)) if wave.ripples else 0.0

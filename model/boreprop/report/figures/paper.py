@@ -1,4 +1,4 @@
-"""The paper's figures, with matplotlib."""
+"""The paper's figures 6, 7 and 8."""
 
 from collections.abc import Callable
 from itertools import count
@@ -16,7 +16,7 @@ from ...run.trajectory import Trajectory
 from . import stability as stability_figure
 from .drawing import COLOURS, save
 
-ROWS_PER_LENGTH_SCALE = 50
+ROWS_PER_LENGTH_SCALE = 50  # about 70 rows in a wave, which make a smooth curve
 
 
 def figure_7_cases() -> dict[str, Case]:
@@ -30,7 +30,7 @@ def figure_8_cases() -> dict[str, Case]:
 
 
 def draw(runs: dict[str, Trajectory], title: str) -> Figure:
-    """Inclinations and contact force over the drilled length, one line for each run."""
+    """Draw inclinations and contact force over the drilled length, a curve for each run."""
     figure = Figure(figsize=(10, 8), layout="constrained")
     figure.suptitle(title)
     panels = figure.subplots(3, 1, sharex=True)

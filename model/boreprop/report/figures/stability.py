@@ -25,10 +25,10 @@ SHADES = {
     "drift: in less than 100 m": "#3C3C3C",
     "oscillatory": "#D55E00",
 }
-"""Green, greys and red as in the paper, told apart by the colour-blind and in grey by their lightness."""
+"""Green, greys and red as in the paper; they differ for the colour-blind, and in lightness when printed in grey."""
 
-KIND = np.array([STABLE, DRIFT, DRIFT, DRIFT, OSCILLATORY])  # the verdict that each shade stands for
-DRIFTS = (inf, 1000.0, 100.0)  # m: a drift that doubles in less has the next shade
+KIND = np.array([STABLE, DRIFT, DRIFT, DRIFT, OSCILLATORY])  # the code of the verdict that each shade stands for
+DRIFTS = (inf, 1000.0, 100.0)  # m: a drift that doubles in a shorter length has the next darker shade
 MARKER: dict[str, Any] = {
     "linestyle": "",
     "marker": "o",
@@ -37,14 +37,14 @@ MARKER: dict[str, Any] = {
     "markeredgecolor": "black",
 }
 LINE = 1.0
-FINER = 4  # rows of a picture to one of the chart
-PIXELS = 1200  # across a panel
-SPECK = 0.01  # of the range of ηΠ: where two limits meet, islands this small within a row are those of the grid
-WIDTH, ROW, MARGINS = 10.0, 3.4, 1.4  # of the picture, of a row of panels, and around them, inches
+FINER = 4  # rows of pixels for each λ₂ of the chart, so that limits are smooth
+PIXELS = 1200  # across a panel, which is wider than on paper
+SPECK = 0.01  # of the range of ηΠ: islands smaller than this and than one λ₂ come from the grid, and get no line
+WIDTH, ROW, MARGINS = 10.0, 3.4, 1.4  # width of the picture, height of a row of panels, of the margins, inches
 
 
 def draw(chart: Chart, case: Case) -> Figure:
-    """The modes over ηΠ and λ₂, with the point of the case; a row of panels for each contact."""
+    """Draw the verdicts over ηΠ and λ₂, and the case; there is a row of two panels for each set of contacts."""
     bha, bit = case.bha, case.bit
     point = case.eta_pi, lambda_2(bha)
     epsilon = bit.angular_steering_resistance / bit.lateral_steering_resistance
@@ -82,7 +82,7 @@ def draw(chart: Chart, case: Case) -> Figure:
 
 
 def draw_panel(axes: Axes, chart: Chart, panel: Panel, point: tuple[float, float]) -> None:
-    """One mode."""
+    """Draw the verdicts on one mode."""
     axes.set_title(f"{contact_text(panel.contact)}, bit tilt {'saturated' if panel.saturated else 'not saturated'}")
     x, rows = finer(chart, panel)
     axes.imshow(
@@ -103,7 +103,7 @@ def draw_panel(axes: Axes, chart: Chart, panel: Panel, point: tuple[float, float
 
 
 def shaded(chart: Chart, panel: Panel) -> list[Band]:
-    """For each λ₂ the ηΠ at which the shade changes, and the numbers of the shades."""
+    """For each λ₂ the bands of equal shade along ηΠ; their codes are the positions of the shades in `SHADES`."""
     x, found = chart.eta_pi, []
     for verdicts, doubling in zip(panel.bands, panel.doubling, strict=True):
         slow = np.count_nonzero(doubling[:, None] <= DRIFTS, axis=-1)  # 1 to 3 where it drifts
@@ -119,13 +119,13 @@ def shaded(chart: Chart, panel: Panel) -> list[Band]:
 
 
 def finer(chart: Chart, panel: Panel) -> tuple[Floats, list[Band]]:
-    """The ηΠ of the pixels across a panel, and the shades of the rows of pixels as far as they can be seen."""
+    """The ηΠ of the pixels across a panel, and for each row of pixels the bands that are wide enough to be seen."""
     x = np.linspace(chart.eta_pi[0], chart.eta_pi[-1], PIXELS)
     return x, [visible(row, x[1] - x[0]) for row in in_between(shaded(chart, panel))]
 
 
 def visible(row: Band, pixel: float) -> Band:
-    """A row without the bands that are narrower than a pixel."""
+    """The bands of a row without those that are narrower than a pixel."""
     narrow = np.flatnonzero(np.diff(row.ends) < pixel)
     if not len(narrow):
         return row
@@ -135,7 +135,7 @@ def visible(row: Band, pixel: float) -> Band:
 
 
 def in_between(rows: list[Band]) -> list[Band]:
-    """The bands of a finer λ₂: their ends move evenly from row to row, or jump where the next has quite others."""
+    """The bands at `FINER` times as many λ₂: their ends are interpolated, or jump if the next λ₂ has other bands."""
     found = []
     for row, after in pairwise(rows):
         same = matched(row, after)
@@ -148,7 +148,10 @@ def in_between(rows: list[Band]) -> list[Band]:
 
 
 def matched(row: Band, after: Band) -> tuple[Floats, Floats, Integers] | None:
-    """The ends of two rows and the codes that they share; a band that one row lacks has no width there."""
+    """The ends of the bands of two rows, made to correspond, and their codes; None if they do not correspond.
+
+    A band that only one of the rows has gets no width in the other.
+    """
     if len(row.codes) > len(after.codes):
         turned = matched(after, row)
         return turned and (turned[1], turned[0], turned[2])
@@ -167,14 +170,14 @@ def matched(row: Band, after: Band) -> tuple[Floats, Floats, Integers] | None:
 
 
 def moved(ends: Floats, after: Band) -> float:
-    """How far the ends move."""
+    """The sum of the distances between corresponding ends."""
     return float(abs(ends - after.ends).sum())
 
 
 def boundaries(chart: Chart, panel: Panel) -> list[Floats]:
-    """Where the verdict changes: lines of points (ηΠ, λ₂), shape (k, 2).
+    """The limits at which the verdict changes: curves of points (ηΠ, λ₂), shape (k, 2) each.
 
-    The distance in ηΠ to the nearest change, negative on one side of it, is zero there.
+    They are the zero lines of the distance in ηΠ to the nearest change, which is negative on one side of it.
     """
     x, rows = finer(chart, panel)
     lambda2 = np.interp(np.arange(len(rows)) / FINER, np.arange(len(chart.lambda2)), chart.lambda2)
@@ -193,6 +196,6 @@ def boundaries(chart: Chart, panel: Panel) -> list[Floats]:
 
 def zero_lines(x: Floats, y: Floats, z: Floats) -> list[Floats]:
     """Lines of points (x, y), shape (k, 2), along which z, shape (len(y), len(x)), is zero."""
-    from contourpy import contour_generator  # not before matplotlib, which brings it
+    from contourpy import contour_generator  # it comes with matplotlib, which need not be installed
 
     return cast(list[Floats], contour_generator(x, y, z).lines(0.0))

@@ -8,11 +8,11 @@ from ...units import BUILD_LENGTH
 from ..tables.steering import SteeringSummary, at_force, kilonewtons, per_build_length, touching
 from .drawing import COLOURS
 
-MORE_COLOURS = (*COLOURS, "#56B4E9", "#D55E00", "#000000")  # Okabe and Ito, but for the yellow
+MORE_COLOURS = (*COLOURS, "#56B4E9", "#D55E00", "#000000")  # of Okabe and Ito, without the yellow, pale on white
 
 
 def draw(summary: SteeringSummary) -> Figure:
-    """Build rate and bit tilt over the force; a colour for each set of contacts, dashed where the tilt saturates."""
+    """Draw build rate and bit tilt over the force: a colour for each set of contacts, dashed if the tilt saturates."""
     weight = f"{kilonewtons(summary.active_weight_on_bit)} active weight on bit (ηΠ = {summary.eta_pi:.3g})"
     setting = f"{degrees(summary.inclination):.4g}° inclination, {weight}"
     figure = Figure(figsize=(9, 8.5), layout="constrained")

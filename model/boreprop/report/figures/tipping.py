@@ -1,4 +1,4 @@
-"""Critical doglegs over weight and clearance, as a picture."""
+"""A map of critical doglegs over weight and clearance."""
 
 from math import degrees
 
@@ -16,12 +16,12 @@ from ...case.case import Case
 from ...units import BUILD_LENGTH
 from .drawing import kilonewtons_per_eta_pi, multiple
 
-LEVELS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)  # degrees, and degrees per 30 m
+LEVELS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)  # ticks, in degrees and degrees per 30 m
 NEVER = "0.8"  # grey
 
 
 def draw(case: Case, found: DoglegMap, limit: float) -> Figure:
-    """The smallest dogleg that tips a system over; `limit` is the largest that was tried, rad."""
+    """Draw the smallest dogleg that starts rippling; `limit` is the largest that was tried, rad."""
     figure = Figure(figsize=(9, 6), layout="constrained")
     figure.suptitle("Smallest kink in a straight hole that starts rippling")
     panel = figure.subplots()
@@ -40,7 +40,7 @@ def draw(case: Case, found: DoglegMap, limit: float) -> Figure:
     lines = panel.contour(x, y, between, [level for level in LEVELS if low < level < high], colors="w", linewidths=1.2)
     panel.clabel(lines, fmt=lambda level: f"{level:g}°")
     _add_scale(figure, shades, case.bha.half_length)
-    keys: list[Artist] = [Patch(facecolor=NEVER, label=f"no turn up to {degrees(limit):.3g}° tips it")]
+    keys: list[Artist] = [Patch(facecolor=NEVER, label=f"no turn up to {degrees(limit):.3g}° starts rippling")]
     if not angle.all():
         keys.append(Patch(facecolor="k", label="the straight hole ripples"))
     if np.isnan(angle).any():
@@ -48,7 +48,7 @@ def draw(case: Case, found: DoglegMap, limit: float) -> Figure:
         keys.append(Patch(facecolor="w", edgecolor="0.3", label="left out: a run stopped"))
     if not found.monotonic.all():
         rows, columns = np.nonzero(~found.monotonic)
-        keys += panel.plot(x[columns], y[rows], "kx", label="not every larger turn does")
+        keys += panel.plot(x[columns], y[rows], "kx", label="not every larger turn starts it")
     own = (
         case.eta_pi,
         1e3 * case.bha.stabilizer_clearances[found.stabilizer - 1],
@@ -60,7 +60,7 @@ def draw(case: Case, found: DoglegMap, limit: float) -> Figure:
 
 
 def _add_scale(figure: Figure, shades: ScalarMappable, length: float) -> None:
-    """The colours as a turn, and as a dogleg severity."""
+    """Add the scale of the colours, in degrees and as a dogleg severity."""
     bar = figure.colorbar(shades, label=f"turn (°) over the last {length:.4g} m")
     severity = bar.ax.secondary_yaxis("left", functions=multiple(BUILD_LENGTH / length))
     severity.set_ylabel(f"dogleg severity (°/{BUILD_LENGTH:g} m)")

@@ -1,4 +1,4 @@
-"""The loop of a ripple that dies out later than it comes back, in words."""
+"""A hysteresis loop in words: where a ripple dies out and where it comes back."""
 
 from collections.abc import Callable
 from math import degrees
@@ -10,7 +10,7 @@ from ...units import SMALL_LENGTH, UNITS
 
 
 def loop(case: Case, found: Hysteresis) -> str:
-    """Where the ripple dies out on the way up, and where it comes back on the way down."""
+    """A sentence: where the ripple dies out on the way up, and where it comes back on the way down."""
     amount = amounts(case, found.name)
     if not any(ripples(wave) for wave in found.up):
         return f"it ripples nowhere from {amount(found.values[0])} to {amount(found.values[-1])}"
@@ -29,12 +29,12 @@ def loop(case: Case, found: Hysteresis) -> str:
 
 
 def ripples(wave: Rippling | None) -> bool:
-    """Whether a run ripples; not if it could not go on."""
+    """Whether a run ripples; a run that could not go on does not."""
     return wave is not None and wave.ripples
 
 
 def amounts(case: Case, name: str) -> Callable[[float], str]:
-    """How a value of a parameter is told in the units people use."""
+    """A function that gives the text of a value of a parameter, in the units people use."""
     if name == "eta_pi":
         per_unit = case.bha.force_scale / case.bit.lateral_steering_resistance
         return lambda value: f"ηΠ = {value:.4g} ({UNITS['N'].text(value * per_unit, '.4g')})"

@@ -1,4 +1,4 @@
-"""The roots of a mode for a person to read."""
+"""The roots of modes in tables and titles."""
 
 from collections.abc import Container
 from math import degrees, log, pi
@@ -8,12 +8,12 @@ from ...units import UNITS
 
 HEADINGS = ("growth, per ℓ₁", "frequency, per ℓ₁", "what it does", "wavelength")
 MODE_HEADINGS = ("in contact", "bit tilt", "verdict", "what it does", "wavelength", "the case")
-NOT_MET = "not met: the case does not come to this contact, in no hole that turns by up to 10° over 30 m"
-MOST_LINES = 20
+NOT_MET = "not met: no hole that turns by up to 10° over 30 m brings these stabilizers into contact"
+MOST_LINES = 20  # roots in a table: they fit on a screen
 
 
 def as_plain(found: Roots) -> dict[str, object]:
-    """The roots of a mode as JSON has them: real and imaginary parts, rightmost first."""
+    """The roots of a mode as a document for JSON: real and imaginary parts, the rightmost first."""
     return {
         "eta_pi": found.eta_pi,
         "mode": {"contact": found.contact, "saturated": found.saturated},
@@ -23,14 +23,14 @@ def as_plain(found: Roots) -> dict[str, object]:
 
 
 def title(found: Roots, active_weight_on_bit: float) -> str:
-    """Which mode at which weight, N, and the verdict."""
+    """The title of a table of roots: the weight, given in N, the mode and the verdict."""
     tilt = "bit tilt saturated" if found.saturated else "bit tilt not saturated"
     at = f"ηΠ = {found.eta_pi:.4g} ({weight(active_weight_on_bit)})"
     return f"{at}, {contact_text(found.contact)}, {tilt}: {found.verdict}"
 
 
 def modes_title(eta_pi: float, active_weight_on_bit: float, inclination: float) -> str:
-    """At which weight, N, and inclination, rad, the modes are looked at."""
+    """The title of a table of modes: the weight, given in N, and the inclination, given in rad."""
     return (
         f"ηΠ = {eta_pi:.4g} ({weight(active_weight_on_bit)}), straight hole at {degrees(inclination):.4g}° inclination"
     )
@@ -39,9 +39,9 @@ def modes_title(eta_pi: float, active_weight_on_bit: float, inclination: float) 
 def mode_line(
     found: Roots, length_scale: float, here: tuple[tuple[int, ...], bool], met: Container[tuple[int, ...]]
 ) -> tuple[str, ...]:
-    """A mode in a line, under `MODE_HEADINGS`: its verdict and the root that makes it.
+    """The line of a mode, under `MODE_HEADINGS`: its verdict and the root that decides it.
 
-    `here` is the mode in which the case drills steadily, `met` are the contacts that occur.
+    `here` is the mode in which the case drills steadily; `met` are the contacts that occur.
     """
     pairs = [root for root in found.roots if root.imag]
     root = pairs[0] if found.verdict is Verdict.OSCILLATORY else found.roots[0]
@@ -57,7 +57,7 @@ def mode_line(
 
 
 def contact_text(contact: tuple[int, ...]) -> str:
-    """Which stabilizers touch."""
+    """Which stabilizers touch, in words."""
     numbers = ", ".join(map(str, contact))
     return f"stabilizer{'s' * (len(contact) > 1)} {numbers} in contact" if contact else "no contact"
 
@@ -71,30 +71,30 @@ def lines(found: Roots, length_scale: float) -> list[tuple[str, str, str, str]]:
 
 
 def change(root: complex, length_scale: float) -> str:
-    """Over how many metres what a root makes doubles or halves."""
+    """The drilled length over which a disturbance doubles or halves, in words."""
     if not root.real:
         return "stays"
     return f"{'doubles' if root.real > 0 else 'halves'} in {metres(log(2) / abs(root.real) * length_scale)}"
 
 
 def wavelength(root: complex, length_scale: float) -> str:
-    """Of the wave that a pair of roots makes, m."""
+    """The wavelength of a pair of roots, as text; empty for a real root."""
     return metres(2 * pi / root.imag * length_scale) if root.imag else ""
 
 
 def metres(length: float) -> str:
-    """A length in three digits."""
+    """A length, m, as text of three digits."""
     return f"{float(f'{length:.3g}'):.15g} m"
 
 
 def caption(found: Roots) -> str | None:
-    """How many roots are not shown."""
+    """A caption that says how many roots are not shown; None if all are."""
     more = len(found.roots) - MOST_LINES
     return f"{more} more with a growth above {found.roots[-1].real:.2g} per ℓ₁" if more > 0 else None
 
 
 def stability_limit(contact: tuple[int, ...], critical: CriticalEtaPi | None) -> str:
-    """Up to where a straight hole oscillates with a contact, the bit tilt not saturated."""
+    """In words: up to which ηΠ a straight hole oscillates with these contacts and the bit tilt not saturated."""
     if critical is None:
         return f"{contact_text(contact)}: never oscillatory"
     return (
@@ -104,5 +104,5 @@ def stability_limit(contact: tuple[int, ...], critical: CriticalEtaPi | None) ->
 
 
 def weight(active_weight_on_bit: float) -> str:
-    """An active weight on bit, N, in kN."""
+    """An active weight on bit, N, as text in kN."""
     return UNITS["N"].text(active_weight_on_bit, ".4g")

@@ -1,4 +1,4 @@
-"""The steering response of a case, in the units people use: the lines of two tables."""
+"""The steering response of a case in two tables, in the units people use."""
 
 from dataclasses import dataclass
 from itertools import groupby
@@ -16,9 +16,9 @@ from ...case.case import Case
 from ...core.system import eta_pi
 from ...units import UNITS
 
-USUAL_FORCE = 30e3  # N: what the pads of a large tool can do
-READABLE = 0.01  # ° per `BUILD_LENGTH`: no survey sees less
-NEAR_REVERSAL = 0.8  # of the ηΠ at which the response changes sign: its numerator has lost four fifths
+USUAL_FORCE = 30e3  # N: about the force of the pads of a large tool
+READABLE = 0.01  # ° per `BUILD_LENGTH`: surveys do not resolve less
+NEAR_REVERSAL = 0.8  # of the ηΠ at which the response is zero: from there on it is below a fifth, and a warning is due
 HEADINGS = (
     "force\n(kN)",
     f"build rate\n({UNITS['rad/m'].shown})",
@@ -32,20 +32,22 @@ WALLS = {1: "low", -1: "high"}
 
 @dataclass(frozen=True)
 class SteeringSummary:
-    """What an engineer asks of the steering of a case.
+    """What an engineer asks about the steering of a case.
 
     Parameters
     ----------
     inclination
-        At which the weight of the BHA acts: ⟨Θ⟩_1 of the equations, rad.
-    active_weight_on_bit, eta_pi
-        N; and ηΠ.
+        The inclination at which the weight of the BHA acts, ⟨Θ⟩_1 of the equations, rad.
+    active_weight_on_bit
+        The active weight on bit, N.
+    eta_pi
+        ηΠ.
     curve, without_gravity
-        The response to each force up to the limit, see `build_rate_curve`.
+        The response to every force up to the limit, with and without gravity, see `build_rate_curve`.
     free, highest, lowest
         The response without force, and those with the highest and the lowest build rate.
     holding
-        Those that hold the inclination, the smallest force first.
+        The responses that hold the inclination, the smallest force first.
     """
 
     inclination: float
@@ -67,10 +69,11 @@ def summarize(case: Case, inclination: float | None = None, force_limit: float |
     case
         What is drilled.
     inclination
-        At which the weight of the BHA acts, rad; without it, that of the end of the existing hole, which does not
-        depend on where the first stabilizer is.
+        The inclination at which the weight of the BHA acts, rad; without it, that at the end of the existing hole,
+        which does not depend on the position of the first stabilizer.
     force_limit
-        N; without it, the largest force of the case's schedule, or 30 kN if that has none.
+        Largest force to either side, N; without it, the largest force of the case's schedule, or 30 kN if there is
+        none.
 
     Raises
     ------
@@ -96,9 +99,9 @@ def summarize(case: Case, inclination: float | None = None, force_limit: float |
 
 
 def lines(summary: SteeringSummary) -> list[tuple[str, str]]:
-    """The lines of a table, the warnings last: what, and how much in the units people use."""
+    """The lines of a table, each a name and a value with its unit; warnings come last."""
     limit = kilonewtons(summary.curve[-1].end.rss_force)
-    held = " or ".join(
+    holding = " or ".join(
         kilonewtons(response.rss_force, "+") + " (tilt at its limit)" * bool(response.bit_tilt_saturation)
         for response in summary.holding
     )
@@ -111,7 +114,7 @@ def lines(summary: SteeringSummary) -> list[tuple[str, str]]:
         ("active weight on bit", f"{kilonewtons(summary.active_weight_on_bit)}, ηΠ = {summary.eta_pi:.3g}"),
         ("force limit", f"±{limit}"),
         ("build rate without force", f"{rate(summary.free.build_rate)}, on a wall: {touching(summary.free)}"),
-        ("force that holds the inclination", held or f"none up to ±{limit}"),
+        ("force that holds the inclination", holding or f"none up to ±{limit}"),
         ("highest build rate", at_force(summary.highest)),
         ("lowest build rate", at_force(summary.lowest)),
         ("left out: gravity changes along the arc", f"{left_out} {UNITS['rad/m'].shown}"),
@@ -120,7 +123,7 @@ def lines(summary: SteeringSummary) -> list[tuple[str, str]]:
 
 
 def piece_lines(curve: tuple[Piece, ...]) -> list[tuple[str, ...]]:
-    """A line for each piece of the curve, with a cell for each of `HEADINGS`."""
+    """The lines of a table with a line for each piece of the curve, and a cell for each of `HEADINGS`."""
     return [
         (
             forces(piece.start, piece.end),
@@ -145,7 +148,7 @@ def piece_lines(curve: tuple[Piece, ...]) -> list[tuple[str, ...]]:
 
 
 def warnings(curve: tuple[Piece, ...], eta_pi: float) -> list[str]:
-    """Where a larger force builds less, or almost so."""
+    """Warnings of forces at which more force builds less, or nearly does."""
     stretches = [(text, list(pieces)) for text, pieces in groupby(curve, lambda piece: _warning(piece, eta_pi))]
     return [f"{forces(pieces[0].start, pieces[-1].end)} kN: {text}" for text, pieces in stretches if text]
 
@@ -161,7 +164,7 @@ def _warning(piece: Piece, eta_pi: float) -> str:
 
 
 def forces(start: SteadyResponse, end: SteadyResponse) -> str:
-    """From which force to which, in kN."""
+    """The range of forces between two responses, in kN."""
     return "…".join(UNITS["N"].number(response.rss_force, "+z.2f") for response in (start, end))
 
 
@@ -171,27 +174,27 @@ def tilt(response: SteadyResponse) -> str:
 
 
 def touching(*responses: SteadyResponse) -> str:
-    """Which stabilizers touch which wall; both, if one without clearance goes from one to the other."""
+    """Which stabilizers touch which wall; both walls, if a stabilizer without clearance goes from one to the other."""
     contacts = zip(*(response.stabilizer_contact for response in responses), strict=True)
     walls = [list(dict.fromkeys(WALLS[contact] for contact in at if contact)) for at in contacts]
     return ", ".join(f"{i} {'/'.join(touched)}" for i, touched in enumerate(walls, 1) if touched) or "none"
 
 
 def per_build_length(build_rate: float) -> float:
-    """Degrees per `BUILD_LENGTH` of a build rate in rad/m."""
+    """A build rate, rad/m, in degrees per `BUILD_LENGTH`."""
     return UNITS["rad/m"].factor * build_rate
 
 
 def rate(build_rate: float) -> str:
-    """A build rate, rad/m, with its sign and unit."""
+    """A build rate, rad/m, as text with its sign and unit."""
     return UNITS["rad/m"].text(build_rate, "+z.2f")
 
 
 def at_force(response: SteadyResponse) -> str:
-    """The build rate of a response, and its force."""
+    """The build rate of a response, and its force, as text."""
     return f"{rate(response.build_rate)} at {kilonewtons(response.rss_force, '+')}"
 
 
 def kilonewtons(force: float, sign: str = "") -> str:
-    """A force, N, in kN."""
+    """A force, N, as text in kN."""
     return UNITS["N"].text(force, f"{sign}z.2f")

@@ -1,4 +1,4 @@
-"""A study in a table and a sentence, in the units people use."""
+"""The results of a study in a table and a sentence, in the units people use."""
 
 from collections.abc import Iterable
 from math import isfinite
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ...analysis.study.run import probability, quantiles
+from ...analysis.study.compute import probability, quantiles
 from ...units import UNITS, Unit
 
 if TYPE_CHECKING:
@@ -17,13 +17,13 @@ DIGITS = ".4g"
 
 
 def lines(results: "Dataset", q: Iterable[float]) -> list[tuple[str, ...]]:
-    """The lines of a table: result, its quantiles `q` over the cases that have one; which, if not all that ran."""
+    """The lines of a table: each a result and its quantiles `q`, with a note if not all cases that ran have it."""
     values = quantiles(results, q)
     table: list[tuple[str, ...]] = []
     for name, figure in values.data_vars.items():
         kind, _, number = str(name).partition("[")
         if kind in ("ripples", "state"):
-            continue  # of a yes or no, and of a code, quantiles say nothing
+            continue  # quantiles of a yes or no, or of a code, mean nothing
         si = figure.attrs.get("units", "")
         unit = UNITS.get(si, Unit({}, si))
         what = figure.attrs.get("long_name", kind) + (f", stabilizer {number[:-1]}" if number else "")
@@ -36,18 +36,18 @@ def lines(results: "Dataset", q: Iterable[float]) -> list[tuple[str, ...]]:
     return table
 
 
-def _which(results: "Dataset", known: NDArray[np.bool_]) -> str:
-    """Over which cases a figure is, if not over all that did not fail."""
+def _which(results: "Dataset", finite: NDArray[np.bool_]) -> str:
+    """Which cases have a finite value, in words; empty if these are all that did not fail."""
     ran = results["error"].values == ""
-    if np.array_equal(known, ran):
+    if np.array_equal(finite, ran):
         return ""
-    if known.any() and np.array_equal(known, results["ripples"].values == 1.0):
-        return ", of the case that ripples" if known.sum() == 1 else f", of the {known.sum()} cases that ripple"
-    return f", of {known.sum()} of {ran.sum()} cases"
+    if finite.any() and np.array_equal(finite, results["ripples"].values == 1.0):
+        return ", of the case that ripples" if finite.sum() == 1 else f", of the {finite.sum()} cases that ripple"
+    return f", of {finite.sum()} of {ran.sum()} cases"
 
 
 def outcome(results: "Dataset") -> str:
-    """How many cases there are, how many failed, and how many ripple: of a sample, the probability."""
+    """A sentence: how many cases there are, how many failed, and how many ripple; for a sample the probability."""
     errors = results["error"].values.ravel()
     failed = errors[errors != ""]
     parts = [f"{errors.size} cases"]

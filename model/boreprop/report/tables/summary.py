@@ -1,4 +1,4 @@
-"""A run in a table: a dozen numbers."""
+"""The summary of a run in a table."""
 
 from ...analysis.rippling import Rippling, State, Stretch
 from ...analysis.summary import Summary
@@ -6,7 +6,7 @@ from ...units import BUILD_LENGTH, SMALL_LENGTH, UNITS
 
 
 def lines(summary: Summary) -> list[tuple[str, str]]:
-    """The lines of a table: what, and how much in the units people use."""
+    """The lines of a table, each a name and a value in the units people use."""
     mean = f"mean over {summary.averaging_length:.3g} m"
     stabilizers = enumerate(zip(summary.largest_contact_force, summary.contact_share, strict=True), 1)
     return [
@@ -45,7 +45,7 @@ def _wave_lines(wave: Rippling) -> list[tuple[str, str]]:
 
 
 def whether_it_ripples(wave: Rippling) -> str:
-    """Whether a run ends rippling, and with what wave."""
+    """Whether a run ends rippling, and with what wave, in words."""
     length = f"{wave.wavelength:.2f} m long"
     return {
         State.NONE: "no",

@@ -11,13 +11,17 @@ SIDES = {1: "up", -1: "down"}
 
 
 def lines(case: Case, found: Mapping[int, CriticalDogleg | str], limit: float) -> list[tuple[str, str]]:
-    """The lines of a table; `found` by side, or why a run stopped; `limit` the largest turn that was tried, rad."""
+    """The lines of a table, one for each side.
+
+    `found` has the critical dogleg of each side, or the reason why a run stopped; `limit` is the largest turn that was
+    tried, rad.
+    """
     return [
         (
             f"smallest kink that starts rippling, turning {SIDES[side]}",
-            f"not known: {one}" if isinstance(one, str) else _amount(one, case.bha.half_length, limit),
+            f"not known: {dogleg}" if isinstance(dogleg, str) else _amount(dogleg, case.bha.half_length, limit),
         )
-        for side, one in found.items()
+        for side, dogleg in found.items()
     ]
 
 
@@ -27,7 +31,7 @@ def _amount(found: CriticalDogleg, length: float, limit: float) -> str:
     exception = "" if found.monotonic else ", but not every larger one"
     straight = [turn for turn, ripples in found.tried if not ripples]
     if found.angle == 0.0 and 0.0 in straight:
-        return f"any from {degrees(FINEST):g}° on{exception}"
+        return f"any of {degrees(FINEST):g}° or more{exception}"
     if found.angle == 0.0 and straight:
         least, most = (f"{degrees(turn):.2g}°" for turn in (straight[0], straight[-1]))
         turns = least if least == most else f"{least} to {most}"
@@ -39,6 +43,6 @@ def _amount(found: CriticalDogleg, length: float, limit: float) -> str:
 
 
 def left_out(found: DoglegMap) -> str:
-    """Which points a map lacks, as the end of a sentence; empty if it has all."""
+    """The end of a sentence that says how many points a map lacks; empty if it has all."""
     stopped = found.stopped[found.stopped != ""]
     return f"; {stopped.size} of {found.stopped.size} points left out (the first: {stopped[0]})" if stopped.size else ""

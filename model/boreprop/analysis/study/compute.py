@@ -1,6 +1,6 @@
-"""Studies: one function of many cases, computed on all cores or on a cluster, kept in a file as they come.
+"""Studies: a function of many cases, computed on all cores or on a cluster, with the results kept in a file.
 
-An engineer with an uncertain case asks what build rate to expect, and how likely the hole is to ripple::
+An engineer whose case is uncertain asks which build rate to expect, and how likely the hole is to ripple::
 
     from scipy.stats import lognorm, norm
     from boreprop import load_case, probability, quantiles, sample, study
@@ -11,13 +11,13 @@ An engineer with an uncertain case asks what build rate to expect, and how likel
         results = study(sample(case, uncertain, n=1000, seed=1), output="study.parquet")
         print(quantiles(results)["build_rate"].values, probability(results["ripples"]))
 
-A researcher asks any function of a case over a grid::
+A researcher computes any function of a case over a grid::
 
     cases = grid(case, {"eta_pi": np.linspace(0.005, 0.2, 40), "rss_force": [0, 5e3, 1e4]})
     results = study(cases, rightmost_root)
     results["rightmost_root"].plot()
 
-The worker processes import the script that starts them: it must do so under ``if __name__ == "__main__":``.
+The worker processes import the script that starts them, so it must call `study` under ``if __name__ == "__main__":``.
 """
 
 import warnings
@@ -54,50 +54,64 @@ def study(
     progress: Callable[[float], None] | None = None,
     on_result: Callable[[Line], None] | None = None,
 ) -> "Dataset":
-    """Compute a function of every case.
+    """Compute a function of every case of a study.
 
-    The results do not depend on where they are computed. With an `output`, they are in that file soon after they are
-    there; a study that was stopped, even killed, goes on from what its file holds, and one that is complete is read. It
-    may also grow: more draws, more values at the end of the first axis of a grid. Ctrl-C keeps what is done.
+    The results do not depend on where they are computed. With an `output`, new results are soon written to that file. A
+    study that was stopped, or killed, continues from its file; the results of a complete study are read from it. A
+    study may also grow: by more draws, or by more values at the end of the first axis of a grid. Ctrl-C keeps the
+    results so far.
 
     Parameters
     ----------
     cases
-        What `grid` or `sample` makes.
+        The cases, see `grid` and `sample`.
     function
-        Of one case, at the top level of a module. Returns numbers by name.
+        Takes a case and returns numbers by name. It must be defined at the top level of a module, or be a partial of
+        such a function.
     output
-        A Parquet file, one line for each case, in order; nothing half-written is ever seen under that name.
+        A Parquet file with one line for each case, in order. It is replaced as a whole, never half-written.
     executor
-        Where to compute, say ``dask.distributed.Client(…).get_executor()``; it is left open. None: on processes of
-        this machine, see the module on how a script must start them. Workers may die; the cases they had are computed
-        again.
+        Where to compute, for example ``dask.distributed.Client(…).get_executor()``; the caller closes it. None: on
+        processes of this machine, which a script must start under ``if __name__ == "__main__":``. If a worker dies, the
+        cases that it had are computed again.
     workers
-        Number of those processes; None: one for each core.
+        Number of processes on this machine; None: one for each core.
     progress
         Called with the number of cases that are done.
     on_result
         Called with each new line of the table, in order of completion: "case" (its number), the varied parameters, the
-        results, "error".
+        results and "error".
 
     Returns
     -------
     xarray.Dataset
-        A variable for each result and ``error``. Of a grid, its axes are the dimensions; else ``case`` is, and the
-        varied parameters are coordinates along it. A case whose parameters are out of range, or whose function raises
-        an ArithmeticError, RuntimeError, ValueError or Stopped, has nan for results and the message in ``error``; so
-        has one that no worker survives.
+        A variable for each result, and ``error``. The dimensions are the axes of a grid. Otherwise there is one
+        dimension, ``case``, and the varied parameters are coordinates along it. A case has nan for results and the
+        message in ``error`` if its parameters are out of range, if the function raises an ArithmeticError,
+        RuntimeError, ValueError or Stopped, or if every worker that tried it died.
 
     Raises
     ------
     InputError
         If the file cannot be read or holds another study; the message names the difference.
     BrokenExecutor
-        If workers die and there has not been one result, or if the given executor is broken.
+        If workers die before there is a single result, or if the given executor is broken.
     Exception
         Any other that the function raises.
+
+    Examples
+    --------
+    >>> from concurrent.futures import ThreadPoolExecutor
+    >>> from boreprop import grid, paper_case, study
+    >>> def critical_weight(case):
+    ...     return {"kilonewtons": 0.1467 * case.bha.force_scale / case.bit.lateral_steering_resistance / 1e3}
+    >>> cases = grid(paper_case(), {"flexural_stiffness": [7e6, 8e6]})
+    >>> with ThreadPoolExecutor() as threads:
+    ...     results = study(cases, critical_weight, executor=threads)
+    >>> results["kilonewtons"].values.round(1).tolist()
+    [23.0, 26.3]
     """
-    from xarray import Dataset  # here: if it is missing, the work would be for nothing
+    from xarray import Dataset  # imported first, so that no work is lost if it is missing
 
     table = Table(cases, function, None if output is None else Path(output))
     todo = {case: values for case, values in enumerate(map(tuple, cases.values.tolist())) if case not in table.lines}
@@ -122,7 +136,20 @@ def study(
 
 
 def quantiles(results: "Dataset", q: Iterable[float] = (0.1, 0.5, 0.9)) -> "Dataset":
-    """Quantiles of every result over all cases. Nan does not count: failed cases, the wavelength of a smooth hole."""
+    """Compute quantiles of every result of a study over its cases.
+
+    Parameters
+    ----------
+    results
+        What `study` returns. Values that are nan are left out: those of failed cases, the wavelength of a smooth hole.
+    q
+        Probabilities, from 0 to 1.
+
+    Returns
+    -------
+    xarray.Dataset
+        For each result its quantiles along the dimension ``quantile``, in the unit of the result.
+    """
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "All-NaN slice", RuntimeWarning)
         return results.quantile(list(q), numeric_only=True, skipna=True, keep_attrs=True)
@@ -137,23 +164,38 @@ class Probability(NamedTuple):
 
 
 def probability(happened: "DataArray", confidence: float = 0.95) -> Probability:
-    """The probability that a result of a sample is 1 rather than 0, with the exact interval of Clopper and Pearson.
+    """Estimate the probability that a result of a sample is 1 rather than 0.
 
-    Failed cases, nan, do not count; without any that does, the estimate is nan.
+    Parameters
+    ----------
+    happened
+        A result of `study` that is 0 or 1 in each case, such as ``results["ripples"]``. Failed cases, nan, are left
+        out.
+    confidence
+        Confidence of the interval, between 0 and 1.
+
+    Returns
+    -------
+    Probability
+        The share of ones, and the exact confidence interval of Clopper and Pearson (1934). If all cases failed, the
+        estimate is nan and the interval is from 0 to 1.
     """
     from scipy.stats import binomtest
 
-    known = happened.values[np.isfinite(happened.values)]
-    if not known.size:
+    finite = happened.values[np.isfinite(happened.values)]
+    if not finite.size:
         return Probability(nan, 0.0, 1.0)
-    interval = binomtest(int(known.sum()), known.size).proportion_ci(confidence)
-    return Probability(float(known.mean()), float(interval.low), float(interval.high))
+    interval = binomtest(int(finite.sum()), finite.size).proportion_ci(confidence)
+    return Probability(float(finite.mean()), float(interval.low), float(interval.high))
 
 
 def outcome(
     function: Function, case: Case, names: tuple[str, ...], values: tuple[float, ...]
 ) -> dict[str, float] | str:
-    """In the worker: the results of one case, or why there are none. What numbers cannot cause is a bug and raised."""
+    """Called in the worker: the results of one case, or the reason why there are none.
+
+    Errors that no choice of numbers can cause are bugs, and are raised.
+    """
     try:
         results = function(vary(case, dict(zip(names, values, strict=True))))
         return {name: float(result) for name, result in results.items()}
@@ -182,7 +224,7 @@ def _labelled(cases: Study, table: Table) -> tuple[dict[str, Any], dict[str, Any
 
 
 def _attributes(name: str) -> dict[str, str]:
-    """Unit and meaning of a parameter or a key figure."""
+    """The attributes of a parameter or a key figure in a dataset: its unit and meaning."""
     name = name.partition("[")[0]
     if name in FIGURES:
         unit, meaning = FIGURES[name]
