@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from math import nan
 
 from ...case.case import Case
-from ...core.propagation import RELATIVE_TOLERANCE
+from ...core.options import RELATIVE_TOLERANCE
 from ...run.engines import engine
 from ...run.simulate import simulate
 from ..rippling import State, last_wave
