@@ -9,7 +9,8 @@ import typer
 
 from boreprop.cli import console
 from boreprop.cli.lazy import new_app
-from boreprop.cli.options import Version, positive
+from boreprop.cli.options import positive
+from boreprop.cli.version import Version
 from boreprop.errors import InputError
 
 
