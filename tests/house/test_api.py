@@ -1,7 +1,10 @@
 """The public names of boreprop: they are all there, they say what they do, and a case or a run comes first."""
 
 import ast
-from inspect import getdoc, isclass, signature
+import subprocess
+import sys
+from inspect import Signature, getdoc, isclass, isfunction, signature
+from typing import get_args
 
 import pytest
 
@@ -63,8 +66,26 @@ def test_a_public_name_says_what_it_is(name: str) -> None:
 
 @pytest.mark.parametrize("name", ANALYSES)
 def test_a_case_or_a_run_comes_first(name: str) -> None:
-    first = next(iter(signature(getattr(boreprop, name)).parameters.values()))
-    assert first.annotation in (boreprop.Case, boreprop.Trajectory)
+    first = next(iter(signature(getattr(boreprop, name)).parameters.values())).annotation
+    assert {boreprop.Case, boreprop.Trajectory} & {first, *get_args(first)}
+
+
+def test_public_functions_say_of_what_type_each_parameter_is() -> None:
+    for name in boreprop.__all__:
+        if isfunction(function := getattr(boreprop, name)):
+            described = signature(function)
+            assert described.return_annotation is not Signature.empty, name
+            for parameter in described.parameters.values():
+                assert parameter.annotation is not Signature.empty, f"{name}: {parameter}"
+                assert parameter.name in getdoc(function), f"{name} does not explain {parameter.name}"
+
+
+def test_the_package_alone_loads_nothing_slow() -> None:
+    """A command pays for what it uses, and a name of the API for its own module."""
+    script = "import sys, boreprop; print(*sys.modules, sep='\\n')"
+    loaded = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout.split()
+    assert [name for name in loaded if name.startswith("boreprop")] == ["boreprop"]
+    assert not {"numpy", "pydantic", "scipy", "typer"} & set(loaded)
 
 
 def test_what_goes_wrong_is_one_kind_of_error() -> None:

@@ -1,7 +1,5 @@
 """The command `boreprop-view`: draws runs with Rerun."""
 
-import sys
-from importlib.abc import MetaPathFinder
 from pathlib import Path
 from typing import Annotated, NoReturn
 
@@ -12,19 +10,6 @@ from boreprop.cli.lazy import new_app
 from boreprop.cli.options import positive
 from boreprop.cli.version import Version
 from boreprop.errors import InputError
-
-
-class WithoutPandas(MetaPathFinder):
-    """Says that pandas is not installed.
-
-    pyarrow, on which Rerun builds, would load it to see whether it was given a table of pandas: a third of a second.
-    """
-
-    def find_spec(self, fullname: str, path: object = None, target: object = None) -> None:  # noqa: ARG002
-        """Refuse pandas, and leave all else to the other finders."""
-        if fullname == "pandas":
-            raise ModuleNotFoundError("pandas is not needed here", name=fullname)
-
 
 app = new_app("Runs to look at in Rerun: vertical section, bit frame, ripple, plots over the drilled length.")
 
@@ -80,7 +65,6 @@ def view(
     if (viewers := spawn + serve + (connect is not None)) > 1:
         raise InputError(f"--spawn, --serve and --connect: must be at most one, got {viewers}")
     check_that_one_runs(sources, {"--schedule": schedule, "--step": step, "--stop": stop})
-    sys.meta_path.insert(0, WithoutPandas())
     from .view import show  # here: Rerun takes longer to load than it takes to say what is wrong with an option
 
     show(
