@@ -20,7 +20,6 @@ EXTRAS = {  # a package → the extra that brings it
     "matplotlib": "plot",
     "pyarrow": "study",
     "xarray": "study",
-    "distributed": "study",
     "fmpy": "fmu",
     "pythonfmu": "fmu",
     "rerun": "viz",
