@@ -153,7 +153,7 @@ HEAVY = {"fmpy", "matplotlib", "numpy", "pandas", "pyarrow", "pydantic", "rerun"
     [
         (["--help"], set()),
         (["simulate", "CASE", "--output", "OUT", "--length", "1"], {"numpy", "pydantic"}),
-        (["summary", "RUN"], {"numpy", "pydantic", "rich", "scipy"}),
+        (["summary", "RUN"], {"numpy", "pydantic", "rich"}),
         (["roots", "CASE"], {"numpy", "pydantic", "rich", "scipy"}),
     ],
     ids=lambda value: value[0] if isinstance(value, list) else "",
