@@ -33,7 +33,7 @@ def host(scenario: str, *arguments: object) -> Any:
 
 def assert_agrees(rows: list[dict[str, float]], expected: Trajectory, tolerance: float) -> None:
     """Every output within `tolerance` of its largest value in the run, or of one of its unit."""
-    assert len(rows) == len(expected)
+    assert len(rows) == expected.row_count
     for name in rows[0]:
         column = np.array([row[name] for row in rows])
         scale = max(1.0, float(np.abs(expected[name]).max()))

@@ -388,7 +388,7 @@ def test_a_csv_write_that_fails_changes_nothing(trajectory: Trajectory, tmp_path
 def test_a_case_that_cannot_be_written_leaves_the_old_run(
     trajectory: Trajectory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fail(*_: object) -> str:
+    def fail(*_: object, **_run: object) -> str:
         raise OSError("disk full")
 
     write_trajectory(trajectory, tmp_path / "run.csv")

@@ -182,6 +182,6 @@ def hole_columns(length: Array, hole: HolePath, case: Case, plan: Survey | None)
 
 def pieces(whole: Stretch, batch: int) -> Iterator[Stretch]:
     """A stretch cut into stretches of so many rows."""
-    for first in range(0, len(whole.rows), batch):
+    for first in range(0, whole.rows.row_count, batch):
         columns = {name: column[first : first + batch] for name, column in whole.rows.columns.items()}
         yield replace(whole, rows=replace(whole.rows, columns=columns))

@@ -32,7 +32,7 @@ def run_command(
     ] = None,
     tolerance: Tolerance = None,
 ) -> None:
-    """FmuRun an FMU and write the run to a file.
+    """Run an FMU and write the run to a file.
 
     Its rows are at whole multiples of the communication step, from 0. If the FMU cannot go on to the end, the rows so
     far are written all the same; the exit status is then 3.
