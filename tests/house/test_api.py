@@ -51,12 +51,11 @@ def test_the_api_has_the_names_that_scripts_need() -> None:
 
 def test_types_and_lazy_names_are_the_same() -> None:
     """Each name is imported for type checkers from where it is loaded when a script asks for it."""
-    imported = {
-        alias.name: node.module for node in ast.walk(SOURCE) if isinstance(node, ast.ImportFrom) for alias in node.names
-    }
-    for name in boreprop.__all__:
-        if name != "__version__":
-            assert getattr(boreprop, name).__module__ == f"boreprop.{imported[name]}"
+    [checked] = [node for node in SOURCE.body if isinstance(node, ast.If)]  # if TYPE_CHECKING
+    imports = [node for node in checked.body if isinstance(node, ast.ImportFrom)]
+    imported = {alias.name: f"boreprop.{node.module}" for node in imports for alias in node.names}
+    loaded = {name: getattr(boreprop, name).__module__ for name in boreprop.__all__ if name != "__version__"}
+    assert imported == loaded
 
 
 @pytest.mark.parametrize("name", [name for name in boreprop.__all__ if name != "__version__"])
