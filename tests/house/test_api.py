@@ -76,7 +76,7 @@ def test_public_functions_say_of_what_type_each_parameter_is() -> None:
             assert described.return_annotation is not Signature.empty, name
             for parameter in described.parameters.values():
                 assert parameter.annotation is not Signature.empty, f"{name}: {parameter}"
-                assert parameter.name in getdoc(function), f"{name} does not explain {parameter.name}"
+                assert parameter.name in (getdoc(function) or ""), f"{name} does not explain {parameter.name}"
 
 
 def test_the_package_alone_loads_nothing_slow() -> None:
