@@ -1,20 +1,15 @@
 """How large a dogleg it takes to tip a system over, and where an ongoing ripple dies out."""
 
 from dataclasses import replace
-from math import degrees, inf, nan, radians
-from pathlib import Path
+from math import degrees, inf, radians
 
 import numpy as np
 import pytest
-from matplotlib.image import imread
 
 from boreprop.analysis import tipping
-from boreprop.analysis.hysteresis import Hysteresis, hysteresis
 from boreprop.analysis.rippling import Rippling, State, find_rippling
 from boreprop.analysis.study.design import vary
 from boreprop.analysis.tipping import (
-    CriticalDogleg,
-    DoglegMap,
     critical_dogleg,
     dogleg_map,
     drill_until_steady,
@@ -23,20 +18,12 @@ from boreprop.analysis.tipping import (
 )
 from boreprop.case.case import Case, Schedule
 from boreprop.case.paper import LENGTH_SCALE, paper_case
-from boreprop.core.drilling import Drilling
 from boreprop.core.errors import ParameterError
 from boreprop.core.survey import Survey
-from boreprop.report.tables.hysteresis import loop
-from boreprop.report.tables.tipping import left_out, lines
+from boreprop.report.tables.tipping import lines
 from boreprop.run.simulate import simulate
-from boreprop.run.trajectory import Stopped, Trajectory
-from conftest import Command
-
-YES, NO = Rippling(State.LASTING, 5.0, 0.1), Rippling()
-
-
-def at(eta_pi: float, **options: float) -> Case:
-    return vary(paper_case(**options), {"eta_pi": eta_pi})
+from boreprop.run.trajectory import Stopped
+from tipping_cases import NO, YES, at
 
 
 def ripples_for_long(case: Case, relative_tolerance: float = 1e-7) -> bool:
@@ -45,9 +32,6 @@ def ripples_for_long(case: Case, relative_tolerance: float = 1e-7) -> bool:
         case, length=100 * LENGTH_SCALE, sample_interval=LENGTH_SCALE / 20, relative_tolerance=relative_tolerance
     )
     return find_rippling(run).ripples
-
-
-# one run
 
 
 @pytest.mark.parametrize(
@@ -113,9 +97,6 @@ def test_a_failing_run_says_where() -> None:
     pushed = replace(paper_case(), schedule=Schedule((0.0,), (1e9,)))
     with pytest.raises(Stopped, match="after 0 m: the bit turns over"):
         drill_until_steady(pushed)
-
-
-# the critical dogleg
 
 
 def test_the_hole_is_straight_at_the_inclination_of_the_case_and_turns_over_half_the_bha() -> None:
@@ -267,162 +248,3 @@ def test_a_map_varies_the_first_stabilizer_that_touches() -> None:
     bladed = replace(paper_case(), bha=idle)
     assert dogleg_map(bladed, np.array([0.02]), np.array([3e-3]), tolerance=1.0, workers=1).stabilizer == 2
     assert usual_map(bladed)[1] == pytest.approx(usual_map(paper_case())[1])
-
-
-# hysteresis
-
-
-@pytest.mark.slow
-def test_a_ripple_dies_at_the_weight_where_it_dies_in_one_run_and_comes_back_at_the_critical_dogleg() -> None:
-    weights = [0.02, 0.03, 0.04, 0.06, 0.08, 0.1, 0.12, 0.135, 0.15]
-    cases = [at(eta_pi) for eta_pi in weights]
-    found = hysteresis(cases[0], "eta_pi", weights, radians(0.5))
-    up, down = found.up, found.down
-    drilling = Drilling(
-        cases[0].bha, cases[0].bit, with_dogleg(cases[0], radians(10.0)).survey,
-        active_weight_on_bit=cases[0].active_weight_on_bit,
-    )  # fmt: skip
-    for case, wave in zip(cases, up, strict=True):
-        rows = []
-        for _ in range(60 * 30):
-            length = drilling.drilled_length + LENGTH_SCALE / 30
-            drilling.advance(length, 0.0, case.active_weight_on_bit)
-            rows.append(drilling.outputs())
-        columns = {name: np.array([row[name] for row in rows], dtype=float) for name in rows[0]}
-        in_one_run = find_rippling(Trajectory(columns, case))
-        assert wave is not None
-        assert wave.ripples is in_one_run.ripples
-        if wave.ripples:
-            assert wave.amplitude == pytest.approx(in_one_run.amplitude, rel=0.03)
-    assert rippling(up) == [eta_pi < 0.13 for eta_pi in weights]
-    assert rippling(down) == [critical_dogleg(case).angle < radians(0.5) for case in cases]
-
-
-def rippling(waves: tuple[Rippling | None, ...]) -> list[bool]:
-    return [wave is not None and wave.ripples for wave in waves]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("values", [[0.005, 0.055, 0.15], np.linspace(0.02, 0.14, 7), np.linspace(0.03, 0.13, 13)])
-def test_the_ends_of_the_loop_are_the_cases_not_the_grids(values: list[float]) -> None:
-    vertical = replace(paper_case(), survey=Survey((0.0,), (0.0,)))
-    found = hysteresis(vertical, "eta_pi", list(values), radians(0.5))
-    for bracket, end in ((found.dies, 0.1265), (found.returns, 0.0336)):
-        assert bracket is not None
-        low, high = bracket
-        assert high - low <= 0.01 * high
-        assert end == pytest.approx((low + high) / 2, rel=0.015)
-
-
-def test_the_dogleg_brings_a_ripple_back_where_it_is_the_critical_one() -> None:
-    vertical = replace(paper_case(), survey=Survey((0.0,), (0.0,)))
-    found = hysteresis(vertical, "eta_pi", [0.02, 0.06], radians(0.5))
-    assert found.returns is not None
-    angles = [critical_dogleg(vary(vertical, {"eta_pi": value}), tolerance=0.002).angle for value in found.returns]
-    assert angles[0] <= radians(0.5) * 1.002
-    assert angles[1] >= radians(0.5) * 0.998
-
-
-def test_a_run_that_stops_leaves_its_value_out_of_the_loop() -> None:
-    pushed = replace(paper_case(), schedule=Schedule((0.0,), (3e6,)))
-    found = hysteresis(pushed, "eta_pi", [0.01, 5.0], radians(0.5))
-    assert [wave is None for wave in (*found.up, *found.down)] == [True, False, True, False]
-    assert loop(pushed, found).startswith("it ripples nowhere from ηΠ = 0.01 (1.612 kN)")
-
-
-def test_opening_the_clearance_lets_a_ripple_go_on_that_it_would_not_let_start() -> None:
-    clearances = [clearance * LENGTH_SCALE for clearance in (1e-3, 1.5e-3, 2e-3)]
-    found = hysteresis(paper_case(), "stabilizer_clearance[1]", clearances, radians(0.5))
-    assert rippling(found.up) == [True, True, True]
-    assert rippling(found.down) == [True, False, False]  # the paper's figure 8
-
-
-# words and pictures
-
-
-def critical(angle: float, monotonic: bool = True) -> CriticalDogleg:
-    return CriticalDogleg(angle, angle / LENGTH_SCALE, monotonic, ())
-
-
-def test_the_critical_dogleg_in_words() -> None:
-    found = {1: critical(radians(1.0)), -1: critical(inf)}
-    assert [amount for _, amount in lines(paper_case(), found, radians(10.0))] == [
-        "1.00° over 3.66 m (8.2 °/30 m)", "none up to 10°"
-    ]  # fmt: skip
-    found = {1: critical(0.0), -1: critical(radians(2.0), monotonic=False)}
-    assert [amount for _, amount in lines(paper_case(), found, radians(10.0))] == [
-        "any: it ripples from a straight hole", "2.00° over 3.66 m (16.4 °/30 m), but not every larger one"
-    ]  # fmt: skip
-
-
-def test_a_stopped_run_in_words() -> None:
-    [(_, amount)] = lines(paper_case(), {1: "after 3 m: the bit turns over"}, radians(10.0))
-    assert amount == "not known: after 3 m: the bit turns over"
-
-
-@pytest.mark.parametrize(
-    ("found", "words"),
-    [
-        (
-            Hysteresis("eta_pi", (0.1, 0.2, 0.3), 0.01, (YES, YES, NO), (YES, NO, NO), (0.2, 0.202), (0.11, 0.111)),
-            "on the way up the ripple dies out between ηΠ = 0.2 (32.25 kN) and ηΠ = 0.202 (32.57 kN); on the way down "
-            "a dogleg of 0.573° over 3.66 m in a straight hole brings it back between ηΠ = 0.11 (17.74 kN) and "
-            "ηΠ = 0.111 (17.9 kN)",
-        ),
-        (
-            Hysteresis("stabilizer_clearance[1]", (1e-3, 2e-3), 0.01, (YES, YES), (NO, NO), None, None),
-            "on the way up the ripple lasts to 2 mm; on the way down a dogleg of 0.573° over 3.66 m in a straight hole "
-            "does not bring it back",
-        ),
-        (
-            Hysteresis("stabilizer_clearance[1]", (1e-3, 2e-3), 0.01, (YES, None), (YES, YES), None, None),
-            "on the way up the ripple lasts to 1 mm; on the way down a dogleg of 0.573° over 3.66 m in a straight hole "
-            "brings it back at once, at 2 mm; 1 of 4 values left out, where a run stopped",
-        ),
-        (
-            Hysteresis("active_weight_on_bit", (1e3, 2e3), 0.01, (NO, NO), (NO, NO), None, None),
-            "it ripples nowhere from 1 kN to 2 kN",
-        ),
-    ],
-)
-def test_the_loop_in_words(found: Hysteresis, words: str) -> None:
-    assert loop(paper_case(), found) == words
-
-
-def test_the_points_that_a_map_lacks_in_words() -> None:
-    nothing, why = np.zeros(2), np.array([["", "after 3 m: the bit turns over"]])
-    found = DoglegMap(nothing, nothing[:1], 1, np.array([[0.1, nan]]), np.ones((1, 2), dtype=bool), why)
-    assert left_out(found) == "; 1 of 2 points left out (the first: after 3 m: the bit turns over)"
-
-
-@pytest.mark.slow
-def test_the_commands_print_and_draw(command: Command, tmp_path: Path, paper_case: Path) -> None:
-    ranges = ["--eta-pi", "0.05:0.15:2", "--clearance-mm", "2:4:2"]
-    result = command("boreprop", "dogleg", paper_case, "--output", "map.png", *ranges)
-    assert (result.returncode, result.stderr) == (0, "")
-    assert "0.43° over 3.66 m (3.5 °/30 m)" in result.stdout
-    result = command("boreprop", "hysteresis", paper_case, "--output", "loop.png", "--eta-pi", "0.03:0.15:3")
-    assert (result.returncode, result.stderr) == (0, "")
-    assert "dies out between ηΠ = 0.12" in result.stdout
-    assert "brings it back between ηΠ = 0.03352 (5.404 kN) and" in result.stdout
-    for name in ("map.png", "loop.png"):
-        assert imread(tmp_path / name)[..., :3].std() > 0.05
-
-
-@pytest.mark.parametrize(
-    ("arguments", "named"),
-    [
-        (["dogleg", "CASE", "--output", "map.pdf"], ("map.pdf", ".png")),
-        (["dogleg", "CASE", "--eta-pi", "0.1:0.05:3"], ("--eta-pi", "START:STOP:COUNT", "'0.1:0.05:3'")),
-        (["dogleg", "CASE", "--clearance-mm", "1:2"], ("--clearance-mm", "START:STOP:COUNT", "'1:2'")),
-        (["hysteresis", "CASE", "--output", "loop.png"], ("--eta-pi", "--clearance-mm", "neither")),
-    ],
-)
-def test_wrong_arguments_are_one_line(
-    command: Command, tmp_path: Path, paper_case: Path, arguments: list[str], named: tuple[str, ...]
-) -> None:
-    result = command("boreprop", *(str(paper_case) if argument == "CASE" else argument for argument in arguments))
-    assert (result.returncode, result.stdout, result.stderr.count("\n")) == (2, "", 1)
-    for name in named:
-        assert name in result.stderr
-    assert not list(tmp_path.iterdir())

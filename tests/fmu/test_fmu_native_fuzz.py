@@ -67,7 +67,8 @@ def test_random_lives_of_an_instance_end_well(case: Case, stabilizers: int, asan
 
 def test_the_tests_of_the_native_flavour_pass_under_sanitizers(asan: Path) -> None:
     """Leaks apart, of which Python has some: those of the FMU the test above sees."""
-    files = ("test_fmu.py", "test_fmu_trust.py", "test_fmu_native.py")
+    native = [f"native_{part}" for part in ("build", "calls", "ramps", "states", "survey")]
+    files = ["test_fmu.py", "test_fmu_trust.py", *(f"test_fmu_{name}.py" for name in native)]
     others = "command or builds or compile or binaries or leave"  # other compilers, other processes, memory
     command = [sys.executable, "-m", "pytest", "-q", "-x", "--compiler=own", "-p", "no:cacheprovider"]
     done = subprocess.run(

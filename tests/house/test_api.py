@@ -1,7 +1,9 @@
 """The public names of boreprop: they are all there, they say what they do, and a case or a run comes first."""
 
 import ast
-from inspect import getdoc, isclass, signature
+import subprocess
+import sys
+from inspect import Signature, getdoc, isclass, isfunction, signature
 from typing import get_args
 
 import pytest
@@ -49,12 +51,11 @@ def test_the_api_has_the_names_that_scripts_need() -> None:
 
 def test_types_and_lazy_names_are_the_same() -> None:
     """Each name is imported for type checkers from where it is loaded when a script asks for it."""
-    imported = {
-        alias.name: node.module for node in ast.walk(SOURCE) if isinstance(node, ast.ImportFrom) for alias in node.names
-    }
-    for name in boreprop.__all__:
-        if name != "__version__":
-            assert getattr(boreprop, name).__module__ == f"boreprop.{imported[name]}"
+    [checked] = [node for node in SOURCE.body if isinstance(node, ast.If)]  # if TYPE_CHECKING
+    imports = [node for node in checked.body if isinstance(node, ast.ImportFrom)]
+    imported = {alias.name: f"boreprop.{node.module}" for node in imports for alias in node.names}
+    loaded = {name: getattr(boreprop, name).__module__ for name in boreprop.__all__ if name != "__version__"}
+    assert imported == loaded
 
 
 @pytest.mark.parametrize("name", [name for name in boreprop.__all__ if name != "__version__"])
@@ -64,9 +65,26 @@ def test_a_public_name_says_what_it_is(name: str) -> None:
 
 @pytest.mark.parametrize("name", ANALYSES)
 def test_a_case_or_a_run_comes_first(name: str) -> None:
-    first = next(iter(signature(getattr(boreprop, name)).parameters.values()))
-    kinds = get_args(first.annotation) or (first.annotation,)
-    assert kinds[0] in (boreprop.Case, boreprop.Trajectory)
+    first = next(iter(signature(getattr(boreprop, name)).parameters.values())).annotation
+    assert {boreprop.Case, boreprop.Trajectory} & {first, *get_args(first)}
+
+
+def test_public_functions_say_of_what_type_each_parameter_is() -> None:
+    for name in boreprop.__all__:
+        if isfunction(function := getattr(boreprop, name)):
+            described = signature(function)
+            assert described.return_annotation is not Signature.empty, name
+            for parameter in described.parameters.values():
+                assert parameter.annotation is not Signature.empty, f"{name}: {parameter}"
+                assert parameter.name in (getdoc(function) or ""), f"{name} does not explain {parameter.name}"
+
+
+def test_the_package_alone_loads_nothing_slow() -> None:
+    """A command pays for what it uses, and a name of the API for its own module."""
+    script = "import sys, boreprop; print(*sys.modules, sep='\\n')"
+    loaded = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout.split()
+    assert [name for name in loaded if name.startswith("boreprop")] == ["boreprop"]
+    assert not {"numpy", "pydantic", "scipy", "typer"} & set(loaded)
 
 
 def test_what_goes_wrong_is_one_kind_of_error() -> None:

@@ -1,5 +1,6 @@
 """The repository itself: what its files say of each other and of the machine they were written on."""
 
+import ast
 import re
 import subprocess
 import tomllib
@@ -65,3 +66,30 @@ def test_links_between_documents_lead_somewhere(files: list[Path]) -> None:
         if "://" not in target
     ]
     assert not [(str(document), target) for document, target in links if not (document.parent / target).exists()]
+
+
+MOST_LINES, MOST_LINES_OF_A_FUNCTION = 400, 60
+PACKAGES = [ROOT / folder for folder in PYPROJECT["tool"]["hatch"]["build"]["targets"]["wheel"]["packages"]]
+
+
+def test_source_files_fit_in_the_head() -> None:
+    sources = [file for package in PACKAGES for file in package.rglob("*") if file.suffix in {".py", ".c", ".h"}]
+    assert len(sources) > 100
+    assert not [str(file) for file in sources if len(file.read_text(encoding="utf-8").splitlines()) > MOST_LINES]
+
+
+def body_lines(function: ast.FunctionDef) -> int:
+    """Without its docstring: what a function is given and returns may take many lines to say."""
+    statements = function.body[ast.get_docstring(function) is not None :]
+    return (statements[-1].end_lineno or 0) - statements[0].lineno + 1 if statements else 0
+
+
+def test_functions_fit_on_a_screen() -> None:
+    long = {
+        node.name: body_lines(node)
+        for package in PACKAGES
+        for file in package.rglob("*.py")
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef) and body_lines(node) > MOST_LINES_OF_A_FUNCTION
+    }
+    assert not long

@@ -1,21 +1,14 @@
 """What the kernel refuses, number by number."""
 
-import ctypes
-
 import numpy as np
 import pytest
 
 from boreprop.case.case import Case
-from boreprop.case.paper import paper_case
-from boreprop.case.parameters import parameters
 from boreprop.core.drilling import Drilling
 from boreprop.core.errors import ParameterError
-from boreprop.core.quantities import scalar_names
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
-from boreprop.kernel import binding
 from boreprop.kernel.binding import NativeDrilling
-from boreprop.kernel.generate import SYSTEM
 
 pytestmark = pytest.mark.usefixtures("kernel")
 
@@ -40,11 +33,3 @@ def test_a_bha_too_long_for_a_double_is_refused_by_both_engines() -> None:
     for engine in (Drilling, NativeDrilling):
         with pytest.raises(ParameterError, match=r"^s_n / l_1: must be a finite number, got inf$"):
             engine(bha, bit, Survey((0.0,), (0.0,)), active_weight_on_bit=1.0)
-
-
-def test_two_stations_that_do_not_increase_are_refused() -> None:
-    given = parameters(paper_case()) | {"relative_tolerance": 1e-7}
-    values, depths = np.array([given[name] for name in scalar_names(SYSTEM, 2)]), np.array([1.0, 0.0])
-    why = ctypes.create_string_buffer(binding.MESSAGE)
-    assert not binding.library().boreprop_start(2, values, 2, depths, np.zeros(2), binding.Inputs(0.0, 0.0, 1.0), why)
-    assert why.value.decode().startswith("measured_depth: must increase, got (1.0, 0.0)")

@@ -1,7 +1,5 @@
 """The command `boreprop-view`: draws runs with Rerun."""
 
-import sys
-from importlib.abc import MetaPathFinder
 from pathlib import Path
 from typing import Annotated, NoReturn
 
@@ -9,22 +7,9 @@ import typer
 
 from boreprop.cli import console
 from boreprop.cli.lazy import new_app
-from boreprop.cli.options import Version, positive
+from boreprop.cli.options import positive
+from boreprop.cli.version import Version
 from boreprop.errors import InputError
-
-
-class WithoutPandas(MetaPathFinder):
-    """Makes pandas appear not to be installed.
-
-    pyarrow, which Rerun uses, would import it to see whether data are a table of pandas. That takes a third of a
-    second.
-    """
-
-    def find_spec(self, fullname: str, path: object = None, target: object = None) -> None:  # noqa: ARG002
-        """Refuse pandas, and leave all other modules to the other finders."""
-        if fullname == "pandas":
-            raise ModuleNotFoundError("pandas is not needed here", name=fullname)
-
 
 app = new_app("Show runs in Rerun: vertical section, bit frame, ripple, plots over the drilled length.")
 
@@ -80,7 +65,6 @@ def view(
     if (viewers := spawn + serve + (connect is not None)) > 1:
         raise InputError(f"--spawn, --serve, --connect: at most one must be given, got {viewers}")
     check_that_one_runs(sources, {"--schedule": schedule, "--step": step, "--stop": stop})
-    sys.meta_path.insert(0, WithoutPandas())
     from .view import show  # imported here, so that a wrong option is reported before Rerun, which is slow, is imported
 
     show(

@@ -17,6 +17,7 @@ from boreprop_fmu.packed_case import read_packed_case
 from .record import draw
 from .sinks import open_recording
 from .source import Source, live, stored
+from .without_pandas import skip_pandas_check
 
 
 @dataclass
@@ -95,6 +96,7 @@ def show(
     connect: str | None,
 ) -> None:
     """Draw runs, see the options of the command."""
+    skip_pandas_check()
     planned = None if plan is None else read_survey(plan)
     opener = Opener(case, fmu, planned, schedule, step, stop)
     opened = [opener.open(name, path) for name, path in zip(names(sources), sources, strict=True)]

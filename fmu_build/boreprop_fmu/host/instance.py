@@ -25,8 +25,8 @@ def read_description(fmu: Path) -> Any:
         reason = getattr(error, "strerror", None) or error
         raise InputError(f"{fmu}: must be an FMI 2.0 co-simulation FMU, got: {reason}") from error
     if description.fmiVersion != "2.0" or description.coSimulation is None:
-        kind = f"FMI {description.fmiVersion}" + " without co-simulation" * (description.coSimulation is None)
-        raise InputError(f"{fmu}: must be an FMI 2.0 co-simulation FMU, got: {kind}")
+        kind = "without co-simulation" if description.coSimulation is None else "for co-simulation"
+        raise InputError(f"{fmu}: must be an FMI 2.0 co-simulation FMU, got: FMI {description.fmiVersion} {kind}")
     return description
 
 

@@ -20,7 +20,6 @@ EXTRAS = {  # package → the extra that installs it
     "matplotlib": "plot",
     "pyarrow": "study",
     "xarray": "study",
-    "distributed": "study",
     "fmpy": "fmu",
     "pythonfmu": "fmu",
     "rerun": "viz",

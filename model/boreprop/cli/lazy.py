@@ -7,7 +7,7 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
-from .options import Version
+from .version import Version
 
 
 def new_app(description: str) -> typer.Typer:

@@ -1,6 +1,5 @@
 """Options that several commands share, and the parsers of their values."""
 
-from importlib.metadata import version
 from math import inf, nan
 from pathlib import Path
 from typing import Annotated
@@ -29,17 +28,6 @@ def tolerance(text: str) -> float:
         raise typer.BadParameter(f"must be {allowed.at_least:g} to {allowed.at_most:g}, got {text!r}")
     return value
 
-
-def _print_version(wanted: bool) -> None:
-    if wanted:
-        print(version("boreprop"))
-        raise typer.Exit
-
-
-Version = Annotated[
-    bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit.")
-]
-"""The option --version: ``version: Version = False``."""
 
 CaseFile = Annotated[Path, typer.Argument(metavar="CASE.toml", help="The case file.")]
 """The argument CASE.toml: ``case_file: CaseFile``."""

@@ -68,7 +68,7 @@ def work(
         pickle.dumps(function)  # raises here if it cannot be pickled, where our pool might wait for ever
     workers = _cores() if workers is None else workers
     slots = SUBMITTED if executor else AHEAD * workers
-    pool = executor or _processes(workers)
+    pool = _Pool(executor, workers)
     serial = count()
     waiting, suspects, deaths = deque(items), deque[int](), dict.fromkeys(items, 0)
     running: dict[Future[tuple[list[R], float]], list[int]] = {}
@@ -76,16 +76,7 @@ def work(
     chunk, alone, fruitless = 1, False, True
 
     def submit(keys: list[int]) -> None:
-        nonlocal pool
-        call = partial(_apply, function, [items[key] for key in keys], next(serial))
-        try:
-            future = pool.submit(call)
-        except BrokenExecutor:
-            if executor:
-                raise
-            pool.shutdown()
-            pool = _processes(workers)
-            future = pool.submit(call)
+        future = pool.submit(partial(_apply, function, [items[key] for key in keys], next(serial)))
         running[future] = keys
         future.add_done_callback(done.put)
 
@@ -123,8 +114,29 @@ def work(
     finally:
         for future in running:
             future.cancel()
-        if not executor:
-            pool.shutdown(cancel_futures=True)
+        pool.close()
+
+
+class _Pool:
+    """An executor that was given, or else processes of this machine, and new ones when those have broken down."""
+
+    def __init__(self, given: Executor | None, workers: int) -> None:
+        self.given, self.workers = given, workers
+        self.executor = given or _processes(workers)
+
+    def submit(self, call: Callable[[], R]) -> Future[R]:
+        try:
+            return self.executor.submit(call)
+        except BrokenExecutor:
+            if self.given:
+                raise
+            self.executor.shutdown()
+            self.executor = _processes(self.workers)
+            return self.executor.submit(call)
+
+    def close(self) -> None:
+        if not self.given:
+            self.executor.shutdown(cancel_futures=True)
 
 
 def _cores() -> int:

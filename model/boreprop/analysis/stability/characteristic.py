@@ -21,7 +21,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize.elementwise import find_root
 
 from ...arrays import Complexes, Floats
 from ...core.beam import Beam
@@ -207,6 +206,8 @@ class Characteristic:
         """ω and ηΠ of the crossings between a and b, where x is x_a and x_b; ηΠ is nan where there is no root."""
         if not len(a):
             return a, b
+        from scipy.optimize.elementwise import find_root  # here: roots need no crossings, and it takes longer to load
+
         ends = a, b, x_a, x_b
         omega = find_root(lambda omega, *ends: self._on_branch(omega, *ends).imag, (a, b), args=ends).x
         eta_pi = self._on_branch(omega, *ends).real

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import radians
-from typing import Any, Protocol, TypeVar
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,10 +12,6 @@ from ...case.case import Case
 from ...case.parameters import parameters, with_parameters
 from ...core.quantities import BY_NAME, quantity_of
 from ...errors import InputError, shown
-
-T = TypeVar("T")
-
-MOST_VALUES = 5000  # on an axis of a picture
 
 
 class Distribution(Protocol):

@@ -9,9 +9,9 @@ def lines(summary: Summary) -> list[tuple[str, str]]:
     """The lines of a table, each a name and a value in the units people use."""
     mean = f"mean over {summary.averaging_length:.3g} m"
     stabilizers = enumerate(zip(summary.largest_contact_force, summary.contact_share, strict=True), 1)
-    return [
+    table = [
         ("drilled length", UNITS["m"].text(summary.drilled_length)),
-        *([("stopped", summary.stopped)] if summary.stopped else []),
+        ("stopped", summary.stopped),
         (f"inclination at the start, {mean}", UNITS["rad"].text(summary.start_inclination)),
         (f"inclination at the end, {mean}", UNITS["rad"].text(summary.end_inclination)),
         ("build rate, mean", UNITS["rad/m"].text(summary.build_rate)),
@@ -26,8 +26,9 @@ def lines(summary: Summary) -> list[tuple[str, str]]:
         ),
         ("bit tilt saturated", f"{summary.saturation_share:.0%} of the length"),
         *_wave_lines(summary.rippling),
-        *([("waves that would not show", summary.hidden_waves)] if summary.hidden_waves else []),
+        ("waves that would not show", summary.hidden_waves),
     ]
+    return [(what, amount) for what, amount in table if amount]
 
 
 def _wave_lines(wave: Rippling) -> list[tuple[str, str]]:
