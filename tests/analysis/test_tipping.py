@@ -182,7 +182,7 @@ def test_a_straight_hole_that_the_smallest_turn_tips_is_not_said_to_ripple(monke
     found = critical_dogleg(paper_case())
     assert found.angle == 0.0
     assert dict(found.tried)[0.0] is False
-    assert [amount for _, amount in lines(paper_case(), {1: found}, radians(10.0))] == ["any from 0.001° on"]
+    assert [amount for _, amount in lines(paper_case(), {1: found}, radians(10.0))] == ["any of 0.001° or more"]
 
 
 def test_an_inclined_hole_that_ripples_by_itself_does_not_after_a_small_turn_down() -> None:

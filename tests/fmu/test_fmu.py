@@ -194,7 +194,7 @@ def test_the_command_runs_in_a_temporary_directory_of_any_name_or_says_why_not(
     assert (done.returncode == 0) == (tmp_path / "run.csv").exists() == flavour.any_folder
     if not flavour.any_folder:
         assert done.returncode == 2
-        assert done.stderr.startswith("error: the temporary directory (TMPDIR) must ")
+        assert done.stderr.startswith("error: TMPDIR: the temporary directory must ")
 
 
 @pytest.mark.parametrize(

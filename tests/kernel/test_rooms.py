@@ -53,7 +53,7 @@ void gains_of(int n, const double *s, const double *y_star, double w, double eps
     ScaledInputs inputs = {.eta_pi = eta_pi};
     Regime free = {{{0}}, 0};
     memcpy(scaled.s, s, (size_t)n * sizeof *s), memcpy(scaled.y_star, y_star, (size_t)(n - 1) * sizeof *s);
-    prepare(&p, &scaled, 1.0, 1e-7);
+    prepare(&p, &scaled, 1.0, USUAL_OPTIONS);
     Law law = make_law(&p.scaled, &p.modes, free, inputs, 0.0);
     memcpy(gains, law.gains, (size_t)n * sizeof *gains);
 }

@@ -190,7 +190,7 @@ static inline void law_try(const Law *law, const Options *options, const double 
     trial->error = larger(options->theta_weight * fabs(error_theta), fabs(error_Y)) / options->relative_tolerance;
 }
 
-#define SMALL_TURN 0.05 /* rad: the series below are exact to the last digit up to here */
+#define SMALL_TURN 0.05 /* rad: up to here the series below are off by less than 1e-15 */
 
 /* Sine and cosine of an angle and a little more, `turn`, from those of the angle. */
 static inline void turn_by(double turn, double sine, double cosine, double *new_sine, double *new_cosine) {
