@@ -7,10 +7,9 @@ plane is searched.
 from collections.abc import Callable, Iterator
 from itertools import pairwise
 from math import inf, pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from ...arrays import Complexes, Floats
 
@@ -186,14 +185,21 @@ def beside(function: Function, zeros: Complexes) -> Complexes:
     found = newton(function, zeros + BESIDE, zeros)
     multiple = found[abs(found - zeros) < SAME]
     others = distinct(found)
-    far = KDTree(plane(zeros)).query(plane(others))[0] > SAME
+    far = neighbours(zeros).query(plane(others))[0] > SAME
     return np.concatenate([multiple, others[far]])
 
 
 def distinct(points: Complexes) -> Complexes:
     """`points` without nan, and without repetitions of the same zero."""
     points = points[~np.isnan(points)]
-    return np.delete(points, KDTree(plane(points)).query_pairs(SAME, output_type="ndarray")[:, 1])
+    return np.delete(points, neighbours(points).query_pairs(SAME, output_type="ndarray")[:, 1])
+
+
+def neighbours(points: Complexes) -> Any:
+    """The tree in which the neighbours of points of the complex plane are found."""
+    from scipy.spatial import KDTree  # imported here, as it takes long to load and a critical ηΠ needs no zeros
+
+    return KDTree(plane(points))
 
 
 def plane(points: Complexes) -> Floats:
