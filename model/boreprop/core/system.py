@@ -69,7 +69,8 @@ class BottomHoleAssembly:
     def half_length(self) -> float:
         """Half the distance from the bit to the last stabilizer, m.
 
-        The length of hole that what is said of a hole is about: unlike ℓ₁, no blade that never touches changes it.
+        Mean inclinations, chords and doglegs of a hole are over this length. Unlike ℓ₁, it does not change with a
+        stabilizer that never touches the wall.
         """
         return self.stabilizer_positions[-1] / 2
 
