@@ -6,6 +6,7 @@ slave into this process, and make a different file every time.
 
 import json
 from dataclasses import asdict
+from hashlib import sha256
 from importlib.resources import files
 from pathlib import Path
 
@@ -15,18 +16,25 @@ from .archive import digest, identify
 from .contents import IDENTIFIER, describe, pack_manual, start_values
 
 RUNTIME_MODULES = ("default_experiment", "enums", "fmi2slave", "logmsg", "variables", "_version")
-SCRIPT = '''"""The script that pythonfmu compiles for every instance; it needs a class with methods of its own."""
+SCRIPT = '''"""The script that pythonfmu runs for every instance, to find the class in it."""
 
+from {package}.process import keep_alive
 from {package}.slave import Borehole as Slave
 
+if not keep_alive(globals()):
 
-class Borehole(Slave):
-    def __init__(self, **kwargs):
-        super().__init__(**kwargs)
+    class Borehole(Slave):  # a class of each instance keeps the globals alive too, and several kB more
+        def __init__(self, **kwargs):
+            super().__init__(**kwargs)
 
-    def do_step(self, current_time, step_size):
-        return super().do_step(current_time, step_size)
+        def do_step(self, current_time, step_size):
+            return super().do_step(current_time, step_size)
 '''
+# The binaries whose logger is known to remember loggingOn this far from its beginning, bytes: by their SHA-256.
+LOG_SWITCH = {
+    "4be156a552c16f30eb4395805c59855d8d4086056d0f165442565f6c5fbac0c9": 8,  # pythonfmu 0.7.0, Linux
+    "24de3fd7a3a18eae5e9106f42924a146eeed7ae7234a6d34f6f5fdae62e65a6e": 8,  # pythonfmu 0.7.0, Windows
+}
 
 
 def pack_python(case: Case) -> dict[str, bytes]:
@@ -35,7 +43,13 @@ def pack_python(case: Case) -> dict[str, bytes]:
 
     def numbers(guid: str) -> dict[str, bytes]:
         n = len(case.bha.stabilizer_positions)
-        packed = {"guid": guid, "stabilizers": n, "start": start_values(case), "survey": asdict(case.survey)}
+        packed = {
+            "guid": guid,
+            "log_switch": log_switch(),
+            "stabilizers": n,
+            "start": start_values(case),
+            "survey": asdict(case.survey),
+        }
         return {**describe(case, guid), "resources/fmu.json": json.dumps(packed, indent=1).encode()}
 
     guid = identify({**code, **numbers(guid="")})
@@ -73,11 +87,22 @@ def pack_code() -> dict[str, bytes]:
 def pack_runtime() -> dict[str, bytes]:
     """The parts of pythonfmu: the binaries, under the FMU's name, and the base class of the slave."""
     package, modules = base_class()
-    archive = {f"resources/{package}/{name}": content for name, content in modules.items()}
-    for platform in files("pythonfmu").joinpath("resources/binaries").iterdir():
-        for binary in platform.iterdir():
-            archive[f"binaries/{platform.name}/{IDENTIFIER}{Path(binary.name).suffix}"] = binary.read_bytes()
-    return archive
+    return {**{f"resources/{package}/{name}": content for name, content in modules.items()}, **read_binaries()}
+
+
+def read_binaries() -> dict[str, bytes]:
+    """pythonfmu's binaries: path in the FMU → content."""
+    return {
+        f"binaries/{platform.name}/{IDENTIFIER}{Path(binary.name).suffix}": binary.read_bytes()
+        for platform in files("pythonfmu").joinpath("resources/binaries").iterdir()
+        for binary in platform.iterdir()
+    }
+
+
+def log_switch() -> int:
+    """How far into pythonfmu's logger it remembers loggingOn, bytes; 0 if that is not known of all its binaries."""
+    places = {LOG_SWITCH.get(sha256(binary).hexdigest(), 0) for binary in read_binaries().values()}
+    return places.pop() if len(places) == 1 else 0
 
 
 def base_class() -> tuple[str, dict[str, bytes]]:

@@ -4,13 +4,14 @@
 modules by name, process-wide, and an FMU must run its own code only. Everything is imported here, at the top: the
 directory an FMU was unpacked in may be gone before the process ends.
 
-pythonfmu makes fmi2Fatal of an exception in any callback. So none leaves a callback: bad input is logged, the step
-discarded, nothing has moved, and the next step with good input works.
+pythonfmu makes fmi2Fatal of an exception in any callback; to discard a step is its only other way to say no. So no
+exception leaves a callback. Bad input is logged, the step discarded, nothing has moved, and the next step with good
+input works. A call that must not be made is logged, does nothing, and the next step is discarded.
 """
 
 import json
 from collections.abc import Callable
-from math import isclose, nan, radians
+from math import inf, isclose, nan, radians
 from pathlib import Path
 from typing import Any
 from zlib import crc32
@@ -23,11 +24,15 @@ from boreprop.core.columns import read_columns
 from boreprop.core.drilling import Drilling
 from boreprop.core.errors import CannotContinue, ParameterError, TableError
 from boreprop.core.options import Options
-from boreprop.core.quantities import VARIABLES, Quantity, columns_of, fields_of
+from boreprop.core.quantities import BY_NAME, VARIABLES, Quantity, columns_of, fields_of
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
+from boreprop_fmu.python.process import forget, give_ctrl_c_back, open_log, write_to_user
 
-STATE_FORMAT = "boreprop-fmu-state-2"
+STATE_FORMAT = "boreprop-fmu-state-3"
+INSTANTIATED, INITIALIZATION, STEPPING, TERMINATED = "instantiated", "initialization", "stepping", "terminated"
+BEFORE_THE_END = (INSTANTIATED, INITIALIZATION, STEPPING)
+LOOSEST = 1e-5  # tolerance that a host may choose: some choose 1e-3 for every FMU, which is too coarse for a hole
 NOTHING: dict[str, Any] = {"Real": nan, "Integer": 0, "Boolean": False, "String": ""}  # the value of what has none
 
 
@@ -44,34 +49,53 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
+        give_ctrl_c_back()
+        forget(self.resources)
         packed = json.loads(Path(self.resources, "fmu.json").read_text(encoding="utf-8"))
         self.guid: str = packed["guid"]
+        self._log_switch = kwargs["logger"] + packed["log_switch"] if packed["log_switch"] else None
         self._n: int = packed["stabilizers"]
         self._survey = Survey(**{name: tuple(values) for name, values in packed["survey"].items()})
         self._scalars = [(name, quantity) for quantity in VARIABLES for name in quantity.names(self._n)]
         self._given: dict[str, Any] = packed["start"]  # inputs and parameters
+        self._chosen: set[str] = set()  # those of them that have been set
         self._outputs = self._nothing()
         self._stale = True  # the outputs are not those of the present hole under the present inputs
-        self._initialized = False
+        self._phase = INSTANTIATED
         self._drilling: Drilling | None = None
         self._fault = ""  # why the state is not to be trusted until a good one is set
-        self._time = 0.0  # where the last step ended
+        self._refused = ""  # what was wrong with a call since the last step
+        self._line = self._told = ""  # the last lines that went to the log and to stderr
+        self._time, self._stop = 0.0, inf  # where the last step ended, and where none may end beyond
         self._anchor = (0.0, 0.0, -1.0)  # since this time, from this drilled length, at this rate of penetration
 
     # What a master calls
 
-    def setup_experiment(self, start_time: float, *_: float | None) -> None:
-        """Start at this time. The tolerance is the parameter `relative_tolerance`, whatever a master suggests."""
-        self._time = start_time
+    def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
+        """Start at this time; end by that time; be as exact as that, unless the parameter for it has been set."""
+        self._call("fmi2SetupExperiment", (INSTANTIATED,), self._set_up, start_time, stop_time, tolerance)
+
+    def enter_initialization_mode(self) -> None:
+        """From here on an experiment cannot be set up."""
+        self._call("fmi2EnterInitializationMode", (INSTANTIATED,), self._go_on_to, INITIALIZATION)
 
     def exit_initialization_mode(self) -> None:
         """From here on parameters are fixed."""
-        self._safely(self._refresh)
-        self._initialized = True
+        left = self._call("fmi2ExitInitializationMode", (INITIALIZATION,), self._go_on_to, STEPPING)
+        if left and not self._safely(self._refresh):
+            self._tell_why_it_cannot_start()
 
     def do_step(self, current_time: float, step_size: float) -> bool:
         """Drill on for `step_size` seconds. False (fmi2Discard): nothing has moved, the log says why."""
-        return self._safely(self._step, current_time, step_size)
+        done = self._safely(self._step, current_time, step_size, status=Fmi2Status.discard)
+        self._refused = ""
+        if not done and self._phase == STEPPING:
+            self._tell_why_it_cannot_start()
+        return done
+
+    def terminate(self) -> None:
+        """From here on values can be read only."""
+        self._call("fmi2Terminate", (STEPPING,), self._go_on_to, TERMINATED)
 
     def get_real(self, vrs: list[int]) -> list[float]:
         """Values of Real variables; NaN where there is none."""
@@ -90,20 +114,20 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         return self._get(vrs, "String")
 
     def set_real(self, vrs: list[int], values: list[float]) -> None:
-        """Take inputs and parameters over; they are checked when they are used."""
-        self._safely(self._set, vrs, values, "Real")
+        """Take inputs and parameters over, all or none; they are checked when they are used."""
+        self._call("fmi2SetReal", BEFORE_THE_END, self._set, vrs, values, "Real")
 
     def set_integer(self, vrs: list[int], values: list[int]) -> None:
         """There are no Integer inputs and parameters."""
-        self._safely(self._set, vrs, values, "Integer")
+        self._call("fmi2SetInteger", BEFORE_THE_END, self._set, vrs, values, "Integer")
 
     def set_boolean(self, vrs: list[int], values: list[bool]) -> None:
         """There are no Boolean variables."""
-        self._safely(self._set, vrs, values, "Boolean")
+        self._call("fmi2SetBoolean", BEFORE_THE_END, self._set, vrs, values, "Boolean")
 
     def set_string(self, vrs: list[int], values: list[str]) -> None:
-        """Take parameters over."""
-        self._safely(self._set, vrs, values, "String")
+        """Take parameters over, all or none."""
+        self._call("fmi2SetString", BEFORE_THE_END, self._set, vrs, values, "String")
 
     def _get_fmu_state(self) -> bytes:
         """Everything that evolves, in its serialized form: a copy by nature."""
@@ -128,6 +152,22 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
 
     def _nothing(self) -> dict[str, Any]:
         return {name: NOTHING[quantity.kind] for name, quantity in self._scalars if quantity.role == "output"}
+
+    def _go_on_to(self, phase: str) -> None:
+        self._phase = phase
+
+    def _set_up(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
+        check_number("start_time", start_time)
+        self._time, self._stop = start_time, inf if stop_time is None else stop_time
+        if tolerance is None or "relative_tolerance" in self._chosen:
+            return
+        try:
+            check_number("tolerance", tolerance, at_least=BY_NAME["relative_tolerance"].at_least, at_most=LOOSEST)
+        except ParameterError as error:
+            own = self._given["relative_tolerance"]
+            self._log(f"{error}; relative_tolerance stays {own!r}", Fmi2Status.warning)
+        else:
+            self._given["relative_tolerance"] = tolerance
 
     def _build(self, survey: Survey) -> Drilling:
         given = self._given
@@ -163,14 +203,26 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
     def _advance(self, drilling: Drilling, drilled_length: float) -> None:
         drilling.advance(drilled_length, self._given["rss_force"], self._given["active_weight_on_bit"])
 
-    def _step(self, current_time: float, step_size: float) -> None:
+    def _check_step(self, current_time: float, step_size: float) -> None:
+        """Raise unless the step begins where the last one ended, and ends by the stop time."""
+        if self._phase != STEPPING:
+            raise SlaveError(f"fmi2DoStep: must be called in another phase, got {self._phase}")
+        if self._refused:
+            raise SlaveError(f"{self._refused} (before this step)")
         check_number("current_time", current_time)
         check_number("step_size", step_size, above=0.0)
+        if not isclose(current_time, self._time, rel_tol=1e-14, abs_tol=1e-9 * step_size):  # hosts add up
+            raise ParameterError("current_time", f"must be {self._time!r}, where the last step ended", current_time)
+        end, late = current_time + step_size, max(1e-12 * abs(self._stop), 1e-3 * step_size)  # in a very long run
+        if end > self._stop + late:
+            check_number("current_time + step_size", end, at_most=self._stop)
+
+    def _step(self, current_time: float, step_size: float) -> None:
+        self._check_step(current_time, step_size)
         rate, anchor = self._given["rate_of_penetration"], self._anchor
         check_quantity("rate_of_penetration", rate)
         drilling = self._ready()
-        continues = isclose(current_time, self._time, rel_tol=1e-12, abs_tol=1e-9 * step_size)
-        if rate != anchor[2] or not continues:
+        if rate != anchor[2]:
             anchor = (current_time, drilling.drilled_length, rate)
         # from the anchor, so that rounding does not add up from step to step
         drilled_length = anchor[1] + rate * (current_time + step_size - anchor[0])
@@ -194,7 +246,8 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
 
     def _get(self, references: list[int], kind: str) -> list[Any]:
         values = [NOTHING[kind]] * len(references)
-        self._safely(self._read, references, kind, values)
+        if not self._safely(self._read, references, kind, values):
+            self._refused = self._line
         return values
 
     def _read(self, references: list[int], kind: str, values: list[Any]) -> None:
@@ -209,24 +262,27 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
                 values[index] = self._given[name]
 
     def _set(self, references: list[int], values: list[Any], kind: str) -> None:
+        new = {}
         for reference, value in zip(references, values, strict=True):
             name, quantity = self._scalar(reference, kind)
             if quantity.role == "output":
                 raise ParameterError(name, "must not be set, it is an output", value)
-            if value == self._given[name]:
-                continue
-            if quantity.role == "parameter" and self._initialized:
+            if quantity.role == "parameter" and self._phase == STEPPING and value != self._given[name]:
                 raise ParameterError(name, "must not change after initialization", value)
-            self._given[name] = value
+            new[name] = value
+        self._chosen |= set(new)
+        if any(value != self._given[name] for name, value in new.items()):
+            self._given |= new
             self._stale = True
-            if not self._initialized:
+            if self._phase != STEPPING:
                 self._drilling = None
 
     def _save(self) -> bytes:
         state = {
             "given": self._given,
-            "initialized": self._initialized,
+            "phase": self._phase,
             "fault": self._fault,
+            "refused": self._refused,
             "time": self._time,
             "anchor": self._anchor,
             "drilling": self._drilling and self._drilling.save(),
@@ -242,7 +298,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
             raise SlaveError(f"state: must be one of this FMU, {STATE_FORMAT} {self.guid}, got {sealed[:80]!r}")
         state = json.loads(state_bytes)
         self._given = state["given"]
-        self._initialized, self._fault = state["initialized"], state["fault"]
+        self._phase, self._fault, self._refused = state["phase"], state["fault"], state["refused"]
         self._outputs, self._stale = self._nothing(), True
         self._time, self._anchor = state["time"], tuple(state["anchor"])
         self._drilling = None
@@ -250,16 +306,31 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
             self._drilling = self._build(self._survey)  # any: the hole is in the state
             self._drilling.restore(state["drilling"])
 
-    def _safely(self, action: Callable[..., None], *arguments: Any) -> bool:
+    # What becomes of errors
+
+    def _call(self, function: str, phases: tuple[str, ...], action: Callable[..., None], *arguments: Any) -> bool:
+        """Do what a master asks for if it may ask for it in this phase. If not, the next step is discarded."""
+
+        def attempt() -> None:
+            if self._phase not in phases:
+                raise SlaveError(f"{function}: must be called in another phase, got {self._phase}")
+            action(*arguments)
+
+        done = self._safely(attempt)
+        if not done:
+            self._refused = self._line
+        return done
+
+    def _safely(self, action: Callable[..., None], *arguments: Any, status: Fmi2Status = Fmi2Status.error) -> bool:
         """Do it; log why not."""
         try:
             action(*arguments)
         except (ParameterError, CannotContinue, SlaveError) as error:
-            self._log_error(str(error))
+            self._log(str(error), status)
             return False
         except Exception as error:  # nobody foresaw it, so nobody knows what has moved
             self._distrust(f"got {type(error).__name__}: {error}")
-            self._log_error(self._fault)
+            self._log(self._fault, status)
             return False
         return True
 
@@ -268,6 +339,16 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         self._fault = f"state: must be set to a good one or reset, {reason}"
         self._outputs = self._nothing()
 
-    def _log_error(self, message: str) -> None:
-        # a logger formats its message like printf
-        self.log(message.replace("%", "%%"), Fmi2Status.error, "logStatusError")
+    def _log(self, line: str, status: Fmi2Status) -> None:
+        self._line = line
+        # a logger formats its message like printf, and a host may put the names of variables for #r0#
+        message = line.replace("%", "%%").replace("#", "##")
+        self.log(message, status, f"logStatus{status.name.capitalize()}")
+        if status is not Fmi2Status.warning:
+            open_log(self._log_switch)
+
+    def _tell_why_it_cannot_start(self) -> None:
+        """To stderr as well: hosts seldom show the log, and this flavour cannot fail."""
+        if self._drilling is None and self._line != self._told:
+            write_to_user(f"{self.instance_name}: {self._line}")
+            self._told = self._line
