@@ -36,6 +36,7 @@ pytest_plugins = ["studies", "steering_cases", "native_fmu"]  # their fixtures
 # what a terminal or a server that runs the suite sets would change what commands print
 for name in ("CI", "COLUMNS", "FORCE_COLOR", "GITHUB_ACTIONS", "LINES", "NO_COLOR", "PY_COLORS", "TTY_COMPATIBLE"):
     os.environ.pop(name, None)
+os.environ.pop("SOURCE_DATE_EPOCH", None)  # and what an FMU says of its date
 
 
 Command = Callable[..., subprocess.CompletedProcess[str]]

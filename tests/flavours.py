@@ -22,6 +22,10 @@ class Flavour:
         What `build_fmu` is told for one that is not to run.
     wrong_call
         Status of a call that cannot be right: a reference that there is not, a state of another FMU.
+    wrong_step
+        Status of a step that cannot be right: out of order, not from where the last one ended, beyond the stop time.
+    after_bad_call
+        Status of the step after a call that cannot be right.
     under_bad_input
         What has become of the outputs while they cannot be computed from an input, see `fmu_host.outputs`.
     without_system
@@ -43,6 +47,8 @@ class Flavour:
     runtime: str
     to_read: dict[str, Any]
     wrong_call: str
+    wrong_step: str
+    after_bad_call: str
     under_bad_input: str
     without_system: tuple[str, str]
     after_bad_state: tuple[str, str]
@@ -60,6 +66,8 @@ PYTHON = Flavour(
     runtime="python",
     to_read={"runtime": "python"},
     wrong_call="ok",  # pythonfmu would make fmi2Fatal of any other answer: the log says it, and the next step
+    wrong_step="discard",
+    after_bad_call="discard",
     under_bad_input="kept",
     without_system=("ok", "discard"),
     after_bad_state=("discard", "unknown"),
@@ -73,6 +81,8 @@ NATIVE = Flavour(
     runtime="native",
     to_read={"runtime": "native", "platforms": ()},
     wrong_call="error",
+    wrong_step="error",
+    after_bad_call="ok",
     under_bad_input="unknown",
     without_system=("error", "error"),
     after_bad_state=("ok", "kept"),

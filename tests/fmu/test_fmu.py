@@ -182,6 +182,7 @@ def test_the_command_builds_what_build_fmu_builds(
     done = command("boreprop-fmu", "build", paper_case, "--output", "Borehole.fmu", "--runtime", flavour.runtime)
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "Borehole.fmu").read_bytes() == fmu.read_bytes()
+    assert ("falls short of FMI 2.0" in done.stdout) == (flavour.runtime == "python")
 
 
 @both_flavours

@@ -7,6 +7,7 @@ import sys
 import sysconfig
 import zipfile
 from pathlib import Path
+from signal import SIGINT
 from xml.etree.ElementTree import fromstring
 
 import pytest
@@ -53,6 +54,12 @@ def test_with_libpython_preloaded_it_gives_what_the_model_gives(command: list[st
     assert done.stderr == ""
     expected = simulate(case, sample_interval=1.0, length=20.0)["bit_inclination"][1:]
     assert [float(line) for line in done.stdout.split()] == pytest.approx(expected, abs=1e-12)
+
+
+def test_ctrl_c_ends_it(command: list[str]) -> None:
+    done = run([*command, "interrupt"], LD_PRELOAD=str(LIBPYTHON), PYTHONHOME=sys.base_prefix)
+    assert done.returncode == -SIGINT
+    assert len(done.stdout.splitlines()) in (0, 20)  # what was printed may be lost with it
 
 
 def test_without_it_the_binary_names_what_is_missing(command: list[str]) -> None:

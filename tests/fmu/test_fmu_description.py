@@ -10,6 +10,7 @@ import zipfile
 import zlib
 from dataclasses import replace
 from html.parser import HTMLParser
+from itertools import product
 from pathlib import Path
 from xml.etree.ElementTree import Element, fromstring
 
@@ -18,9 +19,13 @@ import pytest
 from lxml import etree
 
 from boreprop.case.case import Case
-from boreprop.core.quantities import VARIABLES, scalar_names
+from boreprop.case.parameters import parameters, with_parameters
+from boreprop.core.drilling import Drilling
+from boreprop.core.quantities import INPUTS, OUTPUTS, RELATIVE_TOLERANCE, VARIABLES, quantity_of, scalar_names
 from boreprop.core.system import BottomHoleAssembly
+from boreprop.errors import InputError
 from flavours import Flavour, both_flavours, build_to_read
+from places import ROOT
 
 SCHEMA = Path(fmpy.__file__).parent / "schema" / "fmi2" / "fmi2ModelDescription.xsd"
 
@@ -76,24 +81,109 @@ def test_angles_are_shown_in_degrees_and_curvature_in_degrees_per_30_m(descripti
     assert all(real.get("displayUnit") == shown[real.attrib["unit"]] for real in angular)
 
 
-@both_flavours
-def test_the_force_acts_at_once_on_the_hole_but_not_on_the_bit_axis(description: Element) -> None:
+def dependencies(description: Element, part: str) -> dict[str, set[str]]:
+    """What each unknown is said to depend on: "Outputs" while stepping, "InitialUnknowns" at the start."""
     names = [scalar.attrib["name"] for scalar in description.findall("ModelVariables/ScalarVariable")]
-    depends = {
+    unknowns = description.findall(f"ModelStructure/{part}/Unknown")
+    for unknown in unknowns:
+        kinds = unknown.attrib["dependenciesKind"].split()
+        assert kinds == ["dependent"] * len(unknown.attrib["dependencies"].split())
+    return {
         names[int(unknown.attrib["index"]) - 1]: {names[int(i) - 1] for i in unknown.attrib["dependencies"].split()}
-        for unknown in description.findall("ModelStructure/Outputs/Unknown")
+        for unknown in unknowns
     }
-    assert all("rss_force" in depends[name] for name in ("borehole_inclination", "bit_tilt", "bit_lateral_force"))
-    assert depends["bit_inclination"] == depends["drilled_length"] == set()
+
+
+def starting_outputs(case: Case, force: float) -> dict[str, float]:
+    weight = case.active_weight_on_bit
+    return Drilling(case.bha, case.bit, case.survey, active_weight_on_bit=weight, rss_force=force).outputs()
+
+
+def followers(case: Case, force: float) -> dict[str, set[str]]:
+    """Which outputs differ at the start where an input or a parameter does, by the name of that."""
+    bent = replace(case.survey, inclination=tuple(x + 0.01 * x**2 for x in case.survey.inclination))
+    changed = {name: (with_parameters(case, {name: 1.01 * value}), force) for name, value in parameters(case).items()}
+    changed |= {"rss_force": (case, force + 100.0), "survey_file": (replace(case, survey=bent), force)}
+    before = starting_outputs(case, force)
+    return {
+        name: {output for output, value in starting_outputs(*other).items() if value != before[output]}
+        for name, other in changed.items()
+    }
 
 
 @both_flavours
-def test_every_output_is_an_initial_unknown(description: Element) -> None:
-    structure = [
-        [unknown.get("index") for unknown in description.findall(f"ModelStructure/{part}/Unknown")]
-        for part in ("Outputs", "InitialUnknowns")
-    ]
-    assert structure[0] == structure[1] != []
+def test_what_outputs_depend_on_at_the_start_is_what_differences_show(description: Element, case: Case) -> None:
+    moved: dict[str, set[str]] = {}
+    clearances, limits, forces = (2e-4, 0.2), (1.5, 1e-4), (100.0, 3e4)  # at the walls and the limit, or not
+    for clearance, limit, force in product(clearances, limits, forces):
+        values = {"stabilizer_clearance[1]": clearance, "bit_tilt_limit": limit}
+        for name, outputs in followers(with_parameters(case, values), force).items():
+            moved[name] = moved.get(name, set()) | outputs
+    declared = dependencies(description, "InitialUnknowns")
+    integers = {name for name in declared if quantity_of(name).kind == "Integer"}  # they may or may not switch
+    for name, sources in declared.items():
+        seen = {source for source, outputs in moved.items() if name in outputs}
+        assert seen <= sources, name
+        if name not in integers:
+            assert {quantity_of(one).name for one in seen} == {quantity_of(one).name for one in sources}, name
+
+
+@both_flavours
+def test_while_stepping_outputs_depend_on_inputs_only_and_most_of_them_not_on_the_force(description: Element) -> None:
+    stepping, start = dependencies(description, "Outputs"), dependencies(description, "InitialUnknowns")
+    inputs = {quantity.name for quantity in INPUTS}
+    assert stepping == {name: sources & inputs for name, sources in start.items()}
+    assert list(stepping) == scalar_names(OUTPUTS, 2)
+    # what a controller measures: a loop through these is not algebraic
+    measured = ("drilled_length", "bit_inclination", "average_inclination[1]", "average_inclination[2]", "displacement")
+    assert [stepping[name] for name in measured] == [set()] * len(measured)
+
+
+@both_flavours
+def test_the_tolerance_of_the_default_experiment_is_that_of_the_parameter(description: Element) -> None:
+    experiment = description.find("DefaultExperiment")
+    assert experiment is not None
+    assert float(experiment.attrib["tolerance"]) == RELATIVE_TOLERANCE
+
+
+@both_flavours
+def test_it_says_who_made_it_under_which_license_and_carries_the_text(
+    flavour: Flavour, description: Element, archive: dict[str, bytes]
+) -> None:
+    text = archive["documentation/licenses/license.txt"].decode()
+    assert text == (ROOT / "LICENSE").read_text(encoding="utf-8")
+    assert description.attrib["license"] == "MIT"
+    assert description.attrib["copyright"] in text
+    assert description.attrib["author"] in description.attrib["copyright"]
+    others = [text for name, text in archive.items() if "/licenses/" in name and not name.endswith("/license.txt")]
+    assert [b"NTNU" in text for text in others] == [True] * (flavour.runtime == "python")
+
+
+@both_flavours
+def test_a_date_comes_from_the_environment_only_and_is_no_part_of_the_guid(
+    flavour: Flavour, case: Case, archive: dict[str, bytes], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    dated = contents(build_to_read(case, tmp_path / "dated.fmu", flavour))["modelDescription.xml"]
+    assert b'generationDateAndTime="2023-11-14T22:13:20Z"' in dated
+    assert dated.replace(b' generationDateAndTime="2023-11-14T22:13:20Z"', b"") == archive["modelDescription.xml"]
+    etree.XMLSchema(etree.parse(SCHEMA)).assertValid(etree.parse(io.BytesIO(dated)))
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "yesterday")
+    with pytest.raises(InputError, match="SOURCE_DATE_EPOCH: must be a whole number of seconds"):
+        build_to_read(case, tmp_path / "never.fmu", flavour)
+
+
+def test_what_the_host_must_have_is_what_the_binaries_ask_for(archive: dict[str, bytes]) -> None:
+    text = archive["documentation/externalDependencies.txt"].decode()
+    linux, windows = archive["binaries/linux64/Borehole.so"], archive["binaries/win64/Borehole.dll"]
+    for library in (b"GLIBC_2.", b"GLIBCXX_3.4."):
+        latest = max(int(number) for number in re.findall(re.escape(library) + rb"(\d+)", linux))
+        assert f"{library.decode()}{latest}" in text
+    libraries = set(re.findall(rb"\0((?:python|MSVCP|VCRUNTIME)\w+\.dll)\0", windows))
+    assert len(libraries) == 4
+    assert all(name.decode() in text for name in libraries)
+    assert not re.search(rb"libpython\d", linux)  # so it must be there already
+    assert "libpython" in text
 
 
 @both_flavours
@@ -170,13 +260,24 @@ def page(archive: dict[str, bytes]) -> Page:
 
 
 @both_flavours
-def test_the_documentation_lists_every_variable_with_its_symbol_and_meaning(page: Page) -> None:
+def test_the_documentation_lists_every_variable_with_its_symbol_meaning_and_start(page: Page, case: Case) -> None:
     text = " ".join(page.cells)
     assert all(variable.meaning in text for variable in VARIABLES)
     assert all(variable.symbol in page.cells for variable in VARIABLES)
-    assert set(re.findall(r"[a-z_]+(?:\[\d\])?", " ".join(page.cells[::6]))) == set(scalar_names(VARIABLES, 2))
+    assert str(case.bha.flexural_stiffness) in page.cells
+    assert ", ".join(map(str, case.bha.stabilizer_positions)) in page.cells
+    assert set(re.findall(r"[a-z_]+(?:\[\d\])?", " ".join(page.cells[::7]))) == set(scalar_names(VARIABLES, 2))
     equations = page.preformatted[0]
     assert all(f"({number})" in equations for number in (5, 7, 8, 10, 16, 17, 18))
+
+
+@both_flavours
+def test_the_documentation_says_where_the_flavour_falls_short_of_the_standard(
+    flavour: Flavour, archive: dict[str, bytes]
+) -> None:
+    text = archive["documentation/index.html"].decode()
+    named = ("guid", "fmuResourceLocation", "fmi2FreeFMUstate", "SIGPIPE", "stepFinished", "--runtime native")
+    assert all((name in text) == (flavour.runtime == "python") for name in named)
 
 
 @both_flavours

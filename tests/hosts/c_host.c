@@ -1,7 +1,9 @@
 /* A host that is not Python: loads an FMI 2.0 co-simulation FMU, takes steps of one second, prints a Real output.
 
-   c_host LIBRARY GUID RESOURCES VALUE_REFERENCE STEPS */
+   c_host LIBRARY GUID RESOURCES VALUE_REFERENCE STEPS [interrupt]
+   With a sixth argument it gets Ctrl-C at the end, against which it has done nothing. */
 #include <dlfcn.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,7 +29,8 @@ static void print_message(
 }
 
 int main(int count, char **arguments) {
-    void *library = count == 6 ? dlopen(arguments[1], RTLD_NOW) : NULL;
+    signal(SIGINT, SIG_DFL);
+    void *library = count >= 6 ? dlopen(arguments[1], RTLD_NOW) : NULL;
     if (!library) {
         fprintf(stderr, "%s\n", dlerror());
         return 2;
@@ -55,6 +58,7 @@ int main(int count, char **arguments) {
         if (step(component, k, 1.0, 1) || get(component, &reference, 1, &value)) return 4;
         printf("%.17g\n", value);
     }
+    if (count > 6) raise(SIGINT);
     terminate(component);
     release(component);
     return 0;

@@ -373,6 +373,7 @@ def unforeseen(fmu: str) -> object:
             one.set(rss_force=0.0)
             report.append(one.step(0.5))
             one.set_state(good)
+            one.time = 0.0
             report.append(one.step(0.5))
             one.set(rss_force=13.0)
             one.step(0.5)
@@ -404,7 +405,10 @@ def endure(fmu: str, count: str) -> object:
             return statuses
 
         def wrong_reference() -> str:
-            return attempt(one.slave.getReal, [10_000])
+            statuses = f"{attempt(one.slave.getReal, [10_000])}, {one.step(0.5)}"
+            one.set_state(good)
+            one.time = 0.0
+            return statuses
 
         def right_state() -> str:
             return attempt(one.set_state, one.state())

@@ -12,6 +12,7 @@ from boreprop.cli.options import CaseFile
 from boreprop.kernel.compiler import PLATFORMS
 
 from ..pack.build import build_fmu
+from ..pack.python import ADVICE
 
 
 def build_command(
@@ -39,6 +40,8 @@ def build_command(
     with console.progress("compiling", 1 if chosen is None else len(chosen)) as done:
         build_fmu(case, output, runtime=runtime, platforms=chosen, progress=done)
     print(f"{output}: {output.stat().st_size / 1e6:.2g} MB, {runtime}: {', '.join(_contents(output))}")
+    if runtime == "python":
+        print(f"note: {ADVICE}")
 
 
 def _chosen(platforms: str) -> list[str]:

@@ -10,7 +10,7 @@ from boreprop.core.quantities import INPUTS, PARAMETERS
 
 from ..packed_case import CASE_FILE
 from .description import model_description
-from .documentation import documentation
+from .documentation import documents
 
 IDENTIFIER = "Borehole"
 CAPABILITIES = {
@@ -56,7 +56,7 @@ def describe(
 def pack_manual(case: Case, runtime: str) -> dict[str, bytes]:
     """The icon (made by docs/make_icon.py) and the documentation."""
     icon = files("boreprop_fmu.pack").joinpath("icon.png").read_bytes()
-    return {"model.png": icon, "documentation/index.html": documentation(case, runtime)}
+    return {"model.png": icon, **documents(case, runtime, start_values(case))}
 
 
 def start_values(case: Case) -> dict[str, float | str]:

@@ -1,14 +1,25 @@
 """modelDescription.xml of the borehole FMU, from the table of quantities."""
 
+import os
 from collections.abc import Mapping, Sequence
-from importlib.metadata import version
+from datetime import UTC, datetime
+from importlib.metadata import metadata
 from math import isfinite
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from boreprop.core.quantities import VARIABLES, Quantity
+from boreprop.core.system import LEAST_SPAN
+from boreprop.errors import InputError
 from boreprop.units import UNITS
 
-LOG_CATEGORIES = {"logStatusError": "Bad input, and why a step was discarded."}
+from .licenses import copyright_line
+
+LOG_CATEGORIES = {
+    "logStatusWarning": "What was not taken over, though nothing fails.",
+    "logStatusDiscard": "Why a step was discarded.",
+    "logStatusError": "Bad parameters, outputs that cannot be computed, and calls that must not be made.",
+}
+LEAST_POSITIVE = 1e-300  # for "> 0", which FMI cannot say: what is made of it, and its reciprocal, are finite
 
 
 def model_description(
@@ -41,16 +52,21 @@ def model_description(
     source_files
         The files in the folder sources/ that are to be compiled.
     """
-    root = Element(
-        "fmiModelDescription",
-        fmiVersion="2.0",
-        modelName=identifier,
-        guid=guid,
-        description="Borehole propagation of a directional drilling system: a delay complementarity model",
-        version=version("boreprop"),
-        generationTool=f"boreprop {version('boreprop')}",
-        variableNamingConvention="structured",
-    )
+    about = metadata("boreprop")
+    attributes = {
+        "fmiVersion": "2.0",
+        "modelName": identifier,
+        "guid": guid,
+        "description": "Borehole propagation of a directional drilling system: a delay complementarity model",
+        "author": about["Author"],
+        "version": about["Version"],
+        "copyright": copyright_line(),
+        "license": about["License-Expression"],
+        "generationTool": f"boreprop {about['Version']}",
+        **_date(guid),
+        "variableNamingConvention": "structured",
+    }
+    root = Element("fmiModelDescription", attributes)
     flags = {name: str(value).lower() for name, value in capabilities.items()}
     simulation = SubElement(root, "CoSimulation", {"modelIdentifier": identifier, **flags})
     if source_files:
@@ -61,7 +77,9 @@ def model_description(
     categories = SubElement(root, "LogCategories")
     for name, meaning in LOG_CATEGORIES.items():
         SubElement(categories, "Category", name=name, description=meaning)
-    SubElement(root, "DefaultExperiment", startTime="0.0", stopTime=repr(stop_time), stepSize=repr(step_size))
+    tolerance = repr(start["relative_tolerance"])
+    experiment = {"startTime": "0.0", "stopTime": repr(stop_time), "tolerance": tolerance, "stepSize": repr(step_size)}
+    SubElement(root, "DefaultExperiment", experiment)
     scalars = [(name, quantity) for quantity in VARIABLES for name in quantity.names(n)]
     variables = SubElement(root, "ModelVariables")
     for reference, (name, quantity) in enumerate(scalars):
@@ -70,6 +88,28 @@ def model_description(
     indent(root)
     document: bytes = tostring(root, encoding="utf-8", xml_declaration=True)
     return document + b"\n"
+
+
+def _date(guid: str) -> dict[str, str]:
+    """The date that $SOURCE_DATE_EPOCH gives; none without it, for every build would differ.
+
+    A draft, from which the guid is derived, has neither: the date is no part of what an FMU is.
+    """
+    seconds = os.environ.get("SOURCE_DATE_EPOCH", "")
+    if not (guid and seconds):
+        return {}
+    try:
+        date = datetime.fromtimestamp(int(seconds), UTC)
+    except (ValueError, OverflowError, OSError) as error:
+        raise InputError(f"SOURCE_DATE_EPOCH: must be a whole number of seconds since 1970, got {seconds!r}") from error
+    return {"generationDateAndTime": date.strftime("%Y-%m-%dT%H:%M:%SZ")}
+
+
+def _least(quantity: Quantity, index: int) -> float:
+    """The least value that is accepted of the element with this index, from 1 on; −∞ if every value is."""
+    if quantity.name == "stabilizer_position":
+        return LEAST_SPAN * index
+    return LEAST_POSITIVE if quantity.above == 0.0 else quantity.at_least
 
 
 def _add_units(units: Element) -> None:
@@ -103,9 +143,9 @@ def _add_variable(
             typed.set("displayUnit", display)
         typed.set("nominal", repr(quantity.nominal))
     number = repr if quantity.kind == "Real" else "{:d}".format
-    # FMI has no way to say that a value must be above a bound and not equal to it; such a bound is left out
-    if isfinite(quantity.at_least):
-        typed.set("min", number(quantity.at_least))
+    least = _least(quantity, int(name.rpartition("[")[2].rstrip("]")) if "[" in name else 1)
+    if isfinite(least):
+        typed.set("min", number(least))
     if isfinite(quantity.at_most):
         typed.set("max", number(quantity.at_most))
     if name in start:
@@ -114,12 +154,13 @@ def _add_variable(
 
 
 def _add_structure(structure: Element, scalars: list[tuple[str, Quantity]]) -> None:
+    """What outputs depend on: while stepping inputs only, at the start parameters too."""
     index = {name: str(i) for i, (name, _) in enumerate(scalars, start=1)}
-    outputs = [(name, quantity) for name, quantity in scalars if quantity.role == "output"]
-    unknowns = SubElement(structure, "Outputs")
-    for name, quantity in outputs:
-        depends_on = " ".join(index[source] for source in quantity.follows)
-        SubElement(unknowns, "Unknown", index=index[name], dependencies=depends_on)
-    unknowns = SubElement(structure, "InitialUnknowns")
-    for name, _ in outputs:  # without a list of dependencies, they depend on everything
-        SubElement(unknowns, "Unknown", index=index[name])
+    for part, roles in (("Outputs", ("input",)), ("InitialUnknowns", ("input", "parameter"))):
+        unknowns = SubElement(structure, part)
+        for name, quantity in scalars:
+            if quantity.role == "output":
+                sources = [one for one, of in scalars if of.role in roles and of.name in quantity.follows]
+                kinds = " ".join(["dependent"] * len(sources))
+                depends_on = " ".join(index[one] for one in sources)
+                SubElement(unknowns, "Unknown", index=index[name], dependencies=depends_on, dependenciesKind=kinds)

@@ -1,5 +1,6 @@
-"""Fills in the page documentation.html to make the documentation/index.html of an FMU."""
+"""Writes the folder documentation/ of an FMU: its page, on what it depends, and the licenses of what is in it."""
 
+from collections.abc import Mapping
 from html import escape
 from importlib.resources import files
 from math import degrees
@@ -8,15 +9,41 @@ from string import Template
 from boreprop.case.case import Case
 from boreprop.core.quantities import VARIABLES, Quantity
 
-DISCARDED = """A bad input is logged (status fmi2Error, category logStatusError) with its variable, its constraint and
-its value, and the step is discarded (fmi2Discard): the state is unchanged, and the next step with good values works."""
+from .licenses import license_text
+
+DISCARDED = """A bad input is logged with its variable, its constraint and its value, and the step is discarded
+(fmi2Discard): the state is unchanged, and the next step with good values works. Errors are logged whatever the host's
+loggingOn says, and what keeps the FMU from starting is also written to stderr."""
+LIMITS = """
+<h2>Where this flavour falls short of FMI 2.0</h2>
+<p>It runs on the library of pythonfmu, which leaves some points of the standard out of its reach (sections of FMI 2.0.4
+in brackets). The native flavour, <code>boreprop-fmu build --runtime native</code>, keeps all of them and needs no
+Python.</p>
+<ul>
+<li>Where the standard wants fmi2Error a step is discarded: after bad parameters, beyond the stop time (2.1.6), from a
+time at which the last step did not end, before the initialization and after fmi2Terminate (4.2.4). Any other call that
+must not be made is logged, does nothing and gives fmi2OK, and the next step is discarded.</li>
+<li>The guid and the type that a host gives to fmi2Instantiate are not compared (2.1.5).</li>
+<li>fmuResourceLocation must be file:/// and a path without any escape but %20. Another form ends the host without a
+word: file:/, file://localhost/, or a folder with a letter that is not ASCII or with one of # % + ( ) { } &amp; (2.1.5).
+So do an instance name, a location or a logger that is NULL, and fmi2FreeFMUstate with NULL (2.1.8).</li>
+<li>fmi2GetStatus gives fmi2Error instead of fmi2Discard, and what pythonfmu logs itself has no category of
+modelDescription.xml (4.2.3, 2.2.4). Once a step was discarded, fmi2Terminated stays true.</li>
+<li>In a host that is not Python, the interpreter ignores SIGPIPE and SIGXFSZ and takes LC_CTYPE from the environment,
+for the whole process (2.1). Ctrl-C is given back to the host.</li>
+<li>stepFinished is not called (2.1.5).</li>
+<li>Each instance leaves 1 kB of memory behind when it is freed (2.1.5); fmi2Reset leaves nothing.</li>
+</ul>
+"""
 TEXTS = {  # the passages in which the flavours differ
     "python": {
         "inputs": "",
         "errors": f"""{DISCARDED} After a bad parameter the instance must be reset (fmi2Reset). After a state that is
 not a valid state of this FMU, every step is discarded until a valid one is set or the instance is reset.""",
         "hosts": """64-bit Linux and Windows, with CPython 3.10 to 3.13 and its standard library; no other package is
-needed. On Linux, a host that is not Python itself must preload libpython.""",
+needed. On Linux, a host that is not Python itself must preload libpython. All that the host must have is listed in
+<a href="externalDependencies.txt">externalDependencies.txt</a>.""",
+        "limits": LIMITS,
     },
     "native": {
         "inputs": """ A derivative of an input (fmi2SetRealInputDerivatives, first order) acts over the next step that
@@ -29,12 +56,32 @@ state of this FMU is refused with fmi2Error and changes nothing; a valid one may
         "hosts": """Any. The folder binaries/ shows for which platforms this FMU is compiled. For others compile
 sources/fmi2.c with a C99 compiler; it needs no library except libm:
 <code>cc -shared -fPIC -O2 -ffp-contract=off -I sources sources/fmi2.c -lm -o Borehole.so</code>.""",
+        "limits": "",
     },
 }
+EXTERNAL = """\
+What a host must have to run this FMU, besides what is in it
+
+Everywhere: CPython 3.10 to 3.13, 64 bit, with its standard library, in the process of the host. No package is needed.
+A host that is a Python program has it.
+
+Linux, x86-64
+    libpython: the binary does not link it. A host that is not Python itself must be started with it, for example
+        LD_PRELOAD=/usr/lib/x86_64-linux-gnu/libpython3.11.so.1.0 host
+    glibc 2.32 (GLIBC_2.32) or later, and the libstdc++ of GCC 12 (GLIBCXX_3.4.30) or later
+
+Windows, x86-64
+    python3.dll: put the folder of the installed Python on the PATH before the host is started
+    MSVCP140.dll, VCRUNTIME140.dll and VCRUNTIME140_1.dll: Microsoft Visual C++ Redistributable 2015-2022, x64
+
+Files: a survey, if the parameter survey_file names one.
+
+The native flavour of this FMU (boreprop-fmu build --runtime native) needs none of these but the survey.
+"""
 
 
-def documentation(case: Case, runtime: str) -> bytes:
-    """Fill in the page for the FMU of a case.
+def documents(case: Case, runtime: str, start: Mapping[str, float | str]) -> dict[str, bytes]:
+    """The files of the folder documentation/.
 
     Parameters
     ----------
@@ -42,22 +89,37 @@ def documentation(case: Case, runtime: str) -> bytes:
         The case from which the FMU starts.
     runtime
         "python" or "native".
+    start
+        Start value of every input and parameter, by scalar name.
 
     Returns
     -------
-    The page, UTF-8.
+    Path in the FMU → content.
+
+    Raises
+    ------
+    InputError
+        If a package is installed without its license.
     """
-    page = Template(files("boreprop_fmu.pack").joinpath("documentation.html").read_text(encoding="utf-8"))
+    written = {"index.html": page(case, runtime, start), "licenses/license.txt": license_text("boreprop")}
+    if runtime == "python":
+        written |= {"externalDependencies.txt": EXTERNAL, "licenses/pythonfmu.txt": license_text("pythonfmu")}
+    return {f"documentation/{name}": text.encode() for name, text in written.items()}
+
+
+def page(case: Case, runtime: str, start: Mapping[str, float | str]) -> str:
+    """The page of an FMU, of which documentation.html is the frame; parameters as of `documents`."""
+    frame = Template(files("boreprop_fmu.pack").joinpath("documentation.html").read_text(encoding="utf-8"))
     n = len(case.bha.stabilizer_positions)
     facts = (
         f"{n} stabilizer{'s' * (n > 1)}, the last one {case.bha.stabilizer_positions[-1]:g} m from the bit; "
         f"the existing hole ends at {degrees(case.survey.inclination[-1]):.3g}°"
     )
-    lines = [_line(quantity, quantity.names(n)) for quantity in VARIABLES if quantity.names(n)]
-    return page.substitute(case=facts, variables="\n".join(lines), **TEXTS[runtime]).encode()
+    lines = [_line(quantity, quantity.names(n), start) for quantity in VARIABLES if quantity.names(n)]
+    return frame.substitute(case=facts, variables="\n".join(lines), **TEXTS[runtime])
 
 
-def _line(quantity: Quantity, names: list[str]) -> str:
+def _line(quantity: Quantity, names: list[str], start: Mapping[str, float | str]) -> str:
     """The line of the table for one quantity."""
     cells = [
         names[0] if len(names) == 1 else f"{names[0]} … {names[-1]}",
@@ -65,6 +127,7 @@ def _line(quantity: Quantity, names: list[str]) -> str:
         quantity.equation,
         quantity.unit,
         quantity.range.replace(">=", "≥").replace("<=", "≤"),
+        ", ".join(f"{start[name]}" for name in names if name in start),
         f"{quantity.role}: {quantity.meaning}",
     ]
     return "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>"

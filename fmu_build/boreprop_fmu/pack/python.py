@@ -16,6 +16,10 @@ from .archive import digest, identify
 from .contents import IDENTIFIER, describe, pack_manual, start_values
 
 RUNTIME_MODULES = ("default_experiment", "enums", "fmi2slave", "logmsg", "variables", "_version")
+ADVICE = (
+    "it needs CPython in the host, and falls short of FMI 2.0 where its documentation/index.html says so; "
+    "--runtime native does neither"
+)
 SCRIPT = '''"""The script that pythonfmu runs for every instance, to find the class in it."""
 
 from {package}.process import keep_alive
@@ -87,21 +91,18 @@ def pack_code() -> dict[str, bytes]:
 def pack_runtime() -> dict[str, bytes]:
     """The parts of pythonfmu: the binaries, under the FMU's name, and the base class of the slave."""
     package, modules = base_class()
-    return {**{f"resources/{package}/{name}": content for name, content in modules.items()}, **read_binaries()}
-
-
-def read_binaries() -> dict[str, bytes]:
-    """pythonfmu's binaries: path in the FMU → content."""
-    return {
-        f"binaries/{platform.name}/{IDENTIFIER}{Path(binary.name).suffix}": binary.read_bytes()
-        for platform in files("pythonfmu").joinpath("resources/binaries").iterdir()
-        for binary in platform.iterdir()
-    }
+    archive = {f"resources/{package}/{name}": content for name, content in modules.items()}
+    for platform in files("pythonfmu").joinpath("resources/binaries").iterdir():
+        for binary in platform.iterdir():
+            archive[f"binaries/{platform.name}/{IDENTIFIER}{Path(binary.name).suffix}"] = binary.read_bytes()
+    return archive
 
 
 def log_switch() -> int:
     """How far into pythonfmu's logger it remembers loggingOn, bytes; 0 if that is not known of all its binaries."""
-    places = {LOG_SWITCH.get(sha256(binary).hexdigest(), 0) for binary in read_binaries().values()}
+    folders = files("pythonfmu").joinpath("resources/binaries").iterdir()
+    binaries = [binary.read_bytes() for folder in folders for binary in folder.iterdir()]
+    places = {LOG_SWITCH.get(sha256(binary).hexdigest(), 0) for binary in binaries}
     return places.pop() if len(places) == 1 else 0
 
 

@@ -36,7 +36,7 @@ class Quantity:
     start
         What it starts from where a case does not say so.
     follows
-        Of an output, the inputs that it follows at once, without any drilling.
+        Of an output, the inputs and parameters that it follows at once, without any drilling.
     slope
         Of an input, whether the native engine also takes its change per metre drilled.
     key
@@ -90,7 +90,9 @@ class Quantity:
         return ", ".join(f"{sign} {bound:g}" for sign, bound in bounds if isfinite(bound))
 
 
-FORCE, FORCE_AND_WEIGHT = ("rss_force",), ("rss_force", "active_weight_on_bit")
+SHAPE = ("stabilizer_position", "stabilizer_clearance", "rss_position", "distributed_weight", "flexural_stiffness")
+FORCE = ("rss_force", "survey_file", *SHAPE)
+FORCE_AND_WEIGHT = (*FORCE, "active_weight_on_bit", "lateral_steering_resistance", "bit_tilt_limit")
 
 QUANTITIES: tuple[Quantity, ...] = (
     Quantity("drilled_length", "output", "m", "ξ ℓ₁", "(17)", "length drilled since the start of the run", at_least=0.0, nominal=100.0, key="rss.drilled_length", field="schedule.drilled_length"),
@@ -99,10 +101,10 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("active_weight_on_bit", "input", "N", "Π F*", "(3)", "weight on bit that goes into drilling", above=0.0, nominal=1e4, key="drilling.active_weight_on_bit", field="active_weight_on_bit"),
     Quantity("rate_of_penetration", "input", "m/s", "", "", "drilled length per time", at_least=0.0, start=1.0),
 
-    Quantity("bit_inclination", "output", "rad", "θ", "(17)", "inclination of the bit axis from the downward vertical"),
+    Quantity("bit_inclination", "output", "rad", "θ", "(17)", "inclination of the bit axis from the downward vertical", follows=("survey_file",)),
     Quantity("borehole_inclination", "output", "rad", "Θ", "(16)", "inclination of the borehole at the bit", follows=FORCE_AND_WEIGHT),
     Quantity("bit_tilt", "output", "rad", "ψ", "(10)", "bit inclination minus borehole inclination", nominal=0.01, follows=FORCE_AND_WEIGHT),
-    Quantity("average_inclination", "output", "rad", "⟨Θ⟩_i", "(6)", "borehole inclination averaged between stabilizers i−1 and i", size="n"),
+    Quantity("average_inclination", "output", "rad", "⟨Θ⟩_i", "(6)", "borehole inclination averaged between stabilizers i−1 and i", size="n", follows=("survey_file", "stabilizer_position")),
     Quantity("stabilizer_deflection", "output", "m", "δ_i", "(5)", "offset of the BHA from the borehole axis, positive to the high side", size="n-1", nominal=1e-3, follows=FORCE),
     Quantity("stabilizer_force", "output", "N", "F_ℓi − F_ui", "(7)", "force of the wall on the stabilizer, positive from the lower wall", size="n-1", nominal=1e4, follows=FORCE),
     Quantity("stabilizer_contact", "output", "", "", "(7)", "1 on the lower wall, −1 on the upper wall, 0 free", kind="Integer", size="n-1", at_least=-1, at_most=1, follows=FORCE),
@@ -112,7 +114,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("borehole_curvature", "output", "rad/m", "Θ'", "", "change of borehole inclination over the last ℓ₁, per length", nominal=1e-3, follows=FORCE_AND_WEIGHT),
     Quantity("displacement", "output", "m", "x", "", "horizontal position of the bit from the start of the run", nominal=100.0),
     Quantity("true_vertical_depth", "output", "m", "z", "", "depth of the bit below the start of the run", nominal=100.0),
-    Quantity("eta_pi", "output", "", "ηΠ", "(9)", "lateral penetration stiffness of the rock over the BHA's bending stiffness", nominal=0.01, follows=("active_weight_on_bit",)),
+    Quantity("eta_pi", "output", "", "ηΠ", "(9)", "lateral penetration stiffness of the rock over the BHA's bending stiffness", nominal=0.01, follows=("active_weight_on_bit", "lateral_steering_resistance", "flexural_stiffness", "stabilizer_position")),
 
     Quantity("stabilizer_position", "parameter", "m", "s_i", "", "distance of the stabilizer from the bit; the last one is ideal", size="n", above=0.0, nominal=10.0, key="bha.stabilizer_positions", field="bha.stabilizer_positions"),
     Quantity("stabilizer_clearance", "parameter", "m", "y*_i", "(7)", "clearance between stabilizer and wall on each side", size="n-1", at_least=0.0, nominal=1e-3, key="bha.stabilizer_clearances", field="bha.stabilizer_clearances"),
