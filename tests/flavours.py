@@ -34,8 +34,8 @@ class Flavour:
         What a step then does, and what has become of the outputs.
     modules
         Whose modules of the model are in a process that runs it, see `fmu_host.modules`.
-    leak
-        What ten thousand bad calls, or five hundred instances, may leave, bytes.
+    leak, leak_of_instances
+        What ten thousand bad calls, and what five hundred instances may leave, bytes.
     numbers
         Where it has the numbers of its case; what else it has of resources/ and sources/ is code.
     interpolates
@@ -54,6 +54,7 @@ class Flavour:
     after_bad_state: tuple[str, str]
     modules: str
     leak: float
+    leak_of_instances: float
     numbers: str
     interpolates: bool
     any_folder: bool
@@ -72,7 +73,8 @@ PYTHON = Flavour(
     without_system=("ok", "discard"),
     after_bad_state=("discard", "unknown"),
     modules="own",
-    leak=6e6,  # pythonfmu's library keeps each line logged, some 100 bytes, and 6 kB of each instance; a state is 5 kB
+    leak=6e6,  # pythonfmu's library keeps each line logged, some 100 bytes; a state is 5 kB
+    leak_of_instances=1.5e6,  # and 1 kB of each
     numbers="resources/fmu.json",
     interpolates=False,
     any_folder=False,
@@ -88,6 +90,7 @@ NATIVE = Flavour(
     after_bad_state=("ok", "kept"),
     modules="none",
     leak=1e5,
+    leak_of_instances=1e5,
     numbers="sources/case.h",
     interpolates=True,
     any_folder=True,

@@ -135,7 +135,7 @@ def test_both_flavours_give_the_same_in_one_process(fmu: Path, case: Case, pack:
 def test_five_hundred_instances_one_after_the_other_are_the_same_and_leave_nothing(flavour: Flavour, fmu: Path) -> None:
     same, growth = host("reborn", fmu, 500)
     assert same
-    assert growth < flavour.leak
+    assert growth < flavour.leak_of_instances
 
 
 @both_flavours
