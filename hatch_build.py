@@ -1,7 +1,4 @@
-"""Compiles the kernel and the native FMU of this machine while the package is built, if there is something to do it with.
-
-Without a compiler all goes on.
-"""
+"""Compiles the kernel and the native FMU while the package is built, if it can; without a compiler all goes on."""
 
 import sys
 from pathlib import Path
@@ -33,12 +30,8 @@ class CompilingHook(BuildHookInterface[Any]):
                 made[str(binary)] = f"boreprop_fmu/binaries/{binary.parent.name}/{binary.name}"
                 self.app.display_info(f"The native FMU is compiled: {binary.parent.name}")
         except (CompilerError, OSError) as error:
-            what = (
-                "The native FMU is not compiled, FMUs need Python"
-                if made
-                else "The kernel is not compiled, Python does all"
-            )
-            self.app.display_warning(f"{what}: {error}")
+            what = "native FMU is not compiled, FMUs need Python" if made else "kernel is not compiled, Python does all"
+            self.app.display_warning(f"The {what}: {error}")
         if made and not editable:
             build_data["force_include"] |= made
             build_data["pure_python"] = False

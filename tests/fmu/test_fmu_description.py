@@ -1,6 +1,7 @@
 """What an FMU says of itself and what it shows: checked against the standard's own schema, and by using it."""
 
 import io
+import os
 import re
 import struct
 import subprocess
@@ -115,6 +116,7 @@ def test_the_clock_the_user_and_the_place_leave_no_trace(
         "build_fmu(load_case(Path(sys.argv[1])), Path('other name.fmu'), runtime=sys.argv[2], binaries=Path())"
     )
     environment = {"TZ": "Asia/Tokyo", "LC_ALL": "C", "PYTHONHASHSEED": "11", "USER": "somebody", "PYTHONUTF8": "0"}
+    environment["PYTHONPATH"] = os.environ.get("PYTHONPATH", "")
     command = [sys.executable, "-X", "utf8=0", "-c", program, str(paper_case), flavour.runtime]
     subprocess.run(command, cwd=tmp_path, env=environment, check=True)
     expected = build_to_read(case, tmp_path / "Borehole.fmu", flavour)

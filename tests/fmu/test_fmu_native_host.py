@@ -220,7 +220,7 @@ def parts(library: bytes) -> list[bytes]:
     for k in range(count):
         *kind, offset, size, alignment = struct.unpack_from(">5I", library, 8 + 20 * k)
         assert alignment == 14, "the pages of Arm"
-        assert end <= offset < end + 2**14 and offset % 2**14 == 0
+        assert offset == -(-end // 2**14) * 2**14
         assert kind == list(struct.unpack_from("<2I", library, offset + 4)), "as the part itself says"
         found.append(library[offset : offset + size])
         end = offset + size

@@ -206,7 +206,7 @@ def library_path() -> Path:
 
 
 def sources_digest(*folders: Path) -> str:
-    """A digest of the C in these folders, else of the kernel, names and contents; a library says what it was made from."""
+    """A digest of the C in these folders, else of the kernel; a library says which sources it was made from."""
     digest = sha256()
     for path in [path for folder in folders or (FOLDER,) for path in sorted(folder.glob("*.[ch]"))]:
         text = path.read_bytes()
