@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -18,8 +17,6 @@ class Flavour:
     ----------
     runtime
         Its name, for `build_fmu`.
-    to_read
-        What `build_fmu` is told for one that is not to run.
     wrong_call
         Status of a call that cannot be right: a reference that there is not, a state of another FMU.
     wrong_step
@@ -45,7 +42,6 @@ class Flavour:
     """
 
     runtime: str
-    to_read: dict[str, Any]
     wrong_call: str
     wrong_step: str
     after_bad_call: str
@@ -65,7 +61,6 @@ class Flavour:
 
 PYTHON = Flavour(
     runtime="python",
-    to_read={"runtime": "python"},
     wrong_call="ok",  # pythonfmu would make fmi2Fatal of any other answer: the log says it, and the next step
     wrong_step="discard",
     after_bad_call="discard",
@@ -81,7 +76,6 @@ PYTHON = Flavour(
 )
 NATIVE = Flavour(
     runtime="native",
-    to_read={"runtime": "native", "platforms": ()},
     wrong_call="error",
     wrong_step="error",
     after_bad_call="ok",
@@ -91,7 +85,7 @@ NATIVE = Flavour(
     modules="none",
     leak=1e5,
     leak_of_instances=1e5,
-    numbers="sources/case.h",
+    numbers="resources/case.txt",
     interpolates=True,
     any_folder=True,
 )
@@ -100,5 +94,5 @@ both_flavours = pytest.mark.parametrize("flavour", [PYTHON, NATIVE], ids=str, in
 
 
 def build_to_read(case: Case, output: Path, flavour: Flavour) -> Path:
-    """An FMU that is not to run: nothing is compiled for it."""
-    return build_fmu(case, output, **flavour.to_read)
+    """An FMU that is not to run: a native one has no binaries."""
+    return build_fmu(case, output, runtime=flavour.runtime, binaries=output.parent)

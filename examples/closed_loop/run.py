@@ -183,7 +183,8 @@ def opened(element: Any, directory: Path) -> Iterator[Fmu]:
         yield fmu
     finally:
         fmu.slave.fmi2FreeInstance(fmu.slave.component)
-        fmu.slave.dll.finalizePythonInterpreter()  # at exit pythonfmu's library would drop its static state twice
+        if hasattr(fmu.slave.dll, "finalizePythonInterpreter"):
+            fmu.slave.dll.finalizePythonInterpreter()  # at exit pythonfmu's library would drop its static state twice
         fmu.slave.freeLibrary()
 
 

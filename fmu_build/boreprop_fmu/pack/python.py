@@ -13,7 +13,7 @@ from pathlib import Path
 from boreprop.case.case import Case
 
 from .archive import digest, identify
-from .contents import IDENTIFIER, describe, pack_manual, start_values
+from .contents import describe, pack_manual, start_values
 
 RUNTIME_MODULES = ("default_experiment", "enums", "fmi2slave", "logmsg", "variables", "_version")
 ADVICE = (
@@ -41,7 +41,7 @@ LOG_SWITCH = {
 }
 
 
-def pack_python(case: Case) -> dict[str, bytes]:
+def pack_python(case: Case, identifier: str) -> dict[str, bytes]:
     """The files of an FMU on pythonfmu's runtime: path in the FMU → content."""
     code = pack_code()
 
@@ -54,10 +54,10 @@ def pack_python(case: Case) -> dict[str, bytes]:
             "start": start_values(case),
             "survey": asdict(case.survey),
         }
-        return {**describe(case, guid), "resources/fmu.json": json.dumps(packed, indent=1).encode()}
+        return {**describe(case, identifier, guid), "resources/fmu.json": json.dumps(packed, indent=1).encode()}
 
     guid = identify({**code, **numbers(guid="")})
-    return {**numbers(guid), **code, **pack_runtime(), **pack_manual(case, "python")}
+    return {**numbers(guid), **code, **pack_runtime(identifier), **pack_manual(case, "python")}
 
 
 def pack_code() -> dict[str, bytes]:
@@ -88,13 +88,13 @@ def pack_code() -> dict[str, bytes]:
     }
 
 
-def pack_runtime() -> dict[str, bytes]:
+def pack_runtime(identifier: str) -> dict[str, bytes]:
     """The parts of pythonfmu: the binaries, under the FMU's name, and the base class of the slave."""
     package, modules = base_class()
     archive = {f"resources/{package}/{name}": content for name, content in modules.items()}
     for platform in files("pythonfmu").joinpath("resources/binaries").iterdir():
         for binary in platform.iterdir():
-            archive[f"binaries/{platform.name}/{IDENTIFIER}{Path(binary.name).suffix}"] = binary.read_bytes()
+            archive[f"binaries/{platform.name}/{identifier}{Path(binary.name).suffix}"] = binary.read_bytes()
     return archive
 
 
