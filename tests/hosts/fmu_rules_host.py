@@ -23,6 +23,7 @@ def start(
 ) -> Instance:
     """A reset, and an initialization with what a host may say in it."""
     one.slave.reset()
+    one.get("eta_pi")  # a host may look at any time
     one.slave.setupExperiment(tolerance=tolerance, stopTime=stop)
     one.set_names(values or {})
     one.slave.enterInitializationMode()

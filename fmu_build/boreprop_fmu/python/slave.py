@@ -168,6 +168,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
             self._log(f"{error}; relative_tolerance stays {own!r}", Fmi2Status.warning)
         else:
             self._given["relative_tolerance"] = tolerance
+            self._drilling, self._stale = None, True
 
     def _build(self, survey: Survey) -> Drilling:
         given = self._given
@@ -267,6 +268,8 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
             name, quantity = self._scalar(reference, kind)
             if quantity.role == "output":
                 raise ParameterError(name, "must not be set, it is an output", value)
+            if value is None:
+                raise ParameterError(name, "must be text", value)
             if quantity.role == "parameter" and self._phase == STEPPING and value != self._given[name]:
                 raise ParameterError(name, "must not change after initialization", value)
             new[name] = value
