@@ -17,6 +17,8 @@ class Flavour:
     ----------
     runtime
         Its name, for `build_fmu`.
+    error, discard
+        Status and category of what it logs when a call ends so.
     wrong_call
         Status of a call that cannot be right: a reference that there is not, a state of another FMU.
     under_bad_input
@@ -38,6 +40,8 @@ class Flavour:
     """
 
     runtime: str
+    error: tuple[int, str]
+    discard: tuple[int, str]
     wrong_call: str
     under_bad_input: str
     without_system: tuple[str, str]
@@ -54,6 +58,8 @@ class Flavour:
 
 PYTHON = Flavour(
     runtime="python",
+    error=(3, "logStatusError"),
+    discard=(3, "logStatusError"),
     wrong_call="ok",  # pythonfmu would make fmi2Fatal of any other answer: the log says it, and the next step
     under_bad_input="kept",
     without_system=("ok", "discard"),
@@ -66,6 +72,8 @@ PYTHON = Flavour(
 )
 NATIVE = Flavour(
     runtime="native",
+    error=(3, "logStatusError"),
+    discard=(2, "logStatusDiscard"),
     wrong_call="error",
     under_bad_input="unknown",
     without_system=("error", "error"),

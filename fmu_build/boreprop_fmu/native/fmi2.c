@@ -1,6 +1,7 @@
 /* The borehole as an FMI 2.0 co-simulation FMU: the kernel behind the functions of fmi2Functions.h.
 
    A call that cannot do what it was asked logs one line and gives one of two statuses. The instance goes on after both.
+   An error is logged whether the host wants debug logging or not, a discard only if it does.
    - fmi2Discard, from fmi2DoStep: an input or the step is bad, or the integrator fails. Nothing has moved, and the next
      step with good values works.
    - fmi2Error: the call itself is wrong; the parameters make no drilling system (then every step gives this, until
@@ -34,13 +35,13 @@ fmi2Status fmi2SetDebugLogging(fmi2Component instance, fmi2Boolean on, size_t co
     if (!c || !has(c, "fmi2SetDebugLogging", count, categories, categories)) return fmi2Error;
     for (size_t i = 0; i < count; i++) {
         const char *category = categories[i] ? categories[i] : "";
-        if (strcmp(category, CATEGORY) && strcmp(category, "logAll")) {
-            explain(why, "category: must be %s, got %s", CATEGORY, quoted(category, shown));
+        if (!strcmp(category, DISCARDS) || !strcmp(category, "logAll")) wanted = 1;
+        else if (strcmp(category, ERRORS)) {
+            explain(why, "category: must be %s or %s, got %s", ERRORS, DISCARDS, quoted(category, shown));
             return fail(c, fmi2Error, why);
         }
-        wanted = 1;
     }
-    c->logging = on && wanted;
+    c->logs_discards = on && wanted;
     return fmi2OK;
 }
 
@@ -54,13 +55,13 @@ fmi2Component fmi2Instantiate(
     Component *c = calloc(1, sizeof *c);
     if (c && type != fmi2CoSimulation) explain(why, "fmuType: must be fmi2CoSimulation, got %d", (int)type);
     else if (c && read_case(resources, &c->packed, why)) {
-        c->callbacks = *callbacks, c->logging = logging != fmi2False;
+        c->callbacks = *callbacks, c->logs_discards = logging != fmi2False;
         c->name = copy(name ? name : "");
         if (!guid || strcmp(guid, c->packed.guid))
             explain(why, "fmuGUID: must be '%s', got %s", c->packed.guid, quoted(guid ? guid : "", shown));
         else if (c->name && start_over(c)) return c;
     }
-    log_line(callbacks, name ? name : "", why);
+    log_line(callbacks, name ? name : "", fmi2Error, why);
     fmi2FreeInstance(c);
     return NULL;
 }
@@ -209,21 +210,18 @@ fmi2Status fmi2SetString(
     if (!c || !has(c, "fmi2SetString", count, vr, value)) return fmi2Error;
     for (size_t i = 0; i < count; i++) { /* there is one, survey_file */
         if (!is_of_kind(c, vr[i], STRING)) return fmi2Error;
-        const char *text = value[i] ? value[i] : "";
-        if (!value[i] || !is_utf8(text)) {
-            explain(
-                why, "%s: must be UTF-8 text, got %s", variable_at(c, vr[i])->name, value[i] ? "other bytes" : "NULL"
-            );
+        if (!value[i] || !is_utf8(value[i])) {
+            explain(why, "survey_file: must be UTF-8 text, got %s", value[i] ? "other bytes" : "NULL");
             return fail(c, fmi2Error, why);
         }
-        if (!strcmp(text, c->survey_file)) continue;
-        if (!settable(c, vr[i], quoted(text, shown))) return fmi2Error;
-        char *own = copy(text);
-        if (!own) return fail(c, fmi2Error, "survey_file: must fit into the memory");
-        free(c->survey_file);
-        c->survey_file = own;
-        changed(c);
+        if (strcmp(value[i], c->survey_file) && !settable(c, vr[i], quoted(value[i], shown))) return fmi2Error;
     }
+    if (!count || !strcmp(value[count - 1], c->survey_file)) return fmi2OK;
+    char *own = copy(value[count - 1]);
+    if (!own) return fail(c, fmi2Error, "survey_file: must fit into the memory");
+    free(c->survey_file);
+    c->survey_file = own;
+    changed(c);
     return fmi2OK;
 }
 

@@ -11,7 +11,7 @@
 enum { FIXED = 10 }; /* numbers of a state before the values of the variables */
 #define MOST_STAIRS 1000.0
 static const char *const KIND[] = {"Real", "Integer", "Boolean", "String"};
-static const char CATEGORY[] = "logStatusError";
+static const char ERRORS[] = "logStatusError", DISCARDS[] = "logStatusDiscard"; /* categories of the log */
 
 typedef enum { INSTANTIATED = 1, INITIALIZATION = 2, STEPPING = 4, TERMINATED = 8, ANY = 15 } Phase;
 typedef enum { STALE, FRESH, MISSING } Outputs; /* MISSING: cannot be computed, and the log has said why */
@@ -19,7 +19,8 @@ typedef enum { STALE, FRESH, MISSING } Outputs; /* MISSING: cannot be computed, 
 typedef struct {
     fmi2CallbackFunctions callbacks;
     char *name;
-    int logging;
+    int logs_discards; /* errors it logs always */
+    int has_warned;    /* on stderr, that there is no drilling system */
     Phase phase;
     PackedCase packed;
     double value[MOST_VARIABLES]; /* by value reference; those of outputs as `outputs` says */
@@ -35,18 +36,20 @@ typedef struct {
 
 /* Messages */
 
-static void log_line(const fmi2CallbackFunctions *callbacks, const char *name, const char *line) {
-    char format[2 * LINE], *to = format; /* a logger formats its message like printf */
+static void log_line(const fmi2CallbackFunctions *callbacks, const char *name, fmi2Status status, const char *line) {
+    char format[2 * LINE], *to = format;
     for (; *line; line++) {
-        if (*line == '%') *to++ = '%';
+        if (*line == '%') *to++ = '%'; /* a logger formats its message like printf */
+        if (*line == '#') *to++ = '#'; /* and puts names in the place of #r7# */
         *to++ = *line;
     }
     *to = '\0';
-    if (callbacks->logger) callbacks->logger(callbacks->componentEnvironment, name, fmi2Error, CATEGORY, format);
+    const char *category = status == fmi2Discard ? DISCARDS : ERRORS;
+    if (callbacks->logger) callbacks->logger(callbacks->componentEnvironment, name, status, category, format);
 }
 
 static fmi2Status fail(const Component *c, fmi2Status status, const char *why) {
-    if (c->logging) log_line(&c->callbacks, c->name, why);
+    if (status == fmi2Error || c->logs_discards) log_line(&c->callbacks, c->name, status, why);
     return status;
 }
 
@@ -83,7 +86,7 @@ static int start_over(Component *c) {
     run_end(c->run);
     free(c->survey_file);
     c->run = NULL, c->survey_file = none;
-    c->phase = INSTANTIATED, c->outputs = STALE, c->run_has_inputs = c->discarded = 0;
+    c->phase = INSTANTIATED, c->outputs = STALE, c->run_has_inputs = c->discarded = c->has_warned = 0;
     c->time = c->since = c->from = 0.0, c->rate = -1.0, c->stop = INFINITY;
     memset(c->derivative, 0, sizeof c->derivative);
     memcpy(c->value, c->packed.start, sizeof c->value);
@@ -98,14 +101,13 @@ static void changed(Component *c) {
     c->run = NULL;
 }
 
-/* Whether there is a drilling system: if there is none yet it is made now; 0 with `why` if that fails. */
-static int ready(Component *c, char why[LINE]) {
+/* Make the drilling system; 0 with `why` if that fails. */
+static int begin_drilling(Component *c, char why[LINE]) {
     Survey survey = c->packed.survey;
     Inputs inputs = {c->value[IN_RSS_FORCE], 0.0, c->value[IN_ACTIVE_WEIGHT_ON_BIT]};
     Problem problem;
     double *numbers = NULL;
     char fault[LINE];
-    if (c->run) return 1;
     if (c->survey_file[0] && !(numbers = read_survey(c->survey_file, &survey, fault)))
         return explain(why, "%.*s (survey_file)", LINE - 32, fault);
     c->run = new_run(&c->packed.variables, c->value, why);
@@ -116,6 +118,19 @@ static int ready(Component *c, char why[LINE]) {
     }
     free(numbers);
     return c->run != NULL;
+}
+
+/* Whether there is a drilling system. That there is none once the initialization is over is also said on stderr, since
+   many hosts show no log. */
+static int ready(Component *c, char why[LINE]) {
+    char line[2 * LINE];
+    if (c->run || begin_drilling(c, why)) return 1;
+    if (c->phase == STEPPING && !c->has_warned) {
+        snprintf(line, sizeof line, "%s: %s\n", c->name, why);
+        fputs(line, stderr);
+        c->has_warned = 1;
+    }
+    return 0;
 }
 
 static int check_given(const double input[INPUT_COUNT], Problem *problem) {
