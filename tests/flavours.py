@@ -8,6 +8,9 @@ import pytest
 from boreprop.case.case import Case
 from boreprop_fmu.pack.build import build_fmu
 
+# status and category of what is logged when a call ends so
+LOGGED = {"warning": (1, "logStatusWarning"), "discard": (2, "logStatusDiscard"), "error": (3, "logStatusError")}
+
 
 @dataclass(frozen=True, eq=False)
 class Flavour:

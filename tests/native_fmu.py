@@ -9,7 +9,7 @@ from fmpy.fmi1 import FMICallException
 
 from boreprop.case.case import Case
 from conftest import Pack
-from flavours import NATIVE
+from flavours import LOGGED, NATIVE
 from fmu_host import Instance, instance
 
 DISCARD, ERROR = 2, 3
@@ -35,7 +35,7 @@ def refused(one: Instance, message: str, status: int = ERROR) -> Iterator[None]:
     with pytest.raises(FMICallException) as caught:
         yield
     [(level, category, line)] = one.log
-    assert (caught.value.status, level, category) == (status, 3, "logStatusError")
+    assert (caught.value.status, level, category) == (status, *LOGGED["discard" if status == DISCARD else "error"])
     assert line.startswith(message)
 
 

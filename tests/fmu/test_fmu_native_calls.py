@@ -8,7 +8,13 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import fmi2Real, fmi2ValueReference
+from fmpy.fmi2 import (
+    defaultCallbacks,
+    fmi2CallbackFunctions,
+    fmi2Real,
+    fmi2StepFinishedTYPE,
+    fmi2ValueReference,
+)
 from test_fmu_c_host import COMPILER
 
 from boreprop.core.quantities import VARIABLES, scalar_names
@@ -119,47 +125,60 @@ def test_bad_parameters_are_an_error_until_a_reset(one: Instance) -> None:
     assert one.initialize().step(1.0) == "ok"
 
 
-def test_only_what_is_wanted_is_logged(one: Instance) -> None:
-    def lines() -> int:
+def test_errors_are_logged_always_and_discards_where_they_are_wanted(one: Instance) -> None:
+    def logged() -> list[str]:
         one.log.clear()
         with pytest.raises(FMICallException):
             one.slave.getReal([99])
-        return len(one.log)
+        assert one.step(nan) == "discard"
+        return [category for _, category, _ in one.log]
 
-    assert lines() == 1
-    one.slave.setDebugLogging(False, [])
-    assert lines() == 0
-    one.slave.setDebugLogging(True, ["logStatusError"])
-    assert lines() == 1
-    with refused(one, "category: must be logStatusError, got 'logEvents'"):
+    one.initialize()
+    both = ["logStatusError", "logStatusDiscard"]
+    assert logged() == both
+    for on, categories, expected in (
+        (False, [], both[:1]),
+        (True, both[:1], both[:1]),
+        (True, both[1:], both),
+        (False, both[1:], both[:1]),
+        (True, ["logAll"], both),
+        (True, [], both),
+    ):
+        one.slave.setDebugLogging(on, categories)
+        assert logged() == expected
+    with refused(one, "category: must be logStatusError, logStatusDiscard or logStatusWarning, got 'logEvents'"):
         one.slave.setDebugLogging(True, ["logEvents"])
-    one.slave.setDebugLogging(False, ["logStatusError"])
-    assert lines() == 0
 
 
-def start_with_stop(one: Instance, stop: float) -> None:
-    one.slave.reset()
-    one.slave.setupExperiment(startTime=0.0, stopTime=stop)
-    one.slave.enterInitializationMode()
-    one.slave.exitInitializationMode()
-    one.time = 0.0
-
-
-def test_no_step_ends_beyond_the_stop_time(one: Instance) -> None:
-    start_with_stop(one, 1.0)
-    with refused(one, "current_time + step_size: must be <= 1, got 1.5"):
-        one.slave.doStep(0.0, 1.5)
-    assert [one.step(0.1) for _ in range(10)] == ["ok"] * 10
-    with refused(one, "current_time + step_size: must be <= 1, got "):
-        one.slave.doStep(one.time, 0.1)
-    one.slave.reset()
-    assert one.initialize().step(1.5) == "ok"
+def test_setting_texts_is_all_or_nothing(one: Instance) -> None:
+    [survey, other] = [one.variables[name].valueReference for name in ("survey_file", "rss_force")]
+    with refused(one, "rss_force: must be used as Real, got 'String'"):
+        one.slave.setString([survey, other], ["a.csv", "b.csv"])
+    assert one.get("survey_file") == b""
 
 
 def test_a_host_that_adds_up_its_steps_reaches_the_stop_time(one: Instance) -> None:
-    start_with_stop(one, 1000.0)
-    one.time = 999.9 + 1e-6  # what rounding may come to in a very long run
+    one.slave.setupExperiment(startTime=0.0, stopTime=1000.0)
+    one.slave.enterInitializationMode()
+    one.slave.exitInitializationMode()
+    one.time = 0.0
+    assert one.step(999.9 + 1e-6) == "ok"  # what rounding may come to in a very long run
     assert one.step(0.1) == "ok"
+
+
+def test_a_completed_step_is_told_to_a_host_that_asks(one: Instance) -> None:
+    told: list[int] = []
+    callbacks = fmi2CallbackFunctions(
+        logger=defaultCallbacks.logger,
+        allocateMemory=defaultCallbacks.allocateMemory,
+        freeMemory=defaultCallbacks.freeMemory,
+        stepFinished=fmi2StepFinishedTYPE(lambda _, status: told.append(status)),
+    )
+    one.slave.fmi2FreeInstance(one.slave.component)
+    one.slave.instantiate(callbacks=callbacks)
+    one.initialize()
+    assert (one.step(1.0), one.step(-1.0), one.step(1.0)) == ("ok", "discard", "ok")
+    assert told == [0, 0]
 
 
 def test_standing_still_under_changing_inputs_costs_no_memory(one: Instance) -> None:

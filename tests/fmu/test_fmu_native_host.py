@@ -10,6 +10,7 @@ import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from itertools import accumulate
 from pathlib import Path
+from platform import machine
 from tempfile import TemporaryFile
 from xml.etree.ElementTree import fromstring
 
@@ -160,6 +161,17 @@ def test_the_binary_in_it_gives_what_the_sources_in_it_give(rows: Rows, host: Pa
     folder = unpack_or_skip(unpack, platform)
     binary = folder / "binaries" / platform / f"Borehole{PLATFORMS[platform].suffix}"
     assert lead(folder, [host], binary) == pytest.approx(rows, rel=1e-9, abs=1e-11)
+
+
+@needs_compiler
+@pytest.mark.skipif(machine() not in ("x86_64", "AMD64"), reason="no x87")
+def test_a_processor_that_computes_with_more_digits_takes_its_own_states(rows: Rows, host: Path, sources: Path) -> None:
+    flags = ("-shared", "-fPIC", "-O2", "-mfpmath=387", f"-I{FMI_HEADERS}", "-lm")
+    try:
+        library = compiled(sources / "fmi2.c", sources / "x87.so", *flags)
+    except subprocess.CalledProcessError:
+        pytest.skip("this compiler cannot be told to use the x87")
+    assert lead(sources.parent, [host], library) == pytest.approx(rows, rel=1e-8, abs=1e-8)
 
 
 def unpack_or_skip(unpack: Unpack, platform: str) -> Path:

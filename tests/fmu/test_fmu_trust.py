@@ -24,7 +24,7 @@ from boreprop.case.file import load_case
 from boreprop.core.quantities import BY_NAME
 from boreprop.core.system import BottomHoleAssembly
 from conftest import Pack
-from flavours import NATIVE, PYTHON, Flavour, both_flavours
+from flavours import LOGGED, NATIVE, PYTHON, Flavour, both_flavours
 from places import HOSTS
 
 SOURCES = {"boreprop": boreprop.__file__, "boreprop_fmu": boreprop_fmu.__file__}
@@ -233,7 +233,7 @@ def test_a_bad_value_is_logged_once_and_moves_nothing(flavour: Flavour, fmu: Pat
     for name, value, status, log, under, unmoved, again in reports:
         assert (status, again) == ("discard", "ok"), name
         [(level, category, message)] = log
-        assert (level, category) == (2, "logStatusDiscard")
+        assert (level, category) == LOGGED["discard"]
         assert message.startswith(f"{name}: must be ")
         assert message.endswith(f", got {value!r}")
         assert under == (flavour.under_bad_input if name in ("rss_force", "active_weight_on_bit") else "kept"), name
@@ -243,8 +243,7 @@ def test_a_bad_value_is_logged_once_and_moves_nothing(flavour: Flavour, fmu: Pat
 def assert_said(logs: list[list[list[Any]]], statuses: list[str]) -> None:
     """Each of three calls has logged the same line once, with its status; pythonfmu's first one is ok all the same."""
     [message] = {line for log in logs for _, _, line in log}
-    levels = [[2, "logStatusDiscard", message] if s == "discard" else [3, "logStatusError", message] for s in statuses]
-    assert logs == [[level] for level in levels]
+    assert logs == [[[*LOGGED["error" if status == "ok" else status], message]] for status in statuses]
 
 
 @both_flavours

@@ -1,6 +1,7 @@
 /* The borehole as an FMI 2.0 co-simulation FMU: the kernel behind the functions of fmi2Functions.h.
 
    A call that cannot do what it was asked logs one line and gives one of two statuses. The instance goes on after both.
+   An error is logged whether the host wants debug logging or not, a discard only if it does.
    - fmi2Discard, from fmi2DoStep: an input or the step is bad, or the integrator fails. Nothing has moved, and the next
      step with good values works.
    - fmi2Error: the call itself is wrong; the parameters make no drilling system (then every step gives this, until
@@ -29,18 +30,19 @@ const char *fmi2GetVersion(void) { return fmi2Version; }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component instance, fmi2Boolean on, size_t count, const fmi2String categories[]) {
     Component *c = called(instance, "fmi2SetDebugLogging", ANY);
-    int wanted = !count;
+    int discards = !count, warnings = !count;
     char why[LINE], shown[SHOWN];
     if (!c || !has(c, "fmi2SetDebugLogging", count, categories, categories)) return fmi2Error;
     for (size_t i = 0; i < count; i++) {
         const char *category = categories[i] ? categories[i] : "";
-        if (strcmp(category, CATEGORY) && strcmp(category, "logAll")) {
-            explain(why, "category: must be %s, got %s", CATEGORY, quoted(category, shown));
+        if (!strcmp(category, DISCARDS) || !strcmp(category, "logAll")) discards = 1;
+        if (!strcmp(category, WARNINGS) || !strcmp(category, "logAll")) warnings = 1;
+        else if (strcmp(category, ERRORS) && strcmp(category, DISCARDS)) {
+            explain(why, "category: must be %s, %s or %s, got %s", ERRORS, DISCARDS, WARNINGS, quoted(category, shown));
             return fail(c, fmi2Error, why);
         }
-        wanted = 1;
     }
-    c->logging = on && wanted;
+    c->logs_discards = on && discards, c->logs_warnings = on && warnings;
     return fmi2OK;
 }
 
@@ -54,13 +56,13 @@ fmi2Component fmi2Instantiate(
     Component *c = calloc(1, sizeof *c);
     if (c && type != fmi2CoSimulation) explain(why, "fmuType: must be fmi2CoSimulation, got %d", (int)type);
     else if (c && read_case(resources, &c->packed, why)) {
-        c->callbacks = *callbacks, c->logging = logging != fmi2False;
+        c->callbacks = *callbacks, c->logs_discards = c->logs_warnings = logging != fmi2False;
         c->name = copy(name ? name : "");
         if (!guid || strcmp(guid, c->packed.guid))
             explain(why, "fmuGUID: must be '%s', got %s", c->packed.guid, quoted(guid ? guid : "", shown));
         else if (c->name && start_over(c)) return c;
     }
-    log_line(callbacks, name ? name : "", why);
+    log_line(callbacks, name ? name : "", fmi2Error, why);
     fmi2FreeInstance(c);
     return NULL;
 }
@@ -81,19 +83,13 @@ fmi2Status fmi2Reset(fmi2Component instance) {
     return start_over(c) ? fmi2OK : fail(c, fmi2Error, "instance: must fit into the memory");
 }
 
-/* The tolerance is the parameter relative_tolerance, whatever a host suggests. */
 fmi2Status fmi2SetupExperiment(
     fmi2Component instance, fmi2Boolean tolerance_defined, fmi2Real tolerance, fmi2Real start, fmi2Boolean stop_defined,
     fmi2Real stop
 ) {
     Component *c = called(instance, "fmi2SetupExperiment", INSTANTIATED);
-    Problem problem;
-    (void)tolerance_defined, (void)tolerance;
-    if (!c) return fmi2Error;
-    if (!check_finite(Q_START_TIME, 0, start, &problem)) return fail_by(c, fmi2Error, &problem);
-    c->time = start;
-    c->stop = stop_defined ? stop : (double)INFINITY;
-    return fmi2OK;
+    return c ? set_up(c, tolerance_defined ? &tolerance : NULL, start, stop_defined ? stop : (double)INFINITY)
+             : fmi2Error;
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component instance) {
@@ -174,11 +170,13 @@ fmi2Status fmi2SetReal(fmi2Component instance, const fmi2ValueReference vr[], si
         int other = variable_at(c, vr[i])->role == OUTPUT || value[i] != c->value[vr[i]];
         if (other && !settable(c, vr[i], represent(value[i], got))) return fmi2Error;
     }
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count; i++) {
+        if ((int)vr[i] == c->packed.variables.relative_tolerance) c->has_tolerance = 1;
         if (value[i] != c->value[vr[i]]) {
             c->value[vr[i]] = value[i];
             changed(c);
         }
+    }
     return fmi2OK;
 }
 
@@ -209,21 +207,18 @@ fmi2Status fmi2SetString(
     if (!c || !has(c, "fmi2SetString", count, vr, value)) return fmi2Error;
     for (size_t i = 0; i < count; i++) { /* there is one, survey_file */
         if (!is_of_kind(c, vr[i], STRING)) return fmi2Error;
-        const char *text = value[i] ? value[i] : "";
-        if (!value[i] || !is_utf8(text)) {
-            explain(
-                why, "%s: must be UTF-8 text, got %s", variable_at(c, vr[i])->name, value[i] ? "other bytes" : "NULL"
-            );
+        if (!value[i] || !is_utf8(value[i])) {
+            explain(why, "survey_file: must be UTF-8 text, got %s", value[i] ? "other bytes" : "NULL");
             return fail(c, fmi2Error, why);
         }
-        if (!strcmp(text, c->survey_file)) continue;
-        if (!settable(c, vr[i], quoted(text, shown))) return fmi2Error;
-        char *own = copy(text);
-        if (!own) return fail(c, fmi2Error, "survey_file: must fit into the memory");
-        free(c->survey_file);
-        c->survey_file = own;
-        changed(c);
+        if (strcmp(value[i], c->survey_file) && !settable(c, vr[i], quoted(value[i], shown))) return fmi2Error;
     }
+    if (!count || !strcmp(value[count - 1], c->survey_file)) return fmi2OK;
+    char *own = copy(value[count - 1]);
+    if (!own) return fail(c, fmi2Error, "survey_file: must fit into the memory");
+    free(c->survey_file);
+    c->survey_file = own;
+    changed(c);
     return fmi2OK;
 }
 
@@ -236,7 +231,9 @@ fmi2Status fmi2DoStep(fmi2Component instance, fmi2Real time, fmi2Real size, fmi2
     if (!c) return fmi2Error;
     fmi2Status status = step(c, time, size, why);
     c->discarded = status == fmi2Discard;
-    return status == fmi2OK ? fmi2OK : fail(c, status, why);
+    if (status != fmi2OK) return fail(c, status, why);
+    if (c->callbacks.stepFinished) c->callbacks.stepFinished(c->callbacks.componentEnvironment, fmi2OK);
+    return fmi2OK;
 }
 
 fmi2Status fmi2SetRealInputDerivatives(

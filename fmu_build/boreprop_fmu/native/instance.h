@@ -11,7 +11,9 @@
 enum { FIXED = 10 }; /* numbers of a state before the values of the variables */
 #define MOST_STAIRS 1000.0
 static const char *const KIND[] = {"Real", "Integer", "Boolean", "String"};
-static const char CATEGORY[] = "logStatusError";
+#define TIGHTEST 1e-12 /* tolerance that a host may choose */
+#define LOOSEST 1e-5   /* some choose 1e-3 for every FMU, which is too coarse for a hole */
+static const char ERRORS[] = "logStatusError", DISCARDS[] = "logStatusDiscard", WARNINGS[] = "logStatusWarning";
 
 typedef enum { INSTANTIATED = 1, INITIALIZATION = 2, STEPPING = 4, TERMINATED = 8, ANY = 15 } Phase;
 typedef enum { STALE, FRESH, MISSING } Outputs; /* MISSING: cannot be computed, and the log has said why */
@@ -19,7 +21,9 @@ typedef enum { STALE, FRESH, MISSING } Outputs; /* MISSING: cannot be computed, 
 typedef struct {
     fmi2CallbackFunctions callbacks;
     char *name;
-    int logging;
+    int logs_discards, logs_warnings; /* errors it logs always */
+    int has_warned;                   /* on stderr, that there is no drilling system */
+    int has_tolerance;                /* the parameter for it has been set */
     Phase phase;
     PackedCase packed;
     double value[MOST_VARIABLES]; /* by value reference; those of outputs as `outputs` says */
@@ -35,18 +39,20 @@ typedef struct {
 
 /* Messages */
 
-static void log_line(const fmi2CallbackFunctions *callbacks, const char *name, const char *line) {
-    char format[2 * LINE], *to = format; /* a logger formats its message like printf */
+static void log_line(const fmi2CallbackFunctions *callbacks, const char *name, fmi2Status status, const char *line) {
+    char format[2 * LINE], *to = format;
     for (; *line; line++) {
-        if (*line == '%') *to++ = '%';
+        if (*line == '%') *to++ = '%'; /* a logger formats its message like printf */
+        if (*line == '#') *to++ = '#'; /* and puts names in the place of #r7# */
         *to++ = *line;
     }
     *to = '\0';
-    if (callbacks->logger) callbacks->logger(callbacks->componentEnvironment, name, fmi2Error, CATEGORY, format);
+    const char *category = status == fmi2Discard ? DISCARDS : status == fmi2Warning ? WARNINGS : ERRORS;
+    if (callbacks->logger) callbacks->logger(callbacks->componentEnvironment, name, status, category, format);
 }
 
 static fmi2Status fail(const Component *c, fmi2Status status, const char *why) {
-    if (c->logging) log_line(&c->callbacks, c->name, why);
+    if (status == fmi2Error || c->logs_discards) log_line(&c->callbacks, c->name, status, why);
     return status;
 }
 
@@ -84,6 +90,7 @@ static int start_over(Component *c) {
     free(c->survey_file);
     c->run = NULL, c->survey_file = none;
     c->phase = INSTANTIATED, c->outputs = STALE, c->run_has_inputs = c->discarded = 0;
+    c->has_warned = c->has_tolerance = 0;
     c->time = c->since = c->from = 0.0, c->rate = -1.0, c->stop = INFINITY;
     memset(c->derivative, 0, sizeof c->derivative);
     memcpy(c->value, c->packed.start, sizeof c->value);
@@ -98,14 +105,13 @@ static void changed(Component *c) {
     c->run = NULL;
 }
 
-/* Whether there is a drilling system: if there is none yet it is made now; 0 with `why` if that fails. */
-static int ready(Component *c, char why[LINE]) {
+/* Make the drilling system; 0 with `why` if that fails. */
+static int begin_drilling(Component *c, char why[LINE]) {
     Survey survey = c->packed.survey;
     Inputs inputs = {c->value[IN_RSS_FORCE], 0.0, c->value[IN_ACTIVE_WEIGHT_ON_BIT]};
     Problem problem;
     double *numbers = NULL;
     char fault[LINE];
-    if (c->run) return 1;
     if (c->survey_file[0] && !(numbers = read_survey(c->survey_file, &survey, fault)))
         return explain(why, "%.*s (survey_file)", LINE - 32, fault);
     c->run = new_run(&c->packed.variables, c->value, why);
@@ -116,6 +122,39 @@ static int ready(Component *c, char why[LINE]) {
     }
     free(numbers);
     return c->run != NULL;
+}
+
+/* Whether there is a drilling system. That there is none once the initialization is over is also said on stderr, since
+   many hosts show no log. */
+static int ready(Component *c, char why[LINE]) {
+    char line[2 * LINE];
+    if (c->run || begin_drilling(c, why)) return 1;
+    if (c->phase == STEPPING && !c->has_warned) {
+        snprintf(line, sizeof line, "%s: %s\n", c->name, why);
+        fputs(line, stderr);
+        c->has_warned = 1;
+    }
+    return 0;
+}
+
+/* What a host says of the experiment. Its tolerance is taken if the parameter for it has not been set. */
+static fmi2Status set_up(Component *c, const double *tolerance, double start, double stop) {
+    int reference = c->packed.variables.relative_tolerance;
+    Problem problem;
+    char why[LINE];
+    if (!check_finite(Q_START_TIME, 0, start, &problem)) return fail_by(c, fmi2Error, &problem);
+    c->time = start, c->stop = stop;
+    if (!tolerance || c->has_tolerance) return fmi2OK;
+    if (*tolerance >= TIGHTEST && *tolerance <= LOOSEST) {
+        c->value[reference] = *tolerance;
+        changed(c);
+    } else if (c->logs_warnings) {
+        char got[32], own[32];
+        represent(*tolerance, got), represent(c->value[reference], own);
+        explain(why, "tolerance: must be %g to %g, got %s; relative_tolerance stays %s", TIGHTEST, LOOSEST, got, own);
+        log_line(&c->callbacks, c->name, fmi2Warning, why);
+    }
+    return fmi2OK;
 }
 
 static int check_given(const double input[INPUT_COUNT], Problem *problem) {
@@ -194,6 +233,12 @@ static fmi2Status check_step(
         tell(&problem, why);
         return fmi2Discard;
     }
+    if (fabs(time - c->time) > larger(1e-14 * larger(fabs(time), fabs(c->time)), 1e-9 * size)) { /* hosts add up */
+        char ended[32], got[32];
+        represent(c->time, ended), represent(time, got);
+        explain(why, "current_time: must be %s, where the last step ended, got %s", ended, got);
+        return fmi2Error;
+    }
     if (time + size > late) {
         wrong(&problem, TOO_LARGE, Q_STEP_END, 0, time + size, c->stop);
         tell(&problem, why);
@@ -218,8 +263,7 @@ static fmi2Status step(Component *c, double time, double size, char why[LINE]) {
     if (status != fmi2OK) return status;
     if (!ready(c, why)) return fmi2Error;
     double here = drilling_length(&c->run->drilling);
-    double close = larger(1e-12 * larger(fabs(time), fabs(c->time)), 1e-9 * size);
-    if (start_rate != c->rate || *end_rate != start_rate || fabs(time - c->time) > close) since = time, from = here;
+    if (start_rate != c->rate || *end_rate != start_rate) since = time, from = here;
     double length = from + start_rate * (time + size - since) + (*end_rate - start_rate) * size / 2;
     if (!check_finite(Q_DRILLED_LENGTH, 0, length, &problem)) {
         tell(&problem, why);

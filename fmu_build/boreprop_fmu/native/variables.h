@@ -17,7 +17,8 @@ enum { MOST_VARIABLES = INPUT_COUNT + MOST_OUTPUTS + MOST_PARAMETERS + 1 };
 /* All variables by value reference: the inputs, numbered as in INPUT_TABLE, the outputs, the parameters of the kernel,
    and last the survey file. */
 typedef struct {
-    int n, count, first_output, first_parameter, survey_file; /* stabilizers, variables; value references */
+    int n, count;                                                       /* stabilizers, variables */
+    int first_output, first_parameter, relative_tolerance, survey_file; /* value references */
     Variable at[MOST_VARIABLES];
 } Variables;
 
@@ -38,8 +39,10 @@ static void list_variables(Variables *all, int n) {
     for (int k = 0; k < OUTPUT_COUNT; k++)
         add_variable(all, OUTPUT_NAME[k], OUTPUT_SIZE[k], OUTPUT, OUTPUT_IS_WHOLE[k] ? INTEGER : REAL);
     all->first_parameter = all->count;
-    for (int k = 0; k < PARAMETER_COUNT; k++)
+    for (int k = 0; k < PARAMETER_COUNT; k++) {
+        if (PARAMETER_TABLE[k].name == Q_RELATIVE_TOLERANCE) all->relative_tolerance = all->count;
         add_variable(all, PARAMETER_TABLE[k].name, PARAMETER_TABLE[k].size, PARAMETER, REAL);
+    }
     all->survey_file = all->count;
     add_variable(all, Q_SURVEY_FILE, ONE, PARAMETER, STRING);
 }

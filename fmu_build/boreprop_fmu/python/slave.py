@@ -24,7 +24,7 @@ from boreprop.core.columns import read_columns
 from boreprop.core.drilling import Drilling
 from boreprop.core.errors import CannotContinue, ParameterError, TableError
 from boreprop.core.options import Options
-from boreprop.core.quantities import BY_NAME, VARIABLES, Quantity, columns_of, fields_of
+from boreprop.core.quantities import VARIABLES, Quantity, columns_of, fields_of
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop_fmu.python.process import forget, give_ctrl_c_back, open_log, write_to_user
@@ -32,7 +32,7 @@ from boreprop_fmu.python.process import forget, give_ctrl_c_back, open_log, writ
 STATE_FORMAT = "boreprop-fmu-state-3"
 INSTANTIATED, INITIALIZATION, STEPPING, TERMINATED = "instantiated", "initialization", "stepping", "terminated"
 BEFORE_THE_END = (INSTANTIATED, INITIALIZATION, STEPPING)
-LOOSEST = 1e-5  # tolerance that a host may choose: some choose 1e-3 for every FMU, which is too coarse for a hole
+TIGHTEST, LOOSEST = 1e-12, 1e-5  # tolerance that a host may choose: some choose 1e-3 always, too coarse for a hole
 NOTHING: dict[str, Any] = {"Real": nan, "Integer": 0, "Boolean": False, "String": ""}  # the value of what has none
 
 
@@ -161,14 +161,12 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         self._time, self._stop = start_time, inf if stop_time is None else stop_time
         if tolerance is None or "relative_tolerance" in self._chosen:
             return
-        try:
-            check_number("tolerance", tolerance, at_least=BY_NAME["relative_tolerance"].at_least, at_most=LOOSEST)
-        except ParameterError as error:
-            own = self._given["relative_tolerance"]
-            self._log(f"{error}; relative_tolerance stays {own!r}", Fmi2Status.warning)
-        else:
+        if TIGHTEST <= tolerance <= LOOSEST:
             self._given["relative_tolerance"] = tolerance
             self._drilling, self._stale = None, True
+        else:
+            told = f"tolerance: must be {TIGHTEST:g} to {LOOSEST:g}, got {tolerance!r}"
+            self._log(f"{told}; relative_tolerance stays {self._given['relative_tolerance']!r}", Fmi2Status.warning)
 
     def _build(self, survey: Survey) -> Drilling:
         given = self._given
