@@ -46,8 +46,8 @@ def test_what_no_run_can_have_saved_is_refused_though_its_checksum_is_right(one:
     one.steps(5, 0.9)
     state = one.state()
     head, body = state.split(b"\n", 1)
-    run = 10 + len(scalar_names(VARIABLES, 2))  # where the numbers of the run begin
-    for at, number in ((0, 3.0), (9, 1e300), (9, nan), (run, nan), (run + 1, -1.0), (run + 19, inf)):
+    run = 11 + len(scalar_names(VARIABLES, 2))  # where the numbers of the run begin
+    for at, number in ((0, 3.0), (9, nan), (10, 1e300), (10, nan), (run, nan), (run + 1, -1.0), (run + 19, inf)):
         spoilt_body = body[: 8 * at] + np.array([number], "<f8").tobytes() + body[8 * at + 8 :]
         checksum = 0xCBF29CE484222325
         for byte in spoilt_body:

@@ -20,7 +20,9 @@
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF
 #endif
-#include "calls.h"
+#include "sensitivity.h"
+#include "states.h"
+#include "steps.h"
 
 /* Inquiry, logging, life */
 
@@ -264,20 +266,21 @@ fmi2Status fmi2GetRealOutputDerivatives(
     fmi2Component instance, const fmi2ValueReference vr[], size_t count, const fmi2Integer order[], fmi2Real value[]
 ) {
     Component *c = called(instance, "fmi2GetRealOutputDerivatives", ANY);
-    (void)vr, (void)order;
-    if (!c || !has(c, "fmi2GetRealOutputDerivatives", count, value, value)) return fmi2Error;
-    for (size_t i = 0; i < count; i++) value[i] = (double)NAN;
-    return fail(c, fmi2Error, "fmi2GetRealOutputDerivatives: must not be called, maxOutputDerivativeOrder is 0");
+    if (!c || !has(c, "fmi2GetRealOutputDerivatives", count, vr, value) ||
+        !has(c, "fmi2GetRealOutputDerivatives", count, order, value))
+        return fmi2Error;
+    return derivatives_in_time(c, vr, count, order, value);
 }
 
 fmi2Status fmi2GetDirectionalDerivative(
     fmi2Component instance, const fmi2ValueReference unknown[], size_t unknowns, const fmi2ValueReference given[],
     size_t givens, const fmi2Real change[], fmi2Real value[]
 ) {
-    Component *c = called(instance, "fmi2GetDirectionalDerivative", ANY);
-    (void)unknown, (void)unknowns, (void)given, (void)givens, (void)change, (void)value;
-    if (!c) return fmi2Error;
-    return fail(c, fmi2Error, "fmi2GetDirectionalDerivative: must not be called, the FMU does not provide it");
+    Component *c = called(instance, "fmi2GetDirectionalDerivative", INITIALIZATION | STEPPING | TERMINATED);
+    if (!c || !has(c, "fmi2GetDirectionalDerivative", unknowns, unknown, value) ||
+        !has(c, "fmi2GetDirectionalDerivative", givens, given, change))
+        return fmi2Error;
+    return directional_derivatives(c, unknown, unknowns, given, givens, change, value);
 }
 
 fmi2Status fmi2CancelStep(fmi2Component instance) {

@@ -1,15 +1,12 @@
-/* An instance of the FMU: what it holds, the drilling system behind it, its steps and its states. */
+/* An instance of the FMU: what it holds, and the drilling system behind it. */
 #ifndef BOREPROP_INSTANCE_H
 #define BOREPROP_INSTANCE_H
 
 #include "fmi2Functions.h"
 #include "packed_case.h"
 #include "run.h"
-#include "serialized.h"
 #include "survey_file.h"
 
-enum { FIXED = 10 }; /* numbers of a state before the values of the variables */
-#define MOST_STAIRS 1000.0
 static const char *const KIND[] = {"Real", "Integer", "Boolean", "String"};
 #define TIGHTEST 1e-12 /* tolerance that a host may choose */
 #define LOOSEST 1e-5   /* some choose 1e-3 for every FMU, which is too coarse for a hole */
@@ -32,6 +29,7 @@ typedef struct {
     double derivative[INPUT_COUNT]; /* of the inputs over the next step, 1/s */
     double time, stop;              /* where the last step ended, and where none may end beyond */
     double since, from, rate;       /* since this time, from this drilled length, at this rate of penetration */
+    double weight;                  /* on the bit, the last that drilled; at the start that of the case */
     int run_has_inputs;             /* the run has taken over the present inputs */
     int discarded;                  /* the last step was discarded */
     Run *run;                       /* made when it is first needed */
@@ -92,6 +90,7 @@ static int start_over(Component *c) {
     c->phase = INSTANTIATED, c->outputs = STALE, c->run_has_inputs = c->discarded = 0;
     c->has_warned = c->has_tolerance = 0;
     c->time = c->since = c->from = 0.0, c->rate = -1.0, c->stop = INFINITY;
+    c->weight = c->packed.start[IN_ACTIVE_WEIGHT_ON_BIT];
     memset(c->derivative, 0, sizeof c->derivative);
     memcpy(c->value, c->packed.start, sizeof c->value);
     return 1;
@@ -105,17 +104,28 @@ static void changed(Component *c) {
     c->run = NULL;
 }
 
+/* Whether inputs are those of a bit off bottom, as while a pipe is connected: nothing moves. */
+static int are_off_bottom(const double input[INPUT_COUNT]) {
+    return input[IN_ACTIVE_WEIGHT_ON_BIT] == 0.0 && input[IN_RATE_OF_PENETRATION] == 0.0;
+}
+
+/* What the run is given: without weight there is no ηΠ, and the last one that drilled stands for it. */
+static Inputs present_inputs(const Component *c) {
+    double weight = c->value[IN_ACTIVE_WEIGHT_ON_BIT];
+    Inputs inputs = {c->value[IN_RSS_FORCE], 0.0, weight == 0.0 ? c->weight : weight};
+    return inputs;
+}
+
 /* Make the drilling system; 0 with `why` if that fails. */
 static int begin_drilling(Component *c, char why[LINE]) {
     Survey survey = c->packed.survey;
-    Inputs inputs = {c->value[IN_RSS_FORCE], 0.0, c->value[IN_ACTIVE_WEIGHT_ON_BIT]};
     Problem problem;
     double *numbers = NULL;
     char fault[LINE];
     if (c->survey_file[0] && !(numbers = read_survey(c->survey_file, &survey, fault)))
         return explain(why, "%.*s (survey_file)", LINE - 32, fault);
     c->run = new_run(&c->packed.variables, c->value, why);
-    if (c->run && run_start(c->run, &survey, inputs, &problem) != DONE) {
+    if (c->run && run_start(c->run, &survey, present_inputs(c), &problem) != DONE) {
         tell(&problem, why);
         run_end(c->run);
         c->run = NULL;
@@ -157,25 +167,60 @@ static fmi2Status set_up(Component *c, const double *tolerance, double start, do
     return fmi2OK;
 }
 
-static int check_given(const double input[INPUT_COUNT], Problem *problem) {
+/* Whether inputs are good: 0 with `why` if not. */
+static int check_given(const double input[INPUT_COUNT], char why[LINE]) {
+    Problem problem;
     for (int i = 0; i < INPUT_COUNT; i++)
-        if (!check_quantity(&INPUT_TABLE[i], 0, input[i], problem)) return 0;
+        if (!check_quantity(&INPUT_TABLE[i], 0, input[i], &problem)) {
+            if (i == IN_ACTIVE_WEIGHT_ON_BIT && are_off_bottom(input)) continue;
+            if (input[i] != 0.0) return tell(&problem, why);
+            return explain(why, "active_weight_on_bit: must be > 0 where rate_of_penetration is > 0, got 0.0");
+        }
     return 1;
+}
+
+/* The state of the run, to go back to by `drilling_return`; NULL with `why` if it does not fit into the memory. */
+static double *kept_state(const Drilling *drilling, char why[LINE]) {
+    double *state = malloc((size_t)drilling_state_size(drilling) * sizeof *state);
+    if (state) drilling_save(drilling, state);
+    else explain(why, "step: must fit into the memory");
+    return state;
+}
+
+/* Give the run, where it is, the present inputs; 0 with `why` if that fails. Off bottom for a moment only: `give_back` is
+   to be called next, and it goes on as if it had never stopped. */
+static int take_inputs(Component *c, double **before, char why[LINE]) {
+    Problem problem;
+    *before = NULL;
+    if (!ready(c, why)) return 0;
+    Drilling *drilling = &c->run->drilling;
+    int off_bottom = c->value[IN_ACTIVE_WEIGHT_ON_BIT] == 0.0;
+    if (off_bottom && !(*before = kept_state(drilling, why))) return 0;
+    if (c->run_has_inputs || run_advance(c->run, drilling_length(drilling), present_inputs(c), &problem) == DONE) {
+        c->run_has_inputs = !off_bottom;
+        return 1;
+    }
+    free(*before); /* nothing has moved */
+    *before = NULL;
+    return tell(&problem, why);
+}
+
+static void give_back(Component *c, double *before) {
+    if (before) drilling_return(&c->run->drilling, before);
+    free(before);
 }
 
 /* The outputs of the present hole under the present inputs: 0 with `why` if there are none. */
 static int compute(Component *c, char why[LINE]) {
-    Inputs inputs = {c->value[IN_RSS_FORCE], 0.0, c->value[IN_ACTIVE_WEIGHT_ON_BIT]};
-    double outputs[MOST_OUTPUTS];
+    const Variables *all = &c->packed.variables;
+    double outputs[MOST_OUTPUTS], *before;
     Problem problem;
-    if (!ready(c, why)) return 0;
-    Drilling *drilling = &c->run->drilling;
-    if (!c->run_has_inputs && run_advance(c->run, drilling_length(drilling), inputs, &problem) != DONE)
-        return tell(&problem, why);
-    c->run_has_inputs = 1;
-    int count = drilling_outputs(drilling, outputs);
-    if (!check_outputs(c->packed.variables.n, outputs, &problem)) return tell(&problem, why);
-    memcpy(c->value + c->packed.variables.first_output, outputs, (size_t)count * sizeof *outputs);
+    if (!take_inputs(c, &before, why)) return 0;
+    int count = drilling_outputs(&c->run->drilling, outputs);
+    give_back(c, before);
+    if (!check_outputs(all->n, outputs, &problem)) return tell(&problem, why);
+    memcpy(c->value + all->first_output, outputs, (size_t)count * sizeof *outputs);
+    if (c->value[IN_ACTIVE_WEIGHT_ON_BIT] == 0.0) c->value[all->eta_pi] = 0.0;
     return 1;
 }
 
@@ -187,169 +232,6 @@ static int refreshed(Component *c) {
         if (c->outputs == MISSING) fail(c, fmi2Error, why);
     }
     return c->outputs == FRESH;
-}
-
-/* Drill to a length while the inputs go from their present values to those at its end. The force is linear in the
-   length. The kernel keeps the weight on bit constant over a stretch, so it goes up or down in stairs of equal length,
-   each by a thousandth of its larger value at most. If one stair fails, nothing has moved. */
-static int drill_on(Component *c, double to, const double end[INPUT_COUNT], char why[LINE]) {
-    Drilling *drilling = &c->run->drilling;
-    double from = drilling_length(drilling), force = c->value[IN_RSS_FORCE], weight = c->value[IN_ACTIVE_WEIGHT_ON_BIT];
-    double slope = to > from ? (end[IN_RSS_FORCE] - force) / (to - from) : 0.0,
-           rise = end[IN_ACTIVE_WEIGHT_ON_BIT] - weight;
-    int stairs = to > from ? (int)ceil(MOST_STAIRS * (fabs(rise) / larger(weight, weight + rise))) : 1;
-    int stair = 0, done = 1;
-    Count size = drilling_state_size(drilling);
-    double *before = NULL, accepted = drilling->integrator.now.accepted;
-    Problem problem;
-    if (!check_finite(Q_RSS_FORCE_SLOPE, 0, slope, &problem)) return tell(&problem, why);
-    if (stairs > 1) {
-        before = malloc((size_t)size * sizeof *before);
-        if (!before) return explain(why, "step: must fit into the memory");
-        drilling_save(drilling, before);
-    } else stairs = 1;
-    for (; done && stair < stairs; stair++) {
-        double at = drilling_length(drilling);
-        Inputs inputs = {force + slope * (at - from), slope, weight + rise * (stair + 0.5) / stairs};
-        double next = stair + 1 < stairs ? from + (to - from) * (stair + 1) / stairs : to;
-        done = run_advance(c->run, next, inputs, &problem) == DONE;
-        if (done && drilling->integrator.now.accepted - accepted > USUAL_OPTIONS.most_steps)
-            done = too_many(&drilling->integrator, &problem) == DONE;
-    }
-    if (!done) tell(&problem, why);
-    if (!done && before) drilling_return(drilling, before);
-    free(before);
-    if (done) c->run_has_inputs = rise == 0.0 && (to > from || end[IN_RSS_FORCE] == force);
-    return done;
-}
-
-/* Whether a step may be taken to these inputs at its end, before the run is looked at. */
-static fmi2Status check_step(
-    const Component *c, double time, double size, const double end[INPUT_COUNT], char why[LINE]
-) {
-    double late = c->stop + larger(1e-12 * fabs(c->stop), 1e-3 * size); /* a host may add up rounding errors */
-    Problem problem;
-    if (!check_finite(Q_CURRENT_TIME, 0, time, &problem) || !check_positive(Q_STEP_SIZE, size, &problem)) {
-        tell(&problem, why);
-        return fmi2Discard;
-    }
-    if (fabs(time - c->time) > larger(1e-14 * larger(fabs(time), fabs(c->time)), 1e-9 * size)) { /* hosts add up */
-        char ended[32], got[32];
-        represent(c->time, ended), represent(time, got);
-        explain(why, "current_time: must be %s, where the last step ended, got %s", ended, got);
-        return fmi2Error;
-    }
-    if (time + size > late) {
-        wrong(&problem, TOO_LARGE, Q_STEP_END, 0, time + size, c->stop);
-        tell(&problem, why);
-        return fmi2Error;
-    }
-    int now_good = check_given(c->value, &problem);
-    if (now_good && check_given(end, &problem)) return fmi2OK;
-    tell(&problem, why);
-    if (now_good) strcat(why, " at the end of the step");
-    return fmi2Discard;
-}
-
-/* One communication step. The length counts from an anchor, so that rounding does not add up from step to step. */
-static fmi2Status step(Component *c, double time, double size, char why[LINE]) {
-    double end[INPUT_COUNT], *value = c->value, start_rate = value[IN_RATE_OF_PENETRATION];
-    double since = c->since, from = c->from;
-    Problem problem;
-    for (int i = 0; i < INPUT_COUNT; i++) end[i] = value[i] + c->derivative[i] * size;
-    double *end_rate = &end[IN_RATE_OF_PENETRATION];
-    if (*end_rate < 0.0 && *end_rate > -1e-12 * start_rate) *end_rate = 0.0; /* rounding */
-    fmi2Status status = check_step(c, time, size, end, why);
-    if (status != fmi2OK) return status;
-    if (!ready(c, why)) return fmi2Error;
-    double here = drilling_length(&c->run->drilling);
-    if (start_rate != c->rate || *end_rate != start_rate) since = time, from = here;
-    double length = from + start_rate * (time + size - since) + (*end_rate - start_rate) * size / 2;
-    if (!check_finite(Q_DRILLED_LENGTH, 0, length, &problem)) {
-        tell(&problem, why);
-        return fmi2Discard;
-    }
-    if (!drill_on(c, larger(length, here), end, why)) return fmi2Discard;
-    c->time = time + size, c->since = since, c->from = from;
-    c->rate = *end_rate == start_rate ? start_rate : -1.0; /* a ramp is no anchor */
-    memcpy(value, end, sizeof end);
-    memset(c->derivative, 0, sizeof c->derivative);
-    c->outputs = STALE;
-    return fmi2OK;
-}
-
-/* States */
-
-static fmi2Status save(Component *c, Saved *saved) {
-    Count count = c->run ? drilling_state_size(&c->run->drilling) : 0;
-    const Variables *all = &c->packed.variables;
-    size_t text = strlen(c->survey_file), size = ((size_t)(count + all->count) + FIXED) * 8 + text;
-    unsigned char *bytes = malloc(size), *to = bytes;
-    double *numbers = malloc((size_t)(count + 1) * sizeof *numbers);
-    double fixed[FIXED] = {c->phase,          c->time,          c->since,         c->from,          c->rate,
-                           c->run_has_inputs, c->derivative[0], c->derivative[1], c->derivative[2], (double)text};
-    if (bytes && numbers) {
-        for (int i = 0; i < FIXED; i++) to = put_double(to, fixed[i]);
-        for (int i = 0; i < all->count; i++) to = put_double(to, all->at[i].role == OUTPUT ? 0.0 : c->value[i]);
-        if (c->run) drilling_save(&c->run->drilling, numbers);
-        for (Count i = 0; i < count; i++) to = put_double(to, numbers[i]);
-        memcpy(to, c->survey_file, text);
-        free(saved->bytes);
-        saved->bytes = bytes, saved->size = size;
-    } else free(bytes);
-    free(numbers);
-    return bytes && numbers ? fmi2OK : fail(c, fmi2Error, "state: must fit into the memory");
-}
-
-/* Go back to a state, or keep everything as it is, with `why`. */
-static int restore(Component *c, const Saved *saved, char why[LINE]) {
-    const Variables *all = &c->packed.variables;
-    const unsigned char *from = saved->bytes;
-    size_t size = saved->size, least = (size_t)(FIXED + all->count) * 8;
-    double fixed[FIXED], value[MOST_VARIABLES] = {0};
-    Problem problem;
-    if (size < least) return explain(why, "state: must be one of this FMU, got one of %lu bytes", (unsigned long)size);
-    for (int i = 0; i < FIXED; i++) fixed[i] = get_double(&from);
-    for (int i = 0; i < all->count; i++) value[i] = get_double(&from);
-    double text = fixed[FIXED - 1];
-    int phase = fixed[0] >= 0.0 && fixed[0] <= 8.0 ? (int)fixed[0] : 0;
-    if (!(phase == INSTANTIATED || phase == INITIALIZATION || phase == STEPPING || phase == TERMINATED) ||
-        !(text >= 0.0 && text <= (double)(size - least)) || (size - (size_t)text) % 8)
-        return explain(why, "state: must be one of this FMU, got one with an impossible phase or length");
-    for (int i = 1; i < FIXED; i++)
-        if (!check_finite(Q_STATE, 0, fixed[i], &problem)) return tell(&problem, why);
-    Count count = (Count)((size - least - (size_t)text) / 8);
-    char *survey_file = calloc((size_t)text + 1, 1);
-    double *numbers = malloc((size_t)(count + 1) * sizeof *numbers);
-    Run *run = NULL;
-    if (survey_file && numbers) {
-        for (Count i = 0; i < count; i++) numbers[i] = get_double(&from);
-        memcpy(survey_file, from, (size_t)text);
-        if (!is_utf8(survey_file)) {
-            explain(why, "state: must be one of this FMU, got one with text that is not UTF-8");
-            count = -1;
-        }
-        if (count > 0) run = new_run(all, value, why);
-        if (run && run_restore(run, numbers, count, &problem) != DONE) {
-            tell(&problem, why);
-            run_end(run);
-            run = NULL;
-        }
-    } else explain(why, "state: must fit into the memory");
-    int whole = survey_file && numbers && (run || !count);
-    free(numbers);
-    if (!whole) {
-        free(survey_file);
-        return 0;
-    }
-    run_end(c->run);
-    free(c->survey_file);
-    c->run = run, c->survey_file = survey_file, c->phase = (Phase)phase, c->outputs = STALE, c->discarded = 0;
-    c->time = fixed[1], c->since = fixed[2], c->from = fixed[3], c->rate = fixed[4],
-    c->run_has_inputs = fixed[5] != 0.0;
-    memcpy(c->derivative, fixed + 6, sizeof c->derivative);
-    memcpy(c->value, value, sizeof value);
-    return 1;
 }
 
 #endif

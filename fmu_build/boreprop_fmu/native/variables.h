@@ -10,6 +10,7 @@ typedef struct {
     char name[48];
     Role role;
     Kind kind;
+    int quantity, index; /* in the table of its role; of several of a kind */
 } Variable;
 
 enum { MOST_VARIABLES = INPUT_COUNT + MOST_OUTPUTS + MOST_PARAMETERS + 1 };
@@ -17,34 +18,36 @@ enum { MOST_VARIABLES = INPUT_COUNT + MOST_OUTPUTS + MOST_PARAMETERS + 1 };
 /* All variables by value reference: the inputs, numbered as in INPUT_TABLE, the outputs, the parameters of the kernel,
    and last the survey file. */
 typedef struct {
-    int n, count;                                                       /* stabilizers, variables */
-    int first_output, first_parameter, relative_tolerance, survey_file; /* value references */
+    int n, count;                                                               /* stabilizers, variables */
+    int first_output, first_parameter, eta_pi, relative_tolerance, survey_file; /* value references */
     Variable at[MOST_VARIABLES];
 } Variables;
 
-static void add_variable(Variables *all, Name quantity, Size size, Role role, Kind kind) {
+static void add_variables(Variables *all, int place, Name quantity, Size size, Role role, Kind kind) {
     for (int i = 0; i < value_count(size, all->n); i++) {
         Variable *next = &all->at[all->count++];
         if (size == ONE) snprintf(next->name, sizeof next->name, "%s", NAME[quantity]);
         else snprintf(next->name, sizeof next->name, "%s[%d]", NAME[quantity], i + 1);
-        next->role = role, next->kind = kind;
+        next->role = role, next->kind = kind, next->quantity = place, next->index = i;
     }
 }
 
 /* The variables for n stabilizers, 1 to MAX_STABILIZERS. */
 static void list_variables(Variables *all, int n) {
     all->n = n, all->count = 0;
-    for (int k = 0; k < INPUT_COUNT; k++) add_variable(all, INPUT_TABLE[k].name, INPUT_TABLE[k].size, INPUT, REAL);
+    for (int k = 0; k < INPUT_COUNT; k++) add_variables(all, k, INPUT_TABLE[k].name, INPUT_TABLE[k].size, INPUT, REAL);
     all->first_output = all->count;
-    for (int k = 0; k < OUTPUT_COUNT; k++)
-        add_variable(all, OUTPUT_NAME[k], OUTPUT_SIZE[k], OUTPUT, OUTPUT_IS_WHOLE[k] ? INTEGER : REAL);
+    for (int k = 0; k < OUTPUT_COUNT; k++) {
+        if (k == OUT_ETA_PI) all->eta_pi = all->count;
+        add_variables(all, k, OUTPUT_NAME[k], OUTPUT_SIZE[k], OUTPUT, OUTPUT_IS_WHOLE[k] ? INTEGER : REAL);
+    }
     all->first_parameter = all->count;
     for (int k = 0; k < PARAMETER_COUNT; k++) {
         if (PARAMETER_TABLE[k].name == Q_RELATIVE_TOLERANCE) all->relative_tolerance = all->count;
-        add_variable(all, PARAMETER_TABLE[k].name, PARAMETER_TABLE[k].size, PARAMETER, REAL);
+        add_variables(all, k, PARAMETER_TABLE[k].name, PARAMETER_TABLE[k].size, PARAMETER, REAL);
     }
     all->survey_file = all->count;
-    add_variable(all, Q_SURVEY_FILE, ONE, PARAMETER, STRING);
+    add_variables(all, 0, Q_SURVEY_FILE, ONE, PARAMETER, STRING);
 }
 
 #endif

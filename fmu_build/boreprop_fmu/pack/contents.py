@@ -20,11 +20,16 @@ CAPABILITIES = {
     "canGetAndSetFMUstate": True,
     "canSerializeFMUstate": True,
 }
+NATIVE_CAPABILITIES = {
+    "canInterpolateInputs": True,
+    "maxOutputDerivativeOrder": 1,
+    "providesDirectionalDerivative": True,
+}
 STEP_SIZE = 0.1  # s: 0.1 m at the start value of the rate of penetration, as `simulate` has it
 
 
 def describe(
-    case: Case, identifier: str, guid: str, *, interpolates: bool = False, source_files: Sequence[str] = ()
+    case: Case, identifier: str, guid: str, *, native: bool = False, source_files: Sequence[str] = ()
 ) -> dict[str, bytes]:
     """The description for hosts, and the case file for `read_packed_case`.
 
@@ -36,8 +41,8 @@ def describe(
         The FMU's modelIdentifier.
     guid
         The FMU's identity.
-    interpolates
-        Whether the FMU accepts derivatives of inputs.
+    native
+        Whether the FMU is native, and so takes derivatives of inputs and gives those of outputs.
     source_files
         The files in the folder sources/ that are to be compiled.
     """
@@ -48,7 +53,7 @@ def describe(
         start_values(case),
         stop_time=case.length,
         step_size=STEP_SIZE,
-        capabilities={**CAPABILITIES, "canInterpolateInputs": interpolates},
+        capabilities=CAPABILITIES | (NATIVE_CAPABILITIES if native else {}),
         source_files=source_files,
     )
     return {"modelDescription.xml": description, CASE_FILE: dump_case(case).encode()}

@@ -30,7 +30,7 @@ def model_description(
     *,
     stop_time: float,
     step_size: float,
-    capabilities: Mapping[str, bool],
+    capabilities: Mapping[str, bool | int],
     source_files: Sequence[str] = (),
 ) -> bytes:
     """The XML document.
@@ -109,6 +109,8 @@ def _least(quantity: Quantity, index: int) -> float:
     """The least value that is accepted of the element with this index, from 1 on; −∞ if every value is."""
     if quantity.name == "stabilizer_position":
         return LEAST_SPAN * index
+    if quantity.name == "active_weight_on_bit":
+        return 0.0  # off bottom
     return LEAST_POSITIVE if quantity.above == 0.0 else quantity.at_least
 
 

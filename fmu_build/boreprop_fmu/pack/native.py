@@ -31,7 +31,7 @@ def pack_native(case: Case, identifier: str, binaries: Path) -> dict[str, bytes]
     code = pack_sources(identifier)
 
     def numbers(guid: str) -> dict[str, bytes]:
-        description = describe(case, identifier, guid, interpolates=True, source_files=[SOURCE.name])
+        description = describe(case, identifier, guid, native=True, source_files=[SOURCE.name])
         return {**description, CASE_TEXT: case_text(case, guid)}
 
     guid = identify({**code, **numbers(guid="")})

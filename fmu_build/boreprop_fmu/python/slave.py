@@ -58,6 +58,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         self._survey = Survey(**{name: tuple(values) for name, values in packed["survey"].items()})
         self._scalars = [(name, quantity) for quantity in VARIABLES for name in quantity.names(self._n)]
         self._given: dict[str, Any] = packed["start"]  # inputs and parameters
+        self._weight: float = self._given["active_weight_on_bit"]  # the last that drilled, N
         self._chosen: set[str] = set()  # those of them that have been set
         self._outputs = self._nothing()
         self._stale = True  # the outputs are not those of the present hole under the present inputs
@@ -174,7 +175,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
             BottomHoleAssembly(**fields_of("bha", given, self._n)),
             BitRock(**fields_of("bit", given, self._n)),
             survey,
-            active_weight_on_bit=given["active_weight_on_bit"],
+            active_weight_on_bit=given["active_weight_on_bit"] or self._weight,
             rss_force=given["rss_force"],
             options=Options(given["relative_tolerance"]),
         )
@@ -199,9 +200,6 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
             self._drilling = self._build(self._read_survey())
         return self._drilling
 
-    def _advance(self, drilling: Drilling, drilled_length: float) -> None:
-        drilling.advance(drilled_length, self._given["rss_force"], self._given["active_weight_on_bit"])
-
     def _check_step(self, current_time: float, step_size: float) -> None:
         """Raise unless the step begins where the last one ended, and ends by the stop time."""
         if self._phase != STEPPING:
@@ -218,21 +216,36 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
 
     def _step(self, current_time: float, step_size: float) -> None:
         self._check_step(current_time, step_size)
-        rate, anchor = self._given["rate_of_penetration"], self._anchor
+        given, anchor = self._given, self._anchor
+        rate, weight = given["rate_of_penetration"], given["active_weight_on_bit"]
         check_quantity("rate_of_penetration", rate)
+        if weight == 0.0 and rate > 0.0:
+            raise ParameterError("active_weight_on_bit", "must be > 0 where rate_of_penetration is > 0", weight)
         drilling = self._ready()
         if rate != anchor[2]:
             anchor = (current_time, drilling.drilled_length, rate)
         # from the anchor, so that rounding does not add up from step to step
-        drilled_length = anchor[1] + rate * (current_time + step_size - anchor[0])
-        self._advance(drilling, max(drilled_length, drilling.drilled_length))
-        self._time, self._anchor, self._stale = current_time + step_size, anchor, True
+        drilled_length = max(anchor[1] + rate * (current_time + step_size - anchor[0]), drilling.drilled_length)
+        if weight != 0.0:  # else off bottom, as while a pipe is connected: nothing moves
+            if drilled_length > drilling.drilled_length:
+                self._weight = weight
+            drilling.advance(drilled_length, given["rss_force"], weight)
+            self._stale = True
+        self._time, self._anchor = current_time + step_size, anchor
 
     def _refresh(self) -> None:
-        """Outputs of the present hole under the present inputs."""
-        drilling = self._ready()
-        self._advance(drilling, drilling.drilled_length)
+        """Outputs of the present hole under the present inputs.
+
+        Off bottom they are those of the last weight that drilled, but for ηΠ, and only looked at: the run goes on as if
+        it had never stopped.
+        """
+        drilling, force, weight = self._ready(), self._given["rss_force"], self._given["active_weight_on_bit"]
+        before = None if weight else drilling.save()
+        drilling.advance(drilling.drilled_length, force, weight or self._weight)
         self._outputs = drilling.outputs()
+        if before:
+            drilling.restore(before)
+            self._outputs["eta_pi"] = 0.0
         self._stale = False
 
     def _scalar(self, reference: int, kind: str) -> tuple[str, Quantity]:
@@ -281,6 +294,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
     def _save(self) -> bytes:
         state = {
             "given": self._given,
+            "weight": self._weight,
             "phase": self._phase,
             "fault": self._fault,
             "refused": self._refused,
@@ -298,7 +312,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         if sealed != self._seal(state_bytes):
             raise SlaveError(f"state: must be one of this FMU, {STATE_FORMAT} {self.guid}, got {sealed[:80]!r}")
         state = json.loads(state_bytes)
-        self._given = state["given"]
+        self._given, self._weight = state["given"], state["weight"]
         self._phase, self._fault, self._refused = state["phase"], state["fault"], state["refused"]
         self._outputs, self._stale = self._nothing(), True
         self._time, self._anchor = state["time"], tuple(state["anchor"])

@@ -82,7 +82,7 @@ static const Quantity PARAMETER_TABLE[PARAMETER_COUNT] = {{
 {parameter_table}
 }};
 
-enum {{ {input_names} }};
+typedef enum {{ {input_names} }} Input;
 static const Quantity INPUT_TABLE[INPUT_COUNT] = {{
 {input_table}
 }};

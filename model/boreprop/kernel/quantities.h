@@ -8,7 +8,7 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "faa5648992a5329c" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "a3e7fddf53cadf31" /* of this file, but for this line, and of problems.h */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: between closer ones the force is rounding */
 
 enum { MAX_STABILIZERS = 6, PARAMETER_COUNT = 9, INPUT_COUNT = 3, OUTPUT_COUNT = 15 };
@@ -57,7 +57,7 @@ static const Quantity PARAMETER_TABLE[PARAMETER_COUNT] = {
     {Q_RELATIVE_TOLERANCE, ONE, offsetof(System, relative_tolerance), -INFINITY, 1e-12, 0.01},
 };
 
-enum { IN_RSS_FORCE, IN_ACTIVE_WEIGHT_ON_BIT, IN_RATE_OF_PENETRATION };
+typedef enum { IN_RSS_FORCE, IN_ACTIVE_WEIGHT_ON_BIT, IN_RATE_OF_PENETRATION } Input;
 static const Quantity INPUT_TABLE[INPUT_COUNT] = {
     {Q_RSS_FORCE, ONE, 0, -INFINITY, -INFINITY, INFINITY},
     {Q_ACTIVE_WEIGHT_ON_BIT, ONE, 0, 0.0, -INFINITY, INFINITY},
