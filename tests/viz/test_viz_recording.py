@@ -338,10 +338,10 @@ def test_the_command_runs_a_case_file(command: Command, paper_text: str, tmp_pat
     ],
 )
 def test_bad_input_is_one_line_and_leaves_no_file(
-    command: Command, run: Trajectory, tmp_path: Path, arguments: list[str], error: str
+    command_here: Command, run: Trajectory, tmp_path: Path, arguments: list[str], error: str
 ) -> None:
     write_trajectory(replace(run, case=None), tmp_path / "run.csv")
-    done = command("boreprop-view", *arguments)
+    done = command_here("boreprop-view", *arguments)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith(f"error: {error}")
     assert done.stderr.count("\n") == 1
