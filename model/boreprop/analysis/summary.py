@@ -97,15 +97,15 @@ def sum_up(trajectory: Trajectory, rippling: Rippling) -> Summary:
     length = trajectory["drilled_length"]
     over = averaging_length(case.bha, rippling)
     inclination = mean_inclination(trajectory, case.survey, over)
-    drilled = float(length[-1] - length[0])
-    weights = np.convolve(np.diff(length), (0.5, 0.5)) / drilled
+    weights = np.convolve(np.diff(length), (0.5, 0.5))  # half of what is drilled before a row and after it
 
     def share(happens: NDArray[np.bool_]) -> float:
-        return float(weights @ happens)
+        return float(weights[happens].sum() / weights.sum())
 
     later = length + BUILD_LENGTH
     drilled_by_then = slice(int(np.searchsorted(later, length[-1], side="right")))
     rates = (np.interp(later[drilled_by_then], length, inclination) - inclination[drilled_by_then]) / BUILD_LENGTH
+    drilled = float(length[-1] - length[0])
     return Summary(
         drilled_length=drilled,
         averaging_length=over,

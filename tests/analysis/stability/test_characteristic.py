@@ -123,7 +123,7 @@ def test_the_crossings_account_for_every_unstable_root(
     assert unstable_roots(characteristic, np.array([eta_pi]))[0][0] == mode.unstable(eta_pi, mode.top(eta_pi))
 
 
-def test_zeros_are_found_to_rounding_where_a_chord_alone_creeps() -> None:
+def test_zeros_are_found_to_rounding_where_secants_alone_creep() -> None:
     """The cube is so flat at one end that false position without halving would need thousands of steps."""
     cubes = np.array([1e-6, 1.0, 8.0, 1e6])
     roots, none = np.cbrt(cubes), np.zeros(4)

@@ -37,7 +37,7 @@ SAMPLES = 36  # samples in a period of e^{−iωs} at the last stabilizer, the f
 LOW = np.logspace(-7.0, -0.2, 48)  # further samples at low frequency, over the spacing of the others
 PARTS = 8  # an interval between two samples in which crossings may hide is divided into this many
 REFINEMENTS = 5  # such divisions, at most
-MOST_CHORDS = 50  # steps of false position; it takes about ten
+MOST_SECANTS = 50  # steps of false position; it takes about ten
 CONVERGED = 1e-15  # of ω: a step of rounding errors
 IS_A_ROOT = 1e-11  # |P| over the sum of the moduli of its terms: below it P is zero to rounding
 
@@ -325,7 +325,7 @@ def zero_between(function: Callable[[Floats], Floats], a: Floats, b: Floats) -> 
     end stays. SciPy's find_root takes as many steps but twice the time, and a quarter of a second to load.
     """
     f_a, f_b = function(a), function(b)
-    for _ in range(MOST_CHORDS):
+    for _ in range(MOST_SECANTS):
         step = np.divide(f_b * (b - a), f_b - f_a, out=np.zeros_like(b), where=f_b != 0)
         c = b - step
         f_c = function(c)
