@@ -78,8 +78,7 @@ def test_the_sources_compile_without_a_warning_against_the_headers_of_an_importe
     sources = unpacked(case, tmp_path)
     assert not list(sources.glob("fmi2*.h"))
     flags = ["-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", f"-I{FMI_HEADERS}"]
-    command = [str(COMPILER), *flags, sources / "fmi2.c", "-lm", "-o", tmp_path / "Borehole.so"]
-    subprocess.run(command, check=True)
+    subprocess.run([str(COMPILER), *flags, sources / "fmi2.c", "-lm", "-o", tmp_path / "Borehole.so"], check=True)
 
 
 BOTH = """
@@ -117,7 +116,7 @@ def test_the_name_is_that_of_the_model_and_of_its_binaries(case: Case, binaries:
     ],
 )
 def test_a_flavour_and_a_name_that_cannot_be_are_refused(
-    case: Case, tmp_path: Path, arguments: dict[str, str], message: str
+    case: Case, tmp_path: Path, arguments: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(InputError, match=message):
         build_fmu(case, tmp_path / "Borehole.fmu", **arguments)
