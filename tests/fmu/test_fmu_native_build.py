@@ -3,6 +3,7 @@
 import subprocess
 import zipfile
 from collections import deque
+from ctypes import CDLL
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -97,6 +98,13 @@ def test_two_fmus_link_into_one_program(case: Case, tmp_path: Path) -> None:
         subprocess.run([str(COMPILER), "-c", f"-I{NATIVE / 'importer'}", source, "-o", objects[-1]], check=True)
     subprocess.run([str(COMPILER), tmp_path / "both.c", *objects, "-lm", "-o", tmp_path / "both"], check=True)
     assert subprocess.run([tmp_path / "both"], check=True, capture_output=True, text=True).stdout == "2.0 2.0\n"
+
+
+def test_a_shared_library_of_the_sources_has_the_plain_names(case: Case, tmp_path: Path) -> None:
+    source, library = unpacked(case, tmp_path) / "fmi2.c", tmp_path / "plain.so"
+    flags = ["-shared", "-fPIC", f"-I{NATIVE / 'importer'}", "-DFMI2_FUNCTION_PREFIX="]  # as the FMU's page has it
+    subprocess.run([str(COMPILER), *flags, source, "-lm", "-o", library], check=True)
+    assert CDLL(str(library)).fmi2GetVersion
 
 
 def test_the_name_is_that_of_the_model_and_of_its_binaries(case: Case, binaries: Path, tmp_path: Path) -> None:
