@@ -13,7 +13,7 @@ import pytest
 from test_fmu_c_host import COMPILER
 
 from boreprop.case.case import Case
-from boreprop.core.quantities import VARIABLES, scalar_names
+from boreprop.core.quantities import BY_NAME, VARIABLES, scalar_names
 from boreprop.core.system import BottomHoleAssembly
 from boreprop.errors import InputError
 from boreprop.kernel.compiler import host_platform
@@ -63,7 +63,7 @@ def test_both_flavours_describe_themselves_alike(case: Case, pack: Pack, borehol
 def test_the_table_is_in_the_order_that_the_c_code_counts_on() -> None:
     roles = [variable.role for variable in VARIABLES]
     assert roles == sorted(roles, key=("input", "output", "parameter").index)
-    assert [variable.name for variable in VARIABLES if variable.kind == "String"] == ["survey_file"]
+    assert [variable for variable in VARIABLES if variable.kind == "String"] == [BY_NAME["survey_file"]] == [VARIABLES[-1]]
     assert not any(variable.kind == "Integer" and variable.role != "output" for variable in VARIABLES)
 
 
@@ -144,7 +144,7 @@ def test_a_binary_of_other_sources_is_refused(case: Case, binaries: Path, tmp_pa
     path = binary_path(str(host_platform()), tmp_path)
     path.parent.mkdir()
     path.write_bytes(binary_path(str(host_platform()), binaries).read_bytes().replace(digest().encode(), b"0" * 16))
-    with pytest.raises(InputError, match=r"got one that is not; compile it: python -m boreprop_fmu\.native all"):
+    with pytest.raises(InputError, match=r"got one of others; compile it again: python -m boreprop_fmu\.native"):
         build_fmu(case, tmp_path / "a.fmu", binaries=tmp_path)
     assert not (tmp_path / "a.fmu").exists()
 
