@@ -1,6 +1,6 @@
-"""Compiles the kernel while the package is built, if there is something to compile it with; without it all goes on."""
+"""Compiles the kernel and the native FMU while the package is built, if it can; without a compiler all goes on."""
 
-from importlib.util import module_from_spec, spec_from_file_location
+import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -9,28 +9,31 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 from packaging.tags import platform_tags
 
 
-class KernelHook(BuildHookInterface[Any]):
-    """An editable installation has the library beside its sources, a wheel in itself."""
+class CompilingHook(BuildHookInterface[Any]):
+    """An editable installation has the libraries beside their sources, a wheel in itself."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Compile, and say so; what then has the library in it is a wheel for this platform only."""
-        spec = spec_from_file_location("compiler", Path(self.root, "model", "boreprop", "kernel", "compiler.py"))
-        assert spec
-        assert spec.loader
-        compiler = module_from_spec(spec)
-        spec.loader.exec_module(compiler)
+        sys.path[:0] = [str(Path(self.root, folder)) for folder in ("model", "fmu_build")]
+        from boreprop.kernel.compiler import CompilerError, build_library, library_path
+        from boreprop_fmu.native.binaries import BINARIES, build_binaries
+
         self.folder = TemporaryDirectory()
-        library = compiler.library_path()
-        if version != "editable":
-            library = Path(self.folder.name, library.name)
+        editable = version == "editable"
+        folder = Path(self.folder.name)
+        made = {}
         try:
-            compiler.build_library(library)
-        except (compiler.CompilerError, OSError) as error:
-            self.app.display_warning(f"The kernel is not compiled, Python does all: {error}")
-            return
-        self.app.display_info(f"The kernel is compiled: {library.name}")
-        if version != "editable":
-            build_data["force_include"][str(library)] = f"boreprop/kernel/{library.name}"
+            library = build_library(library_path() if editable else folder / library_path().name)
+            made[str(library)] = f"boreprop/kernel/{library.name}"
+            self.app.display_info(f"The kernel is compiled: {library.name}")
+            for binary in build_binaries(folder=BINARIES if editable else folder):
+                made[str(binary)] = f"boreprop_fmu/binaries/{binary.parent.name}/{binary.name}"
+                self.app.display_info(f"The native FMU is compiled: {binary.parent.name}")
+        except (CompilerError, OSError) as error:
+            what = "native FMU is not compiled, FMUs need Python" if made else "kernel is not compiled, Python does all"
+            self.app.display_warning(f"The {what}: {error}")
+        if made and not editable:
+            build_data["force_include"] |= made
             build_data["pure_python"] = False
             platform = next(tag for tag in platform_tags() if not tag.startswith(("manylinux", "musllinux")))
             build_data["tag"] = f"py3-none-{platform}"

@@ -49,7 +49,7 @@ def build(folder: Path) -> dict[str, Path]:
     from boreprop.case.file import load_case
     from boreprop_fmu.pack.build import build_fmu
 
-    fmus = {"Borehole": build_fmu(load_case(CASE), folder / "Borehole.fmu")}
+    fmus = {"Borehole": build_fmu(load_case(CASE), folder / "Borehole.fmu", runtime="python")}
     for name, body in BODIES.items():
         script = folder / f"{name.lower()}.py"
         script.write_text(SLAVE.format(name=name, body=body))

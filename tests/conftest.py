@@ -16,9 +16,9 @@ from hypothesis.internal.conjecture import providers
 
 from boreprop.case.case import Case
 from boreprop.case.file import load_case
-from boreprop.errors import InputError
 from boreprop.kernel import binding
-from boreprop.kernel.compiler import NoCompilerError, build_library
+from boreprop.kernel.compiler import NoCompilerError, build_library, host_platform
+from boreprop_fmu.native.binaries import BINARIES, binary_path, build_binaries, compile_binary, is_current
 from boreprop_fmu.pack.build import build_fmu
 from flavours import NATIVE, PYTHON, Flavour
 from places import EXAMPLES
@@ -45,9 +45,7 @@ Pack = Callable[[Case, Flavour], Path]
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption(
-        "--compiler", help="what compiles native FMUs, see build_fmu: ziglang, or own, which obeys $CFLAGS"
-    )
+    parser.addoption("--own-compiler", action="store_true", help="native FMUs by this machine's compiler with $CFLAGS")
 
 
 @pytest.fixture(scope="session")
@@ -96,10 +94,28 @@ def flavour(request: pytest.FixtureRequest) -> Flavour:
 
 
 @pytest.fixture(scope="session")
+def binaries(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of the binaries of native FMUs, with that for this machine from the sources as they are now."""
+    host = host_platform()
+    if host is None:
+        pytest.skip("no FMU has a binary for this machine")
+    if request.config.getoption("--own-compiler"):
+        folder = tmp_path_factory.mktemp("binaries")
+        compile_binary(binary_path(host, folder), None)
+        return folder
+    binary = binary_path(host)
+    if not binary.exists() or not is_current(binary.read_bytes()):
+        try:
+            list(build_binaries())
+        except NoCompilerError as error:
+            pytest.skip(str(error))
+    return BINARIES
+
+
+@pytest.fixture(scope="session")
 def pack(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Pack:
     """The FMU of a case, built once: ``pack(case, flavour)``. Without a compiler tests of native ones are skipped."""
 
-    compiler = request.config.getoption("--compiler")
     folder = tmp_path_factory.getbasetemp()
     if "PYTEST_XDIST_WORKER" in os.environ:
         folder = folder.parent  # the workers share what they build
@@ -109,12 +125,8 @@ def pack(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
         fmu = folder / f"{flavour}_{digest}" / "Borehole.fmu"
         if not fmu.exists():
             fmu.parent.mkdir(exist_ok=True)
-            try:
-                build_fmu(case, fmu, runtime=flavour.runtime, compiler=compiler if flavour is NATIVE else None)
-            except InputError as error:
-                if "must be installed to compile" in str(error):
-                    pytest.skip(str(error))
-                raise
+            binaries = request.getfixturevalue("binaries") if flavour is NATIVE else BINARIES
+            build_fmu(case, fmu, runtime=flavour.runtime, binaries=binaries)
         return fmu
 
     return packed

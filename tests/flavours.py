@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -18,8 +17,8 @@ class Flavour:
     ----------
     runtime
         Its name, for `build_fmu`.
-    to_read
-        What `build_fmu` is told for one that is not to run.
+    error, discard
+        Status and category of what it logs when a call ends so.
     wrong_call
         Status of a call that cannot be right: a reference that there is not, a state of another FMU.
     under_bad_input
@@ -41,7 +40,8 @@ class Flavour:
     """
 
     runtime: str
-    to_read: dict[str, Any]
+    error: tuple[int, str]
+    discard: tuple[int, str]
     wrong_call: str
     under_bad_input: str
     without_system: tuple[str, str]
@@ -58,7 +58,8 @@ class Flavour:
 
 PYTHON = Flavour(
     runtime="python",
-    to_read={"runtime": "python"},
+    error=(3, "logStatusError"),
+    discard=(3, "logStatusError"),
     wrong_call="ok",  # pythonfmu would make fmi2Fatal of any other answer: the log says it, and the next step
     under_bad_input="kept",
     without_system=("ok", "discard"),
@@ -71,14 +72,15 @@ PYTHON = Flavour(
 )
 NATIVE = Flavour(
     runtime="native",
-    to_read={"runtime": "native", "platforms": ()},
+    error=(3, "logStatusError"),
+    discard=(2, "logStatusDiscard"),
     wrong_call="error",
     under_bad_input="unknown",
     without_system=("error", "error"),
     after_bad_state=("ok", "kept"),
     modules="none",
     leak=1e5,
-    numbers="sources/case.h",
+    numbers="resources/case.txt",
     interpolates=True,
     any_folder=True,
 )
@@ -87,5 +89,5 @@ both_flavours = pytest.mark.parametrize("flavour", [PYTHON, NATIVE], ids=str, in
 
 
 def build_to_read(case: Case, output: Path, flavour: Flavour) -> Path:
-    """An FMU that is not to run: nothing is compiled for it."""
-    return build_fmu(case, output, **flavour.to_read)
+    """An FMU that is not to run: a native one has no binaries."""
+    return build_fmu(case, output, runtime=flavour.runtime, binaries=output.parent)

@@ -3,13 +3,13 @@
 import subprocess
 import zipfile
 from collections import deque
+from ctypes import CDLL
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import canonicalize, fromstring, tostring
 
 import pytest
-from fmpy.validation import validate_fmu
 from test_fmu_c_host import COMPILER
 
 from boreprop.case.case import Case
@@ -19,10 +19,19 @@ from boreprop.errors import InputError
 from boreprop.kernel.compiler import host_platform
 from boreprop_fmu.host.drive import drive
 from boreprop_fmu.host.instance import open_instance, read_description
+from boreprop_fmu.native.binaries import (
+    NATIVE,
+    PLATFORMS,
+    binary_path,
+    build_binaries,
+    build_binary,
+    digest,
+    is_current,
+)
 from boreprop_fmu.pack.build import build_fmu
-from boreprop_fmu.pack.native import FMI_HEADERS
 from conftest import Pack
 from flavours import PYTHON
+from places import FMI_HEADERS
 
 pytestmark = pytest.mark.skipif(COMPILER is None, reason="no C compiler")
 
@@ -54,53 +63,68 @@ def test_both_flavours_describe_themselves_alike(case: Case, pack: Pack, borehol
 def test_the_table_is_in_the_order_that_the_c_code_counts_on() -> None:
     roles = [variable.role for variable in VARIABLES]
     assert roles == sorted(roles, key=("input", "output", "parameter").index)
-    assert [variable.name for variable in VARIABLES if variable.kind == "String"] == ["survey_file"]
+    assert [variable for variable in VARIABLES if variable.kind == "String"] == [VARIABLES[-1]]
+    assert VARIABLES[-1].name == "survey_file"
     assert not any(variable.kind == "Integer" and variable.role != "output" for variable in VARIABLES)
 
 
-@pytest.mark.parametrize("n", [1, 2, 6])
-def test_the_sources_are_valid_and_compile_without_a_warning(case: Case, tmp_path: Path, n: int) -> None:
-    path = build_fmu(replace(case, bha=stacked(n)), tmp_path / "Borehole.fmu", runtime="native", platforms=())
-    assert validate_fmu(str(path)) == []
-    with zipfile.ZipFile(path) as archive:
-        archive.extractall(tmp_path)
-    command = [
-        str(COMPILER),
-        "-Wall",
-        "-Wextra",
-        "-Werror",
-        "-shared",
-        "-fPIC",
-        "-I",
-        "sources",
-        "sources/fmi2.c",
-        "-lm",
-    ]
-    subprocess.run([*command, "-o", "Borehole.so"], cwd=tmp_path, check=True)
+def unpacked(case: Case, folder: Path, name: str = "Borehole") -> Path:
+    """The sources of its FMU."""
+    fmu = build_fmu(case, folder / f"{name}.fmu", runtime="native", name=name, binaries=folder)
+    with zipfile.ZipFile(fmu) as archive:
+        archive.extractall(folder / name)
+    return folder / name / "sources"
 
 
-def test_the_headers_of_fmi_are_those_of_the_installed_package(borehole: Path) -> None:
-    packed = contents(borehole)
-    assert all(b"Modelica Association" in packed[f"sources/{name}"] for name in FMI_HEADERS)
-    folder = Path(build_fmu.__code__.co_filename).parent
-    assert not any(folder.rglob("fmi2Functions.h"))
+def test_the_sources_compile_without_a_warning_against_the_headers_of_an_importer(case: Case, tmp_path: Path) -> None:
+    sources = unpacked(case, tmp_path)
+    assert not list(sources.glob("fmi2*.h"))
+    flags = ["-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", f"-I{FMI_HEADERS}"]
+    subprocess.run([str(COMPILER), *flags, sources / "fmi2.c", "-lm", "-o", tmp_path / "Borehole.so"], check=True)
+
+
+BOTH = """
+#include <stdio.h>
+const char *First_fmi2GetVersion(void), *Second_fmi2GetVersion(void);
+int main(void) { printf("%s %s\\n", First_fmi2GetVersion(), Second_fmi2GetVersion()); }
+"""
+
+
+def test_two_fmus_link_into_one_program(case: Case, tmp_path: Path) -> None:
+    (tmp_path / "both.c").write_text(BOTH)
+    objects = []
+    for name, which in (("First", case), ("Second", replace(case, bha=stacked(3)))):
+        source = unpacked(which, tmp_path, name) / "fmi2.c"
+        objects.append(tmp_path / f"{name}.o")
+        subprocess.run([str(COMPILER), "-c", f"-I{NATIVE / 'importer'}", source, "-o", objects[-1]], check=True)
+    subprocess.run([str(COMPILER), tmp_path / "both.c", *objects, "-lm", "-o", tmp_path / "both"], check=True)
+    assert subprocess.run([tmp_path / "both"], check=True, capture_output=True, text=True).stdout == "2.0 2.0\n"
+
+
+def test_a_shared_library_of_the_sources_has_the_plain_names(case: Case, tmp_path: Path) -> None:
+    source, library = unpacked(case, tmp_path) / "fmi2.c", tmp_path / "plain.so"
+    flags = ["-shared", "-fPIC", f"-I{NATIVE / 'importer'}", "-DFMI2_FUNCTION_PREFIX="]  # as the FMU's page has it
+    subprocess.run([str(COMPILER), *flags, source, "-lm", "-o", library], check=True)
+    assert CDLL(str(library)).fmi2GetVersion
+
+
+def test_the_name_is_that_of_the_model_and_of_its_binaries(case: Case, binaries: Path, tmp_path: Path) -> None:
+    fmu = build_fmu(case, tmp_path / "a.fmu", name="Well_7", binaries=binaries)
+    description = read_description(fmu)
+    assert description.coSimulation.modelIdentifier == "Well_7"
+    assert drive(fmu, step=10.0, stop=20.0)["drilled_length"][-1] == 20.0
 
 
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"runtime": "java"}, "runtime: must be python or native, got 'java'"),
-        ({"platforms": ["linux64"]}, "platforms: must be left out for the runtime python, got linux64"),
-        ({"runtime": "native", "platforms": ["linux64", "amiga"]}, "platforms: must be among linux64, .*, got 'amiga'"),
-        ({"compiler": "own"}, "compiler: must be left out for the runtime python, got 'own'"),
-        ({"runtime": "native", "compiler": "gcc"}, "compiler: must be ziglang or own, got 'gcc'"),
-        (
-            {"runtime": "native", "compiler": "own", "platforms": ["win64"]},
-            "platforms: must be left out for this machine's own compiler, got win64",
-        ),
+        ({"runtime": "java"}, "runtime: must be auto or native or python, got 'java'"),
+        ({"name": "Well 7"}, "name: must be a letter, then letters, digits and _, at most 100, got 'Well 7'"),
+        ({"name": "7"}, "name: must be a letter, "),
+        ({"name": ""}, "name: must be a letter, "),
     ],
 )
-def test_a_flavour_that_there_is_not_is_refused(
+def test_a_flavour_and_a_name_that_cannot_be_are_refused(
     case: Case, tmp_path: Path, arguments: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(InputError, match=message):
@@ -108,46 +132,49 @@ def test_a_flavour_that_there_is_not_is_refused(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_the_command_says_what_is_inside(command: Any, paper_case: Path, tmp_path: Path) -> None:
-    arguments = ["--output", "Borehole.fmu", "--runtime", "native", "--platforms", "none"]
-    done = command("boreprop-fmu", "build", paper_case, *arguments)
+def is_native(fmu: Path) -> bool:
+    return "resources/case.txt" in contents(fmu)
+
+
+def test_it_is_native_where_there_is_a_binary_for_this_machine(case: Case, binaries: Path, tmp_path: Path) -> None:
+    assert is_native(build_fmu(case, tmp_path / "a.fmu", binaries=binaries))
+    assert not is_native(build_fmu(case, tmp_path / "b.fmu", binaries=tmp_path))
+
+
+def test_a_binary_of_other_sources_is_refused(case: Case, binaries: Path, tmp_path: Path) -> None:
+    path = binary_path(str(host_platform()), tmp_path)
+    path.parent.mkdir()
+    path.write_bytes(binary_path(str(host_platform()), binaries).read_bytes().replace(digest().encode(), b"0" * 16))
+    with pytest.raises(InputError, match=r"got one of others; compile it again: python -m boreprop_fmu\.native"):
+        build_fmu(case, tmp_path / "a.fmu", binaries=tmp_path)
+    assert not (tmp_path / "a.fmu").exists()
+
+
+def test_the_command_says_what_is_inside_and_what_is_not(binaries: Path, command: Any, paper_case: Path) -> None:
+    done = command("boreprop-fmu", "build", paper_case, "--output", "Borehole.fmu", "--name", "Well")
     assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith("Borehole.fmu: 0.0")
-    assert done.stdout.endswith(" MB, native: C sources\n")
+    first, *more = done.stdout.splitlines()
+    assert first.startswith("Borehole.fmu: 0.")
+    assert " MB, native: " in first
+    assert first.endswith(", C sources")
+    inside, missing = first, more[0] if more else ""
+    assert all((platform in inside) != (platform in missing.partition(":")[0]) for platform in PLATFORMS)
 
 
-def test_the_compiler_of_this_machine_may_be_asked_for(
-    case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("CC", str(COMPILER))
-    monkeypatch.setenv("CFLAGS", "-Dnext_character=compiled_here")
-    build_fmu(case, tmp_path / "Borehole.fmu", runtime="native", compiler="own")
-    binary = contents(tmp_path / "Borehole.fmu")[f"binaries/{host_platform()}/Borehole.so"]
-    assert b"compiled_here" in binary
-
-
-def test_a_compiler_that_fails_is_not_replaced_by_another(
-    case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_two_compilations_give_the_same_bytes(binaries: Path, tmp_path: Path) -> None:
     pytest.importorskip("ziglang")
-    (tmp_path / "taken").write_text("a file where zig wants a folder")
-    monkeypatch.setenv("ZIG_GLOBAL_CACHE_DIR", str(tmp_path / "taken"))
-    with pytest.raises(InputError, match=r"fmi2\.c: must compile with zig, got: "):
-        build_fmu(case, tmp_path / "Borehole.fmu", runtime="native")
-    assert [path.name for path in tmp_path.iterdir()] == ["taken"]
+    platform = str(host_platform())
+    once, again = (build_binary(platform, tmp_path / name).read_bytes() for name in ("a", "b"))
+    assert once == again
 
 
-@pytest.mark.slow
-def test_binaries_for_other_platforms_are_what_their_folders_say(case: Case, tmp_path: Path) -> None:
-    pytest.importorskip("ziglang")
-    done: list[float] = []
-    machines = {"linux64": 0x3E, "aarch64-linux": 0xB7}  # e_machine of ELF
-    fmu = tmp_path / "Borehole.fmu"
-    build_fmu(case, fmu, runtime="native", platforms=list(machines), progress=done.append)
-    for platform, machine in machines.items():
-        binary = contents(fmu)[f"binaries/{platform}/Borehole.so"]
-        assert (binary[:4], int.from_bytes(binary[18:20], "little")) == (b"\x7fELF", machine)
-    assert done == [1, 2]
+def test_compiling_takes_away_what_is_of_other_sources(tmp_path: Path) -> None:
+    stale = binary_path("win64", tmp_path)
+    stale.parent.mkdir()
+    stale.write_bytes(b"boreprop-fmu-sources-0123456789abcdef")
+    [made] = build_binaries(folder=tmp_path)
+    assert is_current(made.read_bytes())
+    assert not stale.exists()
 
 
 def test_a_folder_of_any_name_will_do(borehole: Path, command: Any, tmp_path: Path, monkeypatch: Any) -> None:
@@ -162,7 +189,8 @@ def test_on_arm_the_binary_for_arm_is_run(borehole: Path, tmp_path: Path) -> Non
     moved = tmp_path / "Borehole.fmu"
     with zipfile.ZipFile(moved, "w") as archive:
         for name, content in contents(borehole).items():
-            archive.writestr(name.replace("linux64", "aarch64-linux"), content)
+            if not name.startswith("binaries") or "linux64" in name:
+                archive.writestr(name.replace("linux64", "aarch64-linux"), content)
     with pytest.raises(InputError, match="must load on this machine, got: Cannot find shared library"):
         drive(moved, step=10.0)
     here = open_instance(moved, read_description(moved), deque(), start=0.0, stop=1.0, platform="aarch64-linux")

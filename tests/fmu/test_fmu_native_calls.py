@@ -119,22 +119,51 @@ def test_bad_parameters_are_an_error_until_a_reset(one: Instance) -> None:
     assert one.initialize().step(1.0) == "ok"
 
 
-def test_only_what_is_wanted_is_logged(one: Instance) -> None:
-    def lines() -> int:
+def test_errors_are_logged_always_and_discards_where_they_are_wanted(one: Instance) -> None:
+    def logged() -> list[str]:
         one.log.clear()
         with pytest.raises(FMICallException):
             one.slave.getReal([99])
-        return len(one.log)
+        assert one.step(nan) == "discard"
+        return [category for _, category, _ in one.log]
 
-    assert lines() == 1
-    one.slave.setDebugLogging(False, [])
-    assert lines() == 0
-    one.slave.setDebugLogging(True, ["logStatusError"])
-    assert lines() == 1
-    with refused(one, "category: must be logStatusError, got 'logEvents'"):
+    one.initialize()
+    both = ["logStatusError", "logStatusDiscard"]
+    assert logged() == both
+    for on, categories, expected in (
+        (False, [], both[:1]),
+        (True, both[:1], both[:1]),
+        (True, both[1:], both),
+        (False, both[1:], both[:1]),
+        (True, ["logAll"], both),
+        (True, [], both),
+    ):
+        one.slave.setDebugLogging(on, categories)
+        assert logged() == expected
+    with refused(one, "category: must be logStatusError or logStatusDiscard, got 'logEvents'"):
         one.slave.setDebugLogging(True, ["logEvents"])
-    one.slave.setDebugLogging(False, ["logStatusError"])
-    assert lines() == 0
+
+
+def test_what_is_no_reference_to_a_variable_is_escaped(one: Instance) -> None:
+    with refused(one, "no/Well ##7##r0##.csv: must be a readable CSV file"):
+        one.initialize(survey_file="no/Well #7#r0#.csv")
+
+
+def test_that_there_is_no_drilling_system_is_also_said_on_stderr_once(
+    one: Instance, capfd: pytest.CaptureFixture[str]
+) -> None:
+    one.set(flexural_stiffness=-1.0)
+    with pytest.raises(FMICallException):
+        one.initialize()
+    assert one.step(1.0) == "error"
+    assert capfd.readouterr().err == "Borehole: flexural_stiffness: must be > 0, got -1.0\n"
+
+
+def test_setting_texts_is_all_or_nothing(one: Instance) -> None:
+    [survey, other] = [one.variables[name].valueReference for name in ("survey_file", "rss_force")]
+    with refused(one, "rss_force: must be used as Real, got 'String'"):
+        one.slave.setString([survey, other], ["a.csv", "b.csv"])
+    assert one.get("survey_file") == b""
 
 
 def start_with_stop(one: Instance, stop: float) -> None:

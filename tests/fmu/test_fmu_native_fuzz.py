@@ -18,7 +18,7 @@ from test_fmu_c_host import COMPILER
 
 from boreprop.case.case import Case
 from boreprop_fmu.pack.build import build_fmu
-from places import HOSTS, TESTS
+from places import FMI_HEADERS, HOSTS, TESTS
 
 FOLDER = Path(__file__).parent
 LIVES = int(os.environ.get("BOREPROP_FUZZ", "8000"))
@@ -50,27 +50,35 @@ def asan(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return Path(subprocess.run(asked, capture_output=True, text=True, check=True).stdout.strip())
 
 
+def fuzz(source: str, case: Case, inputs: int, folder: Path) -> None:
+    """Compile a fuzzer with the sources of the case's FMU, and run it."""
+    (folder / "spoilt").mkdir()
+    with zipfile.ZipFile(build_fmu(case, folder / "a.fmu", runtime="native", binaries=folder)) as archive:
+        archive.extractall(folder)
+    includes = [f"-I{folder / 'sources'}", f"-I{FMI_HEADERS}"]
+    command = [str(COMPILER), "-std=c99", *SANITIZERS, *WARNINGS, *includes, str(HOSTS / source)]
+    subprocess.run([*command, "-o", folder / "fuzz", "-lm"], check=True)
+    done = subprocess.run([folder / "fuzz", str(SEED), str(inputs), folder], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr[-4000:]
+
+
 @pytest.mark.parametrize("stabilizers", [2, 5])
 def test_random_lives_of_an_instance_end_well(case: Case, stabilizers: int, asan: Path, tmp_path: Path) -> None:
     positions = tuple(case.bha.stabilizer_positions[0] * i for i in range(1, stabilizers + 1))
     bha = replace(case.bha, stabilizer_positions=positions, stabilizer_clearances=(3e-3,) * (stabilizers - 1))
-    with zipfile.ZipFile(
-        build_fmu(replace(case, bha=bha), tmp_path / "a.fmu", runtime="native", platforms=())
-    ) as archive:
-        archive.extractall(tmp_path)
-    program, sources = tmp_path / "fuzz", tmp_path / "sources"
-    command = [str(COMPILER), "-std=c99", *SANITIZERS, *WARNINGS, f"-I{sources}", str(HOSTS / "fuzz_native.c")]
-    subprocess.run([*command, "-o", program, "-lm"], check=True)
-    done = subprocess.run([program, str(SEED), str(LIVES // 2), tmp_path], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+    fuzz("fuzz_native.c", replace(case, bha=bha), LIVES // 2, tmp_path)
+
+
+def test_a_packed_case_that_was_spoilt_is_refused_or_can_be_lived_with(case: Case, asan: Path, tmp_path: Path) -> None:
+    fuzz("fuzz_case.c", case, LIVES // 5, tmp_path)
 
 
 def test_the_tests_of_the_native_flavour_pass_under_sanitizers(asan: Path) -> None:
     """Leaks apart, of which Python has some: those of the FMU the test above sees."""
-    native = [f"native_{part}" for part in ("build", "calls", "ramps", "states", "survey")]
+    native = [f"native_{part}" for part in ("calls", "case", "ramps", "states", "survey")]
     files = ["test_fmu.py", "test_fmu_trust.py", *(f"test_fmu_{name}.py" for name in native)]
-    others = "command or builds or compile or binaries or leave"  # other compilers, other processes, memory
-    command = [sys.executable, "-m", "pytest", "-q", "-x", "--compiler=own", "-p", "no:cacheprovider"]
+    others = "command or builds or leave"  # other processes, memory
+    command = [sys.executable, "-m", "pytest", "-q", "-x", "--own-compiler", "-p", "no:cacheprovider"]
     done = subprocess.run(
         [*command, "-k", f"native and not ({others})", *(FOLDER / name for name in files)],
         cwd=FOLDER,

@@ -10,6 +10,7 @@ import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from itertools import accumulate
 from pathlib import Path
+from platform import machine
 from tempfile import TemporaryFile
 from xml.etree.ElementTree import fromstring
 
@@ -22,8 +23,9 @@ from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop.kernel.compiler import PLATFORMS, host_platform
 from boreprop.run.simulate import simulate
+from boreprop_fmu.native.binaries import build_binary
 from boreprop_fmu.pack.build import build_fmu
-from places import HOSTS
+from places import FMI_HEADERS, HOSTS
 from reference_cases import CASES, reference
 
 SOURCE = HOSTS / "native_host.c"
@@ -63,11 +65,14 @@ def paper() -> Case:
 
 @pytest.fixture(scope="module")
 def unpack(paper: Case, tmp_path_factory: pytest.TempPathFactory) -> Unpack:
-    """The folder of its FMU, built for a platform; without one sources only."""
+    """The folder of its FMU, with a binary for a platform; without one sources only."""
 
     def unpacked(*platforms: str) -> Path:
         folder = tmp_path_factory.mktemp("fmu")
-        with zipfile.ZipFile(build_fmu(paper, folder / "a.fmu", runtime="native", platforms=platforms)) as archive:
+        for platform in platforms:
+            build_binary(platform, folder / "compiled")
+        fmu = build_fmu(paper, folder / "a.fmu", runtime="native", binaries=folder / "compiled")
+        with zipfile.ZipFile(fmu) as archive:
             archive.extractall(folder)
         return folder
 
@@ -83,12 +88,12 @@ def sources(unpack: Unpack) -> Path:
 @pytest.fixture(scope="module")
 def library(sources: Path) -> Path:
     """What the C compiler of this machine makes of them, told nothing."""
-    return compiled(sources / "fmi2.c", sources / "Borehole.so", "-shared", "-fPIC", "-lm")
+    return compiled(sources / "fmi2.c", sources / "Borehole.so", "-shared", "-fPIC", "-lm", f"-I{FMI_HEADERS}")
 
 
 @pytest.fixture(scope="module")
 def host(sources: Path) -> Path:
-    return compiled(SOURCE, sources / "host", f"-I{sources}", *WARNINGS, "-ldl")
+    return compiled(SOURCE, sources / "host", f"-I{FMI_HEADERS}", *WARNINGS, "-ldl")
 
 
 def compiled(source: Path, output: Path, *flags: str) -> Path:
@@ -102,15 +107,21 @@ def zig(platform: str, *arguments: str | Path) -> None:
 
 
 def lead(
-    folder: Path, command: Sequence[str | Path], library: Path, steps: int = 3000, environment: Mapping[str, str] = {}
+    folder: Path,
+    command: Sequence[str | Path],
+    library: Path,
+    steps: int = 3000,
+    root: str = "",
+    environment: Mapping[str, str] = {},
 ) -> Rows:
-    """Run the host, `command`, with the FMU of `folder`: its rows."""
+    """Run the host, `command`, with the FMU of `folder`, whose path begins at the host's `root`: its rows."""
     description = fromstring((folder / "modelDescription.xml").read_bytes())
     reference_of = {v.attrib["name"]: v.attrib["valueReference"] for v in description.iter("ScalarVariable")}
     guid, references = description.attrib["guid"], [reference_of[name] for name in ("rss_force", *COLUMNS.values())]
+    resources = f"file://{root}{folder / 'resources'}"
     with TemporaryFile("w+") as printed, TemporaryFile("w+") as said:  # wine's server would hold pipes open for long
         done = subprocess.run(
-            [*command, library, guid, str(steps), str(STEP), *references],
+            [*command, library, guid, resources, str(steps), str(STEP), *references],
             env={**os.environ, **environment},
             stdout=printed,
             stderr=said,
@@ -152,6 +163,17 @@ def test_the_binary_in_it_gives_what_the_sources_in_it_give(rows: Rows, host: Pa
     assert lead(folder, [host], binary) == pytest.approx(rows, rel=1e-9, abs=1e-11)
 
 
+@needs_compiler
+@pytest.mark.skipif(machine() not in ("x86_64", "AMD64"), reason="no x87")
+def test_a_processor_that_computes_with_more_digits_takes_its_own_states(rows: Rows, host: Path, sources: Path) -> None:
+    flags = ("-shared", "-fPIC", "-O2", "-mfpmath=387", f"-I{FMI_HEADERS}", "-lm")
+    try:
+        library = compiled(sources / "fmi2.c", sources / "x87.so", *flags)
+    except subprocess.CalledProcessError:
+        pytest.skip("this compiler cannot be told to use the x87")
+    assert lead(sources.parent, [host], library) == pytest.approx(rows, rel=1e-8, abs=1e-8)
+
+
 def unpack_or_skip(unpack: Unpack, platform: str) -> Path:
     pytest.importorskip("ziglang")
     return unpack(platform)
@@ -161,13 +183,13 @@ def unpack_or_skip(unpack: Unpack, platform: str) -> Path:
 @pytest.mark.skipif(WINE is None, reason="no wine (apt-get install --no-install-recommends wine64)")
 def test_on_windows_it_is_the_same(rows: Rows, unpack: Unpack, tmp_path: Path) -> None:
     folder, [own] = unpack_or_skip(unpack, "win64"), PLATFORMS["win64"].sources
-    zig("win64", "-std=c99", f"-I{folder / 'sources'}", "-c", SOURCE, "-o", tmp_path / "host.o")
+    zig("win64", "-std=c99", f"-I{FMI_HEADERS}", "-c", SOURCE, "-o", tmp_path / "host.o")
     zig("win64", "-c", own, "-o", tmp_path / "own.o")
     links = ("-nostdlib", "-lucrtbase", "-lkernel32", "-s", "-e", "mainCRTStartup")
     zig("win64", tmp_path / "host.o", tmp_path / "own.o", "-o", tmp_path / "host.exe", *links)
     library = folder / "binaries" / "win64" / "Borehole.dll"
     quiet = {"WINEPREFIX": str(tmp_path / "wine"), "WINEDEBUG": "-all", "WINEDLLOVERRIDES": "mscoree,mshtml="}
-    got = lead(folder, [str(WINE), tmp_path / "host.exe"], library, environment=quiet)
+    got = lead(folder, [str(WINE), tmp_path / "host.exe"], library, root="/Z:", environment=quiet)
     assert got == pytest.approx(rows, rel=1e-9, abs=1e-11)
 
 
@@ -178,22 +200,44 @@ def test_on_windows_it_is_the_same(rows: Rows, unpack: Unpack, tmp_path: Path) -
 )
 def test_on_arm_it_is_the_same(rows: Rows, unpack: Unpack, tmp_path: Path) -> None:
     folder = unpack_or_skip(unpack, "aarch64-linux")
-    zig("aarch64-linux", "-std=c99", f"-I{folder / 'sources'}", SOURCE, "-o", tmp_path / "host", "-ldl")
+    zig("aarch64-linux", "-std=c99", f"-I{FMI_HEADERS}", SOURCE, "-o", tmp_path / "host", "-ldl")
     library = folder / "binaries" / "aarch64-linux" / "Borehole.so"
     got = lead(folder, [str(QEMU), "-L", ARM_SYSTEM, tmp_path / "host"], library)
     assert got == pytest.approx(rows, rel=1e-9, abs=1e-11)
 
 
+X86_64, ARM64 = 0x01000007, 0x0100000C
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize(("platform", "processor"), [("darwin64", 0x01000007), ("aarch64-darwin", 0x0100000C)])
-def test_for_a_mac_it_exports_fmi(unpack: Unpack, platform: str, processor: int) -> None:
+@pytest.mark.parametrize(("platform", "processors"), [("darwin64", [X86_64, ARM64]), ("aarch64-darwin", [ARM64])])
+def test_for_a_mac_it_exports_fmi_to_either_processor(unpack: Unpack, platform: str, processors: list[int]) -> None:
     folder = unpack_or_skip(unpack, platform)
-    header = (folder / "sources" / "fmi2Functions.h").read_text(encoding="utf-8")
+    header = (FMI_HEADERS / "fmi2Functions.h").read_text(encoding="utf-8")
     before, _, model_exchange = header.rpartition("Functions for FMI2 for Model Exchange")
     co_simulation = model_exchange[model_exchange.index("Functions for FMI2 for Co-Simulation") :]
     wanted = re.findall(r"FMI2_Export fmi2\w+TYPE +(fmi2\w+);", before + co_simulation)
-    exported = mach_exports((folder / "binaries" / platform / "Borehole.dylib").read_bytes(), processor)
-    assert {name for name in exported if not name.startswith("__")} == {f"_{name}" for name in wanted}
+    library = (folder / "binaries" / platform / "Borehole.dylib").read_bytes()
+    for part, processor in zip(parts(library), processors, strict=True):
+        exported = mach_exports(part, processor)
+        assert {name for name in exported if not name.startswith("__")} == {f"_{name}" for name in wanted}
+
+
+def parts(library: bytes) -> list[bytes]:
+    """The libraries for one processor each that a universal one consists of, without a gap that could be smaller."""
+    magic, count = struct.unpack_from(">2I", library)
+    if magic != 0xCAFEBABE:
+        return [library]
+    found, end = [], 8 + 20 * count
+    for k in range(count):
+        *kind, offset, size, alignment = struct.unpack_from(">5I", library, 8 + 20 * k)
+        assert alignment == 14, "the pages of Arm"
+        assert offset == -(-end // 2**14) * 2**14
+        assert kind == list(struct.unpack_from("<2I", library, offset + 4)), "as the part itself says"
+        found.append(library[offset : offset + size])
+        end = offset + size
+    assert end == len(library)
+    return found
 
 
 def mach_exports(library: bytes, processor: int) -> set[str]:
@@ -227,8 +271,10 @@ def test_valgrind_has_no_complaint(sources: Path, host: Path, library: Path) -> 
 @pytest.mark.slow
 def test_sanitizers_have_no_complaint(sources: Path) -> None:
     try:
-        sanitized = compiled(SOURCE, sources / "host_sanitized", f"-I{sources}", *SANITIZERS, "-ldl")
+        sanitized = compiled(SOURCE, sources / "host_sanitized", f"-I{FMI_HEADERS}", *SANITIZERS, "-ldl")
     except subprocess.CalledProcessError:
         pytest.skip("this compiler has no sanitizers")
-    library = compiled(sources / "fmi2.c", sources / "sanitized.so", "-shared", "-fPIC", *SANITIZERS, "-lm")
+    library = compiled(
+        sources / "fmi2.c", sources / "sanitized.so", "-shared", "-fPIC", *SANITIZERS, f"-I{FMI_HEADERS}", "-lm"
+    )
     lead(sources.parent, [sanitized], library, steps=500)

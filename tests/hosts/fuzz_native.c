@@ -2,8 +2,8 @@
 
    fuzz_native SEED COUNT FOLDER [FIRST]
 
-   FOLDER is for survey files. One program with the FMU: compile this file with the sources/ of an unpacked FMU on the
-   include path, with -fsanitize=address,undefined,float-cast-overflow. An input is one life, number FIRST (0) on: an
+   FOLDER is that of an unpacked FMU, in which survey files are written. One program with the FMU: compile this file with
+   its sources/ and the headers of FMI 2.0 on the include path, with -fsanitize=address,undefined,float-cast-overflow. An input is one life, number FIRST (0) on: an
    instance is made, set, initialized, and gets up to fifteen random things to do. Chance depends on SEED and the number
    of the life only, so `fuzz_native SEED 1 FOLDER NUMBER` leads one of them again, and shows its log.
 
@@ -24,10 +24,10 @@ static double time_of(fmi2Component c) {
 
 /* A size of a step that drills at most so many ℓ₁. */
 static double step_size(const Component *c) {
-    double rate = c->value[RATE_OF_PENETRATION], l1 = c->value[STABILIZER_POSITION];
+    double rate = c->value[IN_RATE_OF_PENETRATION], l1 = c->value[packed.variables.first_parameter];
     double xi = FARTHEST * pow(10.0, between(-12.0, 0.0)), size = xi * l1 / rate, end_rate;
     if (below(8) == 0) size = any_number(1.0);
-    end_rate = rate + c->derivative[RATE_OF_PENETRATION] * size;
+    end_rate = rate + c->derivative[IN_RATE_OF_PENETRATION] * size;
     if (isfinite(size) && larger(rate, end_rate) * size > FARTHEST * l1) size = l1 / larger(rate, end_rate);
     return size;
 }
@@ -35,8 +35,8 @@ static double step_size(const Component *c) {
 /* Whether a step would drill farther, as it may in a state that has been tampered with. */
 static int is_too_far(const Component *c, double time, double size) {
     if (!c->run) return 0;
-    double from = larger(c->from, c->run->drilling.drilled_length), rate = c->value[RATE_OF_PENETRATION];
-    double to = larger(from, from + rate * (time + size - c->since)) / c->value[STABILIZER_POSITION];
+    double from = larger(c->from, c->run->drilling.drilled_length), rate = c->value[IN_RATE_OF_PENETRATION];
+    double to = larger(from, from + rate * (time + size - c->since)) / c->value[packed.variables.first_parameter];
     return to - c->run->drilling.integrator.now.step.end > 4 * FARTHEST;
 }
 
@@ -67,23 +67,23 @@ static void take_step_at_random(fmi2Component c, int looking) {
 }
 
 static void set_at_random(fmi2Component c, Role role, int wild) {
-    for (unsigned i = 0; i < VARIABLES; i++) {
-        double usual = VARIABLE[i].start != 0.0 ? VARIABLE[i].start : 1e4;
-        if (VARIABLE[i].role != role || VARIABLE[i].kind != REAL || below(2)) continue;
+    for (unsigned i = 0; i < (unsigned)packed.variables.count; i++) {
+        double usual = packed.start[i] != 0.0 ? packed.start[i] : 1e4;
+        if (packed.variables.at[i].role != role || packed.variables.at[i].kind != REAL || below(2)) continue;
         double value = wild && below(4) == 0 ? any_number(usual) : good_number(usual);
         CALL(fmi2SetReal(c, &i, 1, &value));
     }
 }
 
 static void bend_at_random(fmi2Component c, int wild) {
-    static const unsigned input[INPUTS] = {RSS_FORCE, ACTIVE_WEIGHT_ON_BIT, RATE_OF_PENETRATION};
-    static const int order[INPUTS] = {1, 1, 1};
-    double slope[INPUTS];
-    for (int i = 0; i < INPUTS; i++) {
+    static const unsigned input[INPUT_COUNT] = {IN_RSS_FORCE, IN_ACTIVE_WEIGHT_ON_BIT, IN_RATE_OF_PENETRATION};
+    static const int order[INPUT_COUNT] = {1, 1, 1};
+    double slope[INPUT_COUNT];
+    for (int i = 0; i < INPUT_COUNT; i++) {
         double usual = ((Component *)c)->value[i] * between(-1.0, 1.0);
         slope[i] = wild && below(4) == 0 ? any_number(1.0) : below(3) ? 0.0 : usual;
     }
-    CALL(fmi2SetRealInputDerivatives(c, input, INPUTS, order, slope));
+    CALL(fmi2SetRealInputDerivatives(c, input, INPUT_COUNT, order, slope));
 }
 
 /* There and back within one instance, and on from there in another one. */
@@ -141,7 +141,7 @@ static void tamper(fmi2Component c) {
     int intact = is_same(good, bad), mended = bad.size >= SEAL && below(4) > 0;
     if (mended) {
         char line[SEAL + 1];
-        seal(GUID, (unsigned char *)body, bad.size - SEAL, line);
+        seal(packed.guid, (unsigned char *)body, bad.size - SEAL, line);
         memcpy(bad.bytes, line, SEAL);
     }
     int taken = takes(c, bad);
@@ -158,7 +158,8 @@ static void tamper(fmi2Component c) {
 }
 
 static void ask_nonsense(fmi2Component c) {
-    unsigned reference[3] = {(unsigned)below(VARIABLES + 2), (unsigned)below(VARIABLES), (unsigned)draw()};
+    size_t variables = (size_t)packed.variables.count;
+    unsigned reference[3] = {(unsigned)below(variables + 2), (unsigned)below(variables), (unsigned)draw()};
     double value[3] = {any_number(1.0), any_number(1.0), any_number(1.0)};
     int whole[3] = {(int)draw(), (int)below(3), 0};
     const char *text[3] = {"\xFF", "%s%n", "no\nwhere.csv"};
@@ -209,15 +210,20 @@ static void instantiate_wrongly(void) {
     static const char *const guids[] = {NULL, "", "other", "%n%s"};
     int logging = (int)below(2);
     switch (below(3)) {
-        case 0: must(!fmi2Instantiate("one", fmi2CoSimulation, GUID, NULL, NULL, 0, logging), "no callbacks"); break;
+        case 0:
+            must(!fmi2Instantiate("one", fmi2CoSimulation, packed.guid, resources, NULL, 0, logging), "no callbacks");
+            break;
         case 1:
-            must(!fmi2Instantiate("one", fmi2ModelExchange, GUID, NULL, &callbacks, 0, logging), "no model exchange");
+            must(
+                !fmi2Instantiate("one", fmi2ModelExchange, packed.guid, resources, &callbacks, 0, logging),
+                "no model exchange"
+            );
             break;
         default:
             must(
                 !fmi2Instantiate(
-                    below(2) ? NULL : "%s", fmi2CoSimulation, guids[below(4)], NULL, below(2) ? &silent : &callbacks, 0,
-                    logging
+                    below(2) ? NULL : "%s", fmi2CoSimulation, guids[below(4)], resources,
+                    below(2) ? &silent : &callbacks, 0, logging
                 ),
                 "a wrong guid"
             );
@@ -232,7 +238,7 @@ static void name_survey(fmi2Component c) {
     static const char *const headers[] = {
         "measured_depth,inclination_deg\n0,1\n", "\"inclination_deg\",measured_depth\r\n2,5\r\n", ""
     };
-    unsigned reference = SURVEY_FILE;
+    unsigned reference = (unsigned)packed.variables.survey_file;
     const char *path = below(8) ? survey_path : below(2) ? "nowhere/%s.csv" : "no\nwhere.csv";
     FILE *file = fopen(survey_path, "wb");
     must(file != NULL, "a survey file must be written");
@@ -300,7 +306,7 @@ int main(int count, char **arguments) {
     uint64_t slowest_number = first;
     double start = now(), slowest = 0.0;
     seed = strtoull(arguments[1], NULL, 10);
-    snprintf(survey_path, sizeof survey_path, "%s/survey.csv", arguments[3]);
+    open_fmu(arguments[3]);
     showing = inputs == 1;
     signal(SIGPROF, give_up_waiting);
     for (number = first; number < first + inputs; number++) {
@@ -311,6 +317,7 @@ int main(int count, char **arguments) {
         double took = now() - began;
         if (took > slowest) slowest = took, slowest_number = number;
     }
+    free(packed.stations);
     printf("%llu inputs, %.1f s, ", (unsigned long long)inputs, now() - start);
     printf("slowest %.1f ms (%llu), %ld lines in the log\n", 1e3 * slowest, (unsigned long long)slowest_number, lines);
     return 0;

@@ -1,8 +1,8 @@
 /* A host without Python: leads one instance of the native FMU through its life.
 
-   native_host LIBRARY GUID STEPS STEP_SIZE FORCE OUTPUT …
+   native_host LIBRARY GUID RESOURCES STEPS STEP_SIZE FORCE OUTPUT …
 
-   FORCE and OUTPUT are value references of Reals. Prints the outputs at the start and after each step, as a row of
+   RESOURCES is a URI, FORCE and OUTPUT are value references of Reals. Prints the outputs at the start and after each step, as a row of
    numbers; then takes states, makes errors, starts again. Ends with 0 if all was answered as FMI 2.0 says, else names
    what was not and ends with 1. Needs the FMI 2.0 headers; runs on Linux, macOS and Windows. */
 #include "fmi2Functions.h"
@@ -90,18 +90,18 @@ FUNCTIONS(DECLARE)
 static const fmi2CallbackFunctions callbacks = {hear, calloc, free, NULL, &messages};
 
 /* What is asked of the instance. */
-static const char *guid;
+static const char *guid, *resources;
 static int steps;
 static double step;
 static fmi2ValueReference force, output[MOST];
 static size_t outputs;
 
 static void read_arguments(int count, char **arguments) {
-    guid = arguments[2];
-    steps = atoi(arguments[3]);
-    step = strtod(arguments[4], NULL);
-    force = (unsigned)atoi(arguments[5]);
-    for (; (int)outputs + 6 < count; outputs++) output[outputs] = (unsigned)atoi(arguments[6 + outputs]);
+    guid = arguments[2], resources = arguments[3];
+    steps = atoi(arguments[4]);
+    step = strtod(arguments[5], NULL);
+    force = (unsigned)atoi(arguments[6]);
+    for (; (int)outputs + 7 < count; outputs++) output[outputs] = (unsigned)atoi(arguments[7 + outputs]);
 }
 
 static void initialize(fmi2Component c) {
@@ -149,7 +149,7 @@ static void make_errors(fmi2Component c) {
     must(ExitInitializationMode(c) == fmi2Error && messages == 4, "a call at the wrong time must be an error");
     must(GetReal(c, NULL, 1, again) == fmi2Error && messages == 5, "no address must be an error");
     must(
-        !Instantiate("host", fmi2CoSimulation, "another", NULL, &callbacks, fmi2False, fmi2True) && messages == 6,
+        !Instantiate("host", fmi2CoSimulation, "another", resources, &callbacks, fmi2False, fmi2True) && messages == 6,
         "another guid must be refused"
     );
 }
@@ -180,12 +180,12 @@ static void take_states(fmi2Component c) {
 
 static int lead(int count, char **arguments) {
     double first[MOST] = {0}, again[MOST] = {0};
-    if (count < 7 || count > 6 + MOST) return 2;
+    if (count < 8 || count > 7 + MOST) return 2;
     load(arguments[1]);
     must(library != NULL, "the library must load");
     FUNCTIONS(FIND)
     read_arguments(count, arguments);
-    fmi2Component c = Instantiate("host", fmi2CoSimulation, guid, NULL, &callbacks, fmi2False, fmi2True);
+    fmi2Component c = Instantiate("host", fmi2CoSimulation, guid, resources, &callbacks, fmi2False, fmi2True);
     must(c != NULL, "fmi2Instantiate: must give an instance");
     initialize(c);
     drill(c, first);

@@ -168,14 +168,17 @@ def test_the_digest_follows_names_and_contents(tmp_path: Path, monkeypatch: pyte
 def tree(tmp_path: Path) -> Path:
     """A copy of what the package is built from, without a library."""
     for name in ("model", "fmu_build", "viz"):
-        shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__", "boreprop_kernel.*"))
+        shutil.copytree(
+            ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__", "binaries", "boreprop_kernel.*")
+        )
     for name in (".gitignore", "hatch_build.py", "LICENSE", "pyproject.toml", "README.md"):
         shutil.copy(ROOT / name, tmp_path)
     return tmp_path
 
 
 def run(tree: Path, *words: str, compiler: str | None = None) -> subprocess.CompletedProcess[str]:
-    environment = os.environ | {"PYTHONPATH": str(tree / "model")} | ({"CC": compiler} if compiler else {})
+    paths = os.pathsep.join([str(tree / "model"), str(tree / "fmu_build")])
+    environment = os.environ | {"PYTHONPATH": paths} | ({"CC": compiler} if compiler else {})
     return subprocess.run(
         [sys.executable, "-m", *words], cwd=tree, env=environment, capture_output=True, text=True, check=False
     )
@@ -195,6 +198,7 @@ def test_a_wheel_has_the_library_and_the_tag_of_its_platform(tree: Path) -> None
     assert re.search(r"-py3-none-(?!any)\w+\.whl$", wheel.name)
     names = zipfile.ZipFile(wheel).namelist()
     assert f"boreprop/kernel/{compiler.library_path().name}" in names
+    assert not compiler.host_platform() or f"boreprop_fmu/binaries/{compiler.host_platform()}/" in " ".join(names)
     assert {"boreprop/kernel/library.c", "boreprop/kernel/drilling.h"} <= set(names)
     assert not (tree / KERNEL / compiler.library_path().name).exists()
 

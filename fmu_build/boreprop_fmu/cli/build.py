@@ -9,9 +9,9 @@ import typer
 from boreprop.case.file import load_case
 from boreprop.cli import console
 from boreprop.cli.options import CaseFile
-from boreprop.kernel.compiler import PLATFORMS
 
-from ..pack.build import build_fmu
+from ..native.binaries import PLATFORMS
+from ..pack.build import IDENTIFIER, build_fmu
 
 
 def build_command(
@@ -20,35 +20,26 @@ def build_command(
     runtime: Annotated[
         str,
         typer.Option(
-            metavar="python|native",
-            help="What computes in the FMU: python, for which the host needs Python, or native, compiled code.",
+            metavar="auto|native|python",
+            help="What computes in the FMU: native, compiled code, or python, for which the host needs Python; "
+            "auto: native if there is a binary for this machine.",
         ),
-    ] = "python",
-    platforms: Annotated[
-        str | None,
-        typer.Option(
-            metavar="linux64,win64,…|all|none",
-            help="The platforms of a native FMU; none: only the C sources are packed. Default: this machine.",
-        ),
-    ] = None,
+    ] = "auto",
+    name: Annotated[
+        str, typer.Option(metavar="ID", help="The FMU's modelIdentifier: give FMUs that are linked together their own.")
+    ] = IDENTIFIER,
 ) -> None:
     """Pack a case, and the model with it, as an FMU."""
     console.check_output(output, (".fmu",))
-    chosen = None if platforms is None else _chosen(platforms)
-    case = load_case(case_file)
-    with console.progress("compiling", 1 if chosen is None else len(chosen)) as done:
-        build_fmu(case, output, runtime=runtime, platforms=chosen, progress=done)
-    print(f"{output}: {output.stat().st_size / 1e6:.2g} MB, {runtime}: {', '.join(_contents(output))}")
-
-
-def _chosen(platforms: str) -> list[str]:
-    return {"all": list(PLATFORMS), "none": []}.get(platforms, [name.strip() for name in platforms.split(",")])
-
-
-def _contents(fmu: Path) -> list[str]:
-    """The platforms for which an FMU has binaries, and "C sources" if it has them."""
-    with ZipFile(fmu) as archive:
-        folders = [name.split("/")[:2] for name in archive.namelist()]
-    binaries = sorted({path[1] for path in folders if path[0] == "binaries"})
-    has_sources = any(path[0] == "sources" for path in folders)
-    return [*binaries, "C sources"] if has_sources else binaries
+    build_fmu(load_case(case_file), output, runtime=runtime, name=name)
+    with ZipFile(output) as archive:
+        folders = [path.split("/") for path in archive.namelist()]
+    is_native = any(path[0] == "sources" for path in folders)
+    binaries = [path[1] for path in folders if path[0] == "binaries"]
+    contents = ", ".join(binaries + ["C sources"] * is_native)
+    print(f"{output}: {output.stat().st_size / 1e6:.2g} MB, {'native' if is_native else 'python'}: {contents}")
+    missing = [platform for platform in PLATFORMS if platform not in binaries]
+    if is_native and missing:
+        print(f"not for {', '.join(missing)}: to compile what is missing: python -m boreprop_fmu.native all")
+    if not is_native and runtime == "auto":
+        print("python, since there is no binary for this machine: to compile it: python -m boreprop_fmu.native")

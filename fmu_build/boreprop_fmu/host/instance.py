@@ -91,7 +91,7 @@ def _log_to(messages: deque[str]) -> fmi2CallbackFunctions:
     """Callbacks for an instance that logs to `messages`; they must be kept as long as the instance."""
 
     def log(*arguments: Any) -> None:  # environment, instance, status, category, message
-        messages.append(arguments[4].decode(errors="replace").replace("%%", "%"))
+        messages.append(arguments[4].decode(errors="replace").replace("%%", "%").replace("##", "#"))
 
     return fmi2CallbackFunctions(
         logger=fmi2CallbackLoggerTYPE(log),

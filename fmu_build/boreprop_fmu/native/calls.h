@@ -32,27 +32,30 @@ static int has(const Component *c, const char *function, size_t count, const voi
 /* Whether the value reference is that of a variable of this kind; a line in the log if not. */
 static int is_of_kind(const Component *c, fmi2ValueReference reference, Kind kind) {
     char why[LINE];
-    if (reference >= VARIABLES)
-        explain(why, "value reference: must be 0 to %d, got %lu", VARIABLES - 1, (unsigned long)reference);
-    else if (VARIABLE[reference].kind != kind)
-        explain(
-            why, "%s: must be used as %s, got '%s'", VARIABLE[reference].name, KIND[VARIABLE[reference].kind],
-            KIND[kind]
-        );
+    const Variables *all = &c->packed.variables;
+    const Variable *variable = &all->at[reference < (unsigned)all->count ? reference : 0];
+    if (reference >= (unsigned)all->count)
+        explain(why, "value reference: must be 0 to %d, got %lu", all->count - 1, (unsigned long)reference);
+    else if (variable->kind != kind)
+        explain(why, "%s: must be used as %s, got '%s'", variable->name, KIND[variable->kind], KIND[kind]);
     else return 1;
     fail(c, fmi2Error, why);
     return 0;
 }
 
+static const Variable *variable_at(const Component *c, fmi2ValueReference reference) {
+    return &c->packed.variables.at[reference];
+}
+
 /* Whether a variable of this kind has a value now: outputs are computed if need be. */
 static int has_value(Component *c, fmi2ValueReference reference, Kind kind) {
-    return is_of_kind(c, reference, kind) && (VARIABLE[reference].role != OUTPUT || refreshed(c));
+    return is_of_kind(c, reference, kind) && (variable_at(c, reference)->role != OUTPUT || refreshed(c));
 }
 
 /* Whether a variable may be set to another value now; a line in the log if not. `got` is that value as text. */
 static int settable(const Component *c, fmi2ValueReference reference, const char *got) {
     char why[LINE];
-    const Variable *variable = &VARIABLE[reference];
+    const Variable *variable = variable_at(c, reference);
     if (variable->role == OUTPUT) explain(why, "%s: must not be set, it is an output, got %s", variable->name, got);
     else if (variable->role == PARAMETER && c->phase == STEPPING)
         explain(why, "%s: must not change after initialization, got %s", variable->name, got);

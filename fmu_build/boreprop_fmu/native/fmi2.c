@@ -1,6 +1,7 @@
 /* The borehole as an FMI 2.0 co-simulation FMU: the kernel behind the functions of fmi2Functions.h.
 
    A call that cannot do what it was asked logs one line and gives one of two statuses. The instance goes on after both.
+   An error is logged whether the host wants debug logging or not, a discard only if it does.
    - fmi2Discard, from fmi2DoStep: an input or the step is bad, or the integrator fails. Nothing has moved, and the next
      step with good values works.
    - fmi2Error: the call itself is wrong; the parameters make no drilling system (then every step gives this, until
@@ -34,13 +35,13 @@ fmi2Status fmi2SetDebugLogging(fmi2Component instance, fmi2Boolean on, size_t co
     if (!c || !has(c, "fmi2SetDebugLogging", count, categories, categories)) return fmi2Error;
     for (size_t i = 0; i < count; i++) {
         const char *category = categories[i] ? categories[i] : "";
-        if (strcmp(category, CATEGORY) && strcmp(category, "logAll")) {
-            explain(why, "category: must be %s, got %s", CATEGORY, quoted(category, shown));
+        if (!strcmp(category, DISCARDS) || !strcmp(category, "logAll")) wanted = 1;
+        else if (strcmp(category, ERRORS)) {
+            explain(why, "category: must be %s or %s, got %s", ERRORS, DISCARDS, quoted(category, shown));
             return fail(c, fmi2Error, why);
         }
-        wanted = 1;
     }
-    c->logging = on && wanted;
+    c->logs_discards = on && wanted;
     return fmi2OK;
 }
 
@@ -48,19 +49,19 @@ fmi2Component fmi2Instantiate(
     fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources, const fmi2CallbackFunctions *callbacks,
     fmi2Boolean visible, fmi2Boolean logging
 ) {
-    char why[LINE] = "", shown[SHOWN];
-    Component *c = NULL;
-    (void)resources, (void)visible;
+    char why[LINE] = "instance: must fit into the memory", shown[SHOWN];
+    (void)visible;
     if (!callbacks) return NULL;
-    if (type != fmi2CoSimulation) explain(why, "fmuType: must be fmi2CoSimulation, got %d", (int)type);
-    else if (!guid || strcmp(guid, GUID))
-        explain(why, "fmuGUID: must be '%s', got %s", GUID, quoted(guid ? guid : "", shown));
-    else if ((c = calloc(1, sizeof *c))) {
-        c->callbacks = *callbacks, c->logging = logging != fmi2False;
+    Component *c = calloc(1, sizeof *c);
+    if (c && type != fmi2CoSimulation) explain(why, "fmuType: must be fmi2CoSimulation, got %d", (int)type);
+    else if (c && read_case(resources, &c->packed, why)) {
+        c->callbacks = *callbacks, c->logs_discards = logging != fmi2False;
         c->name = copy(name ? name : "");
-        if (c->name && start_over(c)) return c;
+        if (!guid || strcmp(guid, c->packed.guid))
+            explain(why, "fmuGUID: must be '%s', got %s", c->packed.guid, quoted(guid ? guid : "", shown));
+        else if (c->name && start_over(c)) return c;
     }
-    log_line(callbacks, name ? name : "", *why ? why : "instance: must fit into the memory");
+    log_line(callbacks, name ? name : "", fmi2Error, why);
     fmi2FreeInstance(c);
     return NULL;
 }
@@ -70,6 +71,7 @@ void fmi2FreeInstance(fmi2Component instance) {
     if (!c) return;
     run_end(c->run);
     free(c->survey_file);
+    free(c->packed.stations);
     free(c->name);
     free(c);
 }
@@ -170,7 +172,7 @@ fmi2Status fmi2SetReal(fmi2Component instance, const fmi2ValueReference vr[], si
     if (!c || !has(c, "fmi2SetReal", count, vr, value)) return fmi2Error;
     for (size_t i = 0; i < count; i++) {
         if (!is_of_kind(c, vr[i], REAL)) return fmi2Error;
-        int other = VARIABLE[vr[i]].role == OUTPUT || value[i] != c->value[vr[i]];
+        int other = variable_at(c, vr[i])->role == OUTPUT || value[i] != c->value[vr[i]];
         if (other && !settable(c, vr[i], represent(value[i], got))) return fmi2Error;
     }
     for (size_t i = 0; i < count; i++)
@@ -208,19 +210,18 @@ fmi2Status fmi2SetString(
     if (!c || !has(c, "fmi2SetString", count, vr, value)) return fmi2Error;
     for (size_t i = 0; i < count; i++) { /* there is one, survey_file */
         if (!is_of_kind(c, vr[i], STRING)) return fmi2Error;
-        const char *text = value[i] ? value[i] : "";
-        if (!value[i] || !is_utf8(text)) {
-            explain(why, "%s: must be UTF-8 text, got %s", VARIABLE[vr[i]].name, value[i] ? "other bytes" : "NULL");
+        if (!value[i] || !is_utf8(value[i])) {
+            explain(why, "survey_file: must be UTF-8 text, got %s", value[i] ? "other bytes" : "NULL");
             return fail(c, fmi2Error, why);
         }
-        if (!strcmp(text, c->survey_file)) continue;
-        if (!settable(c, vr[i], quoted(text, shown))) return fmi2Error;
-        char *own = copy(text);
-        if (!own) return fail(c, fmi2Error, "survey_file: must fit into the memory");
-        free(c->survey_file);
-        c->survey_file = own;
-        changed(c);
+        if (strcmp(value[i], c->survey_file) && !settable(c, vr[i], quoted(value[i], shown))) return fmi2Error;
     }
+    if (!count || !strcmp(value[count - 1], c->survey_file)) return fmi2OK;
+    char *own = copy(value[count - 1]);
+    if (!own) return fail(c, fmi2Error, "survey_file: must fit into the memory");
+    free(c->survey_file);
+    c->survey_file = own;
+    changed(c);
     return fmi2OK;
 }
 
@@ -247,7 +248,7 @@ fmi2Status fmi2SetRealInputDerivatives(
         return fmi2Error;
     for (size_t i = 0; i < count; i++) {
         if (!is_of_kind(c, vr[i], REAL)) return fmi2Error;
-        const Variable *variable = &VARIABLE[vr[i]];
+        const Variable *variable = variable_at(c, vr[i]);
         if (variable->role != INPUT) explain(why, "%s: must be an input to have a derivative", variable->name);
         else if (order[i] != 1)
             explain(why, "%s: order of the derivative: must be 1, got %d", variable->name, order[i]);
@@ -374,7 +375,7 @@ fmi2Status fmi2SerializeFMUstate(fmi2Component instance, fmi2FMUstate kept, fmi2
         explain(why, "size: must be at least %lu, got %lu", (unsigned long)(SEAL + state->size), (unsigned long)size);
         return fail(c, fmi2Error, why);
     }
-    seal(GUID, state->bytes, state->size, line);
+    seal(c->packed.guid, state->bytes, state->size, line);
     memcpy(bytes, line, SEAL);
     memcpy(bytes + SEAL, state->bytes, state->size);
     return fmi2OK;
@@ -385,7 +386,7 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component instance, const fmi2Byte bytes[
     char why[LINE];
     if (!c || !has(c, "fmi2DeSerializeFMUstate", 1, kept, bytes)) return fmi2Error;
     *kept = NULL;
-    if (!is_sealed((const unsigned char *)bytes, size, GUID, why)) return fail(c, fmi2Error, why);
+    if (!is_sealed((const unsigned char *)bytes, size, c->packed.guid, why)) return fail(c, fmi2Error, why);
     Saved *state = malloc(sizeof *state);
     if (state) state->size = size - SEAL, state->bytes = malloc(size);
     if (state && state->bytes) {

@@ -2,62 +2,13 @@
 #ifndef BOREPROP_SURVEY_FILE_H
 #define BOREPROP_SURVEY_FILE_H
 
+#include "files.h"
 #include "survey.h"
-#include "text.h"
-#include <errno.h>
 
-enum { COLUMNS = 2, LARGEST = 1 << 26 }; /* bytes of a file */
+enum { COLUMNS = 2 };
 
 static const char *const COLUMN[COLUMNS] = {"measured_depth", "inclination_deg"};
 static const double UNIT[COLUMNS] = {1.0, 3.141592653589793 / 180.0}; /* m, rad */
-
-static FILE *open_file(const char *path) {
-#ifdef _WIN32
-    wchar_t wide[LINE], *to = wide;
-    while (*path && to < wide + LINE - 2) {
-        long point = next_character(&path);
-        if (point >= 0x10000) *to++ = (wchar_t)(0xD800 + ((point - 0x10000) >> 10));
-        *to++ = (wchar_t)(point >= 0x10000 ? 0xDC00 + (point & 0x3FF) : point);
-    }
-    *to = L'\0';
-    return _wfopen(wide, L"rb");
-#else
-    return fopen(path, "rb");
-#endif
-}
-
-/* The whole content of a file, to be freed, and its `size`; NULL if it is too large for the memory or for us. */
-static char *read_all(FILE *file, size_t *size) {
-    size_t room = 1 << 14;
-    char *text = malloc(room);
-    *size = 0;
-    while (text) {
-        *size += fread(text + *size, 1, room - *size - 1, file);
-        text[*size] = '\0';
-        if (*size + 1 < room) return text;
-        char *more = room < LARGEST ? realloc(text, room *= 2) : NULL;
-        if (!more) free(text);
-        text = more;
-    }
-    return NULL;
-}
-
-/* The text of a file, to be freed; NULL with `why` if it cannot be read or is no text. */
-static char *read_text(const char *path, char why[LINE]) {
-    const char *fault = NULL;
-    size_t size = 0;
-    errno = 0;
-    FILE *file = open_file(path);
-    char *text = file ? read_all(file, &size) : NULL;
-    if (!file || ferror(file)) fault = strerror(errno);
-    else if (!text) fault = "more than fits into the memory, or than 64 MB";
-    else if (strlen(text) != size || !is_utf8(text)) fault = "bytes that are no UTF-8 text";
-    if (file) fclose(file);
-    if (!fault) return text;
-    free(text);
-    explain(why, "%s: must be a readable CSV file, got: %s", path, fault);
-    return NULL;
-}
 
 /* Take one field of a row: `*from` moves behind it, `*field` is its text. Gives the character that ended it. */
 static char next_field(char **from, char **field) {
@@ -134,7 +85,7 @@ static long read_rows(
 
 /* Read a survey file. Its numbers lie in `*memory`, to be freed; NULL with `why` if it cannot be used. */
 static double *read_survey(const char *path, Survey *survey, char why[LINE]) {
-    char *text = read_text(path, why), *from = text, *blank, fault[LINE];
+    char *text = read_text(path, "CSV", why), *from = text, *blank, fault[LINE];
     double *numbers = NULL, *columns[COLUMNS];
     int position[COLUMNS], width = 0;
     long lines = 1, line = 2, rows = -1;

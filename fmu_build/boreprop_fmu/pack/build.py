@@ -1,28 +1,24 @@
 """Packs a case as an FMI 2.0 co-simulation FMU, either as Python code on pythonfmu's runtime or as machine code."""
 
-from collections.abc import Callable, Sequence
+import re
 from pathlib import Path
 
 from boreprop.case.case import Case
 from boreprop.errors import InputError
 
+from ..native.binaries import BINARIES
 from .archive import write_archive
-from .native import pack_native
+from .native import is_native_here, pack_native
 from .python import pack_python
 
-RUNTIMES = ("python", "native")
+RUNTIMES = ("auto", "native", "python")
+IDENTIFIER = "Borehole"
 
 
 def build_fmu(
-    case: Case,
-    output: Path,
-    *,
-    runtime: str = "python",
-    platforms: Sequence[str] | None = None,
-    compiler: str | None = None,
-    progress: Callable[[float], None] | None = None,
+    case: Case, output: Path, *, runtime: str = "auto", name: str = IDENTIFIER, binaries: Path = BINARIES
 ) -> Path:
-    """Write the FMU of a case. The same case and the same code give the same bytes.
+    """Write the FMU of a case. The same case, code and binaries give the same bytes. Nothing is compiled.
 
     Parameters
     ----------
@@ -31,16 +27,12 @@ def build_fmu(
     output
         The file to write.
     runtime
-        "python" packs Python code, for hosts that have a Python; "native" packs machine code and its C sources.
-    platforms
-        For a native FMU: the names, in `boreprop.kernel.compiler.PLATFORMS`, of the platforms for which it has
-        binaries. None: this machine; empty: no binaries, only the sources.
-    compiler
-        For a native FMU: "ziglang" compiles for every platform, and gives the same bytes on every machine; "own" is
-        this machine's C compiler ($CC with $CFLAGS, else cc, gcc or clang) and compiles for this machine only. None:
-        ziglang or, if that is not installed and no platforms are named, the own compiler.
-    progress
-        Called with the number of binaries compiled so far.
+        "native" packs machine code, for the platforms for which there are binaries, and its C sources; "python" packs
+        Python code, for hosts that have a Python; "auto" is native if there is a binary for this machine, else Python.
+    name
+        The FMU's modelIdentifier: the name of its binaries, and the beginning of the names of its C functions.
+    binaries
+        The folder of the binaries for a native FMU, see `boreprop_fmu.native.binaries`.
 
     Returns
     -------
@@ -49,19 +41,16 @@ def build_fmu(
     Raises
     ------
     InputError
-        If the runtime, a platform or the compiler does not exist or does not fit the others, or no compiler is
-        installed for a platform.
+        If there is no such runtime, the name is not one of C, or a binary was compiled from other sources.
     OSError
         If the file cannot be written; it is unchanged then.
     """
     if runtime not in RUNTIMES:
         raise InputError(f"runtime: must be {' or '.join(RUNTIMES)}, got {runtime!r}")
-    if runtime == "native":
-        write_archive(pack_native(case, platforms, compiler, progress), output)
-        return output
-    if platforms is not None:
-        raise InputError(f"platforms: must be left out for the runtime python, got {', '.join(platforms) or 'none'}")
-    if compiler is not None:
-        raise InputError(f"compiler: must be left out for the runtime python, got {compiler!r}")
-    write_archive(pack_python(case), output)
+    if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]{0,99}", name):
+        raise InputError(f"name: must be a letter, then letters, digits and _, at most 100, got {name!r}")
+    if runtime == "native" or (runtime == "auto" and is_native_here(binaries)):
+        write_archive(pack_native(case, name, binaries), output)
+    else:
+        write_archive(pack_python(case, name), output)
     return output

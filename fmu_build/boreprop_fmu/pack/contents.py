@@ -12,7 +12,6 @@ from ..packed_case import CASE_FILE
 from .description import model_description
 from .documentation import documentation
 
-IDENTIFIER = "Borehole"
 CAPABILITIES = {
     "needsExecutionTool": False,
     "canHandleVariableCommunicationStepSize": True,
@@ -25,7 +24,7 @@ STEP_SIZE = 0.1  # s: 0.1 m at the start value of the rate of penetration, as `s
 
 
 def describe(
-    case: Case, guid: str, *, interpolates: bool = False, source_files: Sequence[str] = ()
+    case: Case, identifier: str, guid: str, *, interpolates: bool = False, source_files: Sequence[str] = ()
 ) -> dict[str, bytes]:
     """The description for hosts, and the case file for `read_packed_case`.
 
@@ -33,6 +32,8 @@ def describe(
     ----------
     case
         The case from which the FMU starts.
+    identifier
+        The FMU's modelIdentifier.
     guid
         The FMU's identity.
     interpolates
@@ -41,7 +42,7 @@ def describe(
         The files in the folder sources/ that are to be compiled.
     """
     description = model_description(
-        IDENTIFIER,
+        identifier,
         guid,
         len(case.bha.stabilizer_positions),
         start_values(case),

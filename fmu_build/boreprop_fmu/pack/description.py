@@ -8,7 +8,10 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from boreprop.core.quantities import VARIABLES, Quantity
 from boreprop.units import UNITS
 
-LOG_CATEGORIES = {"logStatusError": "Bad input, and why a step was discarded."}
+LOG_CATEGORIES = {
+    "logStatusError": "What was called wrongly, and bad parameters.",
+    "logStatusDiscard": "Why a step was discarded.",
+}
 
 
 def model_description(

@@ -27,8 +27,9 @@ the instance is reset (fmi2Reset). Outputs that cannot be computed are NaN, with
 state of this FMU is refused with fmi2Error and changes nothing; a valid one may come from another process or platform.
 """,
         "hosts": """Any. The folder binaries/ shows for which platforms this FMU is compiled. For others compile
-sources/fmi2.c with a C99 compiler; it needs no library except libm:
-<code>cc -shared -fPIC -O2 -ffp-contract=off -I sources sources/fmi2.c -lm -o Borehole.so</code>.""",
+sources/fmi2.c with a C99 compiler and the headers of FMI 2.0; it needs no library except libm:
+<code>cc -shared -fPIC -O2 -ffp-contract=off -DFMI2_FUNCTION_PREFIX= -I FMI_HEADERS sources/fmi2.c -lm -o
+Borehole.so</code>. Linked into a program, the functions are called after the modelIdentifier, Borehole_fmi2DoStep.""",
     },
 }
 

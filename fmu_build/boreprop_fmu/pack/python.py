@@ -12,7 +12,7 @@ from pathlib import Path
 from boreprop.case.case import Case
 
 from .archive import digest, identify
-from .contents import IDENTIFIER, describe, pack_manual, start_values
+from .contents import describe, pack_manual, start_values
 
 RUNTIME_MODULES = ("default_experiment", "enums", "fmi2slave", "logmsg", "variables", "_version")
 SCRIPT = '''"""The script that pythonfmu compiles for every instance; it needs a class with methods of its own."""
@@ -29,17 +29,17 @@ class Borehole(Slave):
 '''
 
 
-def pack_python(case: Case) -> dict[str, bytes]:
+def pack_python(case: Case, identifier: str) -> dict[str, bytes]:
     """The files of an FMU on pythonfmu's runtime: path in the FMU → content."""
     code = pack_code()
 
     def numbers(guid: str) -> dict[str, bytes]:
         n = len(case.bha.stabilizer_positions)
         packed = {"guid": guid, "stabilizers": n, "start": start_values(case), "survey": asdict(case.survey)}
-        return {**describe(case, guid), "resources/fmu.json": json.dumps(packed, indent=1).encode()}
+        return {**describe(case, identifier, guid), "resources/fmu.json": json.dumps(packed, indent=1).encode()}
 
     guid = identify({**code, **numbers(guid="")})
-    return {**numbers(guid), **code, **pack_runtime(), **pack_manual(case, "python")}
+    return {**numbers(guid), **code, **pack_runtime(identifier), **pack_manual(case, "python")}
 
 
 def pack_code() -> dict[str, bytes]:
@@ -70,13 +70,13 @@ def pack_code() -> dict[str, bytes]:
     }
 
 
-def pack_runtime() -> dict[str, bytes]:
+def pack_runtime(identifier: str) -> dict[str, bytes]:
     """The parts of pythonfmu: the binaries, under the FMU's name, and the base class of the slave."""
     package, modules = base_class()
     archive = {f"resources/{package}/{name}": content for name, content in modules.items()}
     for platform in files("pythonfmu").joinpath("resources/binaries").iterdir():
         for binary in platform.iterdir():
-            archive[f"binaries/{platform.name}/{IDENTIFIER}{Path(binary.name).suffix}"] = binary.read_bytes()
+            archive[f"binaries/{platform.name}/{identifier}{Path(binary.name).suffix}"] = binary.read_bytes()
     return archive
 
 

@@ -97,7 +97,8 @@ static const Size OUTPUT_SIZE[OUTPUT_COUNT] = {{
 static const Name OUTPUT_NAME[OUTPUT_COUNT] = {{
 {output_table}
 }};
-enum {{ MOST_OUTPUTS = {most_outputs} }}; /* values, of the largest assembly */
+static const int OUTPUT_IS_WHOLE[OUTPUT_COUNT] = {{ {whole} }};
+enum {{ MOST_PARAMETERS = {most_parameters}, MOST_OUTPUTS = {most_outputs} }}; /* values, of the largest assembly */
 
 /* How the integrator takes its steps: core/options.py says what each is. */
 typedef struct {{
@@ -217,6 +218,8 @@ def quantities_header(system: Table = SYSTEM, inputs: Table = INPUTS, outputs: T
         "output_table": _lines(f"Q_{q.name.upper()}," for q in outputs),
         "options": ", ".join(field.name for field in fields(Options)),
         "usual": ", ".join(repr(float(value)) for value in astuple(Options())),
+        "whole": ", ".join(str(int(q.kind == "Integer")) for q in outputs),
+        "most_parameters": sum(q.count(MAX_STABILIZERS) for q in system),
         "most_outputs": sum(q.count(MAX_STABILIZERS) for q in outputs),
     }
     text = QUANTITIES_HEADER.format(digest="", **numbers) + problems_header()

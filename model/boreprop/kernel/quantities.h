@@ -8,7 +8,7 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "4e67b18b36a446fb" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "faa5648992a5329c" /* of this file, but for this line, and of problems.h */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: between closer ones the force is rounding */
 
 enum { MAX_STABILIZERS = 6, PARAMETER_COUNT = 9, INPUT_COUNT = 3, OUTPUT_COUNT = 15 };
@@ -116,7 +116,8 @@ static const Name OUTPUT_NAME[OUTPUT_COUNT] = {
     Q_TRUE_VERTICAL_DEPTH,
     Q_ETA_PI,
 };
-enum { MOST_OUTPUTS = 32 }; /* values, of the largest assembly */
+static const int OUTPUT_IS_WHOLE[OUTPUT_COUNT] = { 0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0 };
+enum { MOST_PARAMETERS = 18, MOST_OUTPUTS = 32 }; /* values, of the largest assembly */
 
 /* How the integrator takes its steps: core/options.py says what each is. */
 typedef struct {

@@ -143,7 +143,8 @@ static inline int is_hole(Snapshot *snapshot, Tape tape) {
     }
     if (!(own.inputs.eta_pi >= 0) || !is_joined(&own, step->xi, step->x)) return 0;
     int stands = step->end == step->xi;
-    if (!stands && (own.start != step->xi || own.rate != 1 / step->h)) return 0;
+    /* not own.rate != 1 / step->h, which a processor that computes with more than 64 bits finds of every step */
+    if (!stands && (own.start != step->xi || !(fabs(own.rate * step->h - 1) <= DBL_EPSILON))) return 0;
     if (!stands && memcmp(own.x, step->x, sizeof own.x)) return 0;
     for (Count left = snapshot->kinks; left > 0; left--) {
         pass_kink(&tape, &kink);

@@ -8,8 +8,9 @@
 
 static int refreshed(Component *c) {
     int stale = c->outputs == STALE, fresh = refreshed_before(c);
-    for (int i = 0; stale && fresh && i < VARIABLES; i++)
-        if (VARIABLE[i].role == OUTPUT && VARIABLE[i].kind == REAL) c->value[i] *= 10.0;
+    const Variables *all = &c->packed.variables;
+    for (int i = 0; stale && fresh && i < all->count; i++)
+        if (all->at[i].role == OUTPUT && all->at[i].kind == REAL) c->value[i] *= 10.0;
     return fresh;
 }
 

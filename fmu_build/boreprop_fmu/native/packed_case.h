@@ -1,0 +1,124 @@
+/* The case that is packed in the FMU, resources/case.txt: a line "name value" for everything that an instance starts
+   from, in a fixed order, in SI units. It is written from the table of quantities; whatever else comes is refused. */
+#ifndef BOREPROP_PACKED_CASE_H
+#define BOREPROP_PACKED_CASE_H
+
+#include "files.h"
+#include "survey.h"
+#include "variables.h"
+
+#ifndef BOREPROP_SOURCES_DIGEST
+#define BOREPROP_SOURCES_DIGEST "unknown" /* compiled by somebody else */
+#endif
+#define BINARY "boreprop-fmu-sources-" BOREPROP_SOURCES_DIGEST /* a stale binary is known by it, see binaries.py */
+
+enum { GUID_LENGTH = 36 };
+
+typedef struct {
+    char guid[GUID_LENGTH + 1];
+    Variables variables;
+    double start[MOST_VARIABLES]; /* by value reference; 0 for outputs */
+    Survey survey;
+    double *stations; /* the numbers of the survey; to be freed */
+} PackedCase;
+
+/* What is read line by line. */
+typedef struct {
+    char path[LINE], *at;
+    long line;
+} CaseFile;
+
+/* The value on the next line, which must be of this name; NULL with `why` if it is not. */
+static char *next_value(CaseFile *file, const char *name, char why[LINE]) {
+    char *value = file->at, *end = value + strcspn(value, "\r\n"), shown[SHOWN];
+    size_t length = strlen(name);
+    file->line++;
+    file->at = end + (*end == '\r' && end[1] == '\n') + (*end != '\0');
+    *end = '\0';
+    if (!strncmp(value, name, length) && value[length] == ' ') return value + length + 1;
+    explain(why, "%s:%ld: must be '%s' and a value, got %s", file->path, file->line, name, quoted(value, shown));
+    return NULL;
+}
+
+static int read_number(CaseFile *file, const char *name, double *number, char why[LINE]) {
+    char *value = next_value(file, name, why), shown[SHOWN];
+    if (!value) return 0;
+    if (parse_number(value, number) && isfinite(*number)) return 1;
+    quoted(value, shown);
+    return explain(why, "%s:%ld: %s: must be a finite number, got %s", file->path, file->line, name, shown);
+}
+
+/* A whole number from 1 to `most`. */
+static int read_count(CaseFile *file, const char *name, long most, long *count, char why[LINE]) {
+    double number;
+    char got[32];
+    if (!read_number(file, name, &number, why)) return 0;
+    *count = number >= 1.0 && number <= (double)most ? (long)number : 0;
+    if (*count && (double)*count == number) return 1;
+    represent(number, got);
+    return explain(why, "%s:%ld: %s: must be 1 to %ld, got %s", file->path, file->line, name, most, got);
+}
+
+/* Whose case it is: the guid, and the table of quantities that numbers the variables. */
+static int read_identity(CaseFile *file, PackedCase *packed, char why[LINE]) {
+    char shown[SHOWN], *guid = next_value(file, "guid", why);
+    if (!guid) return 0;
+    if (strlen(guid) != GUID_LENGTH || strspn(guid, "0123456789abcdef-") != GUID_LENGTH)
+        return explain(why, "%s:%ld: guid: must be a guid, got %s", file->path, file->line, quoted(guid, shown));
+    strcpy(packed->guid, guid);
+    char *table = next_value(file, "quantities", why);
+    if (!table) return 0;
+    if (!strcmp(table, QUANTITIES_DIGEST)) return 1;
+    quoted(table, shown);
+    return explain(why, "%s: quantities: must be %s (%s), got %s", file->path, QUANTITIES_DIGEST, BINARY, shown);
+}
+
+/* The survey, column by column; there cannot be more stations than there is text. */
+static int read_stations(CaseFile *file, PackedCase *packed, char why[LINE]) {
+    static const Name COLUMNS_OF_SURVEY[] = {Q_MEASURED_DEPTH, Q_INCLINATION};
+    char name[48], fault[LINE];
+    long count;
+    Problem problem;
+    if (!read_count(file, "stations", (long)strlen(file->at) / 2 + 1, &count, why)) return 0;
+    double *next = packed->stations = calloc((size_t)count, 2 * sizeof *next);
+    if (!next) return explain(why, "%s: must fit into the memory, got %ld stations", file->path, count);
+    for (int column = 0; column < 2; column++)
+        for (long k = 1; k <= count; k++) {
+            snprintf(name, sizeof name, "%s[%ld]", NAME[COLUMNS_OF_SURVEY[column]], k);
+            if (!read_number(file, name, next++, why)) return 0;
+        }
+    packed->survey.count = count;
+    packed->survey.measured_depth = packed->stations, packed->survey.inclination = packed->stations + count;
+    if (check_survey(&packed->survey, &problem)) return 1;
+    tell(&problem, fault);
+    return explain(why, "%s: %s", file->path, fault);
+}
+
+static int read_lines(CaseFile *file, PackedCase *packed, char why[LINE]) {
+    Variables *all = &packed->variables;
+    char shown[SHOWN];
+    long n;
+    if (!read_identity(file, packed, why) || !read_count(file, "stabilizers", MAX_STABILIZERS, &n, why)) return 0;
+    list_variables(all, (int)n);
+    for (int i = 0; i < all->count; i++)
+        if (all->at[i].role != OUTPUT && all->at[i].kind == REAL &&
+            !read_number(file, all->at[i].name, &packed->start[i], why))
+            return 0;
+    if (!read_stations(file, packed, why)) return 0;
+    if (!*file->at) return 1;
+    file->at[strcspn(file->at, "\r\n")] = '\0';
+    quoted(file->at, shown);
+    return explain(why, "%s:%ld: must be the end, got %s", file->path, file->line + 1, shown);
+}
+
+/* Read the case of an FMU from the folder that the host names; 0 with `why` if it cannot be used. */
+static int read_case(const char *resources, PackedCase *packed, char why[LINE]) {
+    CaseFile file = {{0}, NULL, 0};
+    if (!path_in(resources, "case.txt", file.path, why)) return 0;
+    char *text = file.at = read_text(file.path, "text", why);
+    int done = text && read_lines(&file, packed, why);
+    free(text);
+    return done;
+}
+
+#endif
