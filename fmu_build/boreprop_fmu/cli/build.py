@@ -9,8 +9,10 @@ import typer
 from boreprop.case.file import load_case
 from boreprop.cli import console
 from boreprop.cli.options import CaseFile
+from boreprop.errors import InputError
+from boreprop.kernel.compiler import CompilerError
 
-from ..native.binaries import PLATFORMS
+from ..native.binaries import PLATFORMS, build_binaries, check_platform, is_compiled
 from ..pack.build import IDENTIFIER, build_fmu
 from ..pack.python import ADVICE
 
@@ -29,10 +31,21 @@ def build_command(
     name: Annotated[
         str, typer.Option(metavar="ID", help="The FMU's modelIdentifier: give FMUs that are linked together their own.")
     ] = IDENTIFIER,
+    platforms: Annotated[
+        str | None,
+        typer.Option(
+            metavar="linux64,win64,…|all|none",
+            help="Platforms of a native FMU; what is missing for them is compiled. none: the C sources only. "
+            "Default: all that are compiled.",
+        ),
+    ] = None,
 ) -> None:
     """Pack a case, and the model with it, as an FMU."""
     console.check_output(output, (".fmu",))
-    build_fmu(load_case(case_file), output, runtime=runtime, name=name)
+    case, chosen = load_case(case_file), None if platforms is None else _chosen(platforms)
+    if runtime != "python":
+        _compile_missing(chosen or [])
+    build_fmu(case, output, runtime=runtime, name=name, platforms=chosen)
     with ZipFile(output) as archive:
         folders = [path.split("/") for path in archive.namelist()]
     is_native = any(path[0] == "sources" for path in folders)
@@ -40,9 +53,28 @@ def build_command(
     contents = ", ".join(binaries + ["C sources"] * is_native)
     print(f"{output}: {output.stat().st_size / 1e6:.2g} MB, {'native' if is_native else 'python'}: {contents}")
     missing = [platform for platform in PLATFORMS if platform not in binaries]
-    if is_native and missing:
+    if is_native and missing and chosen is None:
         print(f"not for {', '.join(missing)}: to compile what is missing: python -m boreprop_fmu.native all")
     if not is_native and runtime == "auto":
         print("python, since there is no binary for this machine: to compile it: python -m boreprop_fmu.native")
     if not is_native:
         print(f"note: {ADVICE}")
+
+
+def _chosen(platforms: str) -> list[str]:
+    return {"all": list(PLATFORMS), "none": []}.get(platforms, [name.strip() for name in platforms.split(",")])
+
+
+def _compile_missing(platforms: list[str]) -> None:
+    """Compile what is not there, or stale, for platforms that were asked for."""
+    for platform in platforms:
+        check_platform(platform)
+    missing = [platform for platform in platforms if not is_compiled(platform)]
+    if not missing:
+        return
+    with console.progress("compiling", len(missing)) as done:
+        try:
+            for count, _ in enumerate(build_binaries(missing), start=1):
+                done(count)
+        except CompilerError as error:
+            raise InputError(f"--platforms: {error}") from error

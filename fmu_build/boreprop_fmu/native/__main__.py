@@ -5,7 +5,7 @@ Without a name the one for this machine, with its own compiler where ziglang is 
 
 import sys
 
-from boreprop.kernel.compiler import CompilerError
+from boreprop.errors import BorepropError
 
 from .binaries import PLATFORMS, build_binaries
 
@@ -13,6 +13,6 @@ if __name__ == "__main__":
     try:
         for binary in build_binaries(PLATFORMS if sys.argv[1:] == ["all"] else sys.argv[1:]):
             print(binary, flush=True)
-    except (CompilerError, OSError) as error:
+    except (BorepropError, OSError) as error:
         print("error:", error, file=sys.stderr)
         sys.exit(2)

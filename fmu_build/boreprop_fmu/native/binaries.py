@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from boreprop.errors import InputError
 from boreprop.kernel import compiler
 from boreprop.kernel.compiler import CompilerError, NoCompilerError, compile_library, host_platform, sources_digest
 from boreprop.replacing import replacing
@@ -28,6 +29,12 @@ MACH_MAGIC = 0xFEEDFACF
 def digest() -> str:
     """A digest of the sources of the FMU, as a binary that is made from them has it."""
     return sources_digest(NATIVE, *INCLUDE)
+
+
+def check_platform(platform: str) -> None:
+    """Raise `InputError` if there is no such platform."""
+    if platform not in PLATFORMS:
+        raise InputError(f"platform: must be one of {', '.join(PLATFORMS)}, got {platform!r}")
 
 
 def binary_path(platform: str, folder: Path = BINARIES) -> Path:
@@ -53,15 +60,16 @@ def build_binaries(platforms: Iterable[str] = (), folder: Path = BINARIES) -> It
     Raises
     ------
     CompilerError
-        If there is no compiler, it fails, or a platform is not known.
+        If there is no compiler, or it fails.
+    InputError
+        If there is no such platform.
     OSError
         If a file cannot be written.
     """
     names = list(platforms)
     for platform in PLATFORMS:
-        path = binary_path(platform, folder)
-        if path.exists() and not is_current(path.read_bytes()):
-            path.unlink(missing_ok=True)
+        if not is_compiled(platform, folder):
+            binary_path(platform, folder).unlink(missing_ok=True)
     if names:
         for platform in names:
             yield build_binary(platform, folder)
@@ -77,8 +85,7 @@ def build_binaries(platforms: Iterable[str] = (), folder: Path = BINARIES) -> It
 
 def build_binary(platform: str, folder: Path = BINARIES) -> Path:
     """Compile the binary for a platform with ziglang; errors as in `build_binaries`."""
-    if platform not in PLATFORMS:
-        raise CompilerError(f"platform: must be one of {', '.join(PLATFORMS)}, got {platform!r}")
+    check_platform(platform)
     output = binary_path(platform, folder)
     if platform not in UNIVERSAL:
         return compile_binary(output, platform)
@@ -100,6 +107,12 @@ def compile_binary(output: Path, platform: str | None) -> Path:
 def is_current(binary: bytes) -> bool:
     """Whether a binary is made from the sources as they are, all its parts."""
     return set(MARK.findall(binary)) == {digest().encode()}
+
+
+def is_compiled(platform: str, folder: Path = BINARIES) -> bool:
+    """Whether there is a binary for a platform, of the sources as they are."""
+    path = binary_path(platform, folder)
+    return path.exists() and is_current(path.read_bytes())
 
 
 def join(libraries: Sequence[bytes]) -> bytes:

@@ -1,6 +1,7 @@
 """Packs a case as an FMI 2.0 co-simulation FMU, either as Python code on pythonfmu's runtime or as machine code."""
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 from boreprop.case.case import Case
@@ -16,7 +17,13 @@ IDENTIFIER = "Borehole"
 
 
 def build_fmu(
-    case: Case, output: Path, *, runtime: str = "auto", name: str = IDENTIFIER, binaries: Path = BINARIES
+    case: Case,
+    output: Path,
+    *,
+    runtime: str = "auto",
+    name: str = IDENTIFIER,
+    platforms: Sequence[str] | None = None,
+    binaries: Path = BINARIES,
 ) -> Path:
     """Write the FMU of a case. The same case, code and binaries give the same bytes. Nothing is compiled.
 
@@ -31,6 +38,9 @@ def build_fmu(
         Python code, for hosts that have a Python; "auto" is native if there is a binary for this machine, else Python.
     name
         The FMU's modelIdentifier: the name of its binaries, and the beginning of the names of its C functions.
+    platforms
+        Of a native FMU: for which of `boreprop_fmu.native.binaries.PLATFORMS` it has binaries. None: for all for which
+        there is one; empty: the sources only.
     binaries
         The folder of the binaries for a native FMU, see `boreprop_fmu.native.binaries`.
 
@@ -41,7 +51,8 @@ def build_fmu(
     Raises
     ------
     InputError
-        If there is no such runtime, the name is not one of C, or a binary was compiled from other sources.
+        If there is no such runtime, the name is not one of C, a binary is missing for a platform that is named, or was
+        compiled from other sources.
     OSError
         If the file cannot be written; it is unchanged then.
     """
@@ -49,8 +60,10 @@ def build_fmu(
         raise InputError(f"runtime: must be {' or '.join(RUNTIMES)}, got {runtime!r}")
     if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]{0,99}", name):
         raise InputError(f"name: must be a letter, then letters, digits and _, at most 100, got {name!r}")
-    if runtime == "native" or (runtime == "auto" and is_native_here(binaries)):
-        write_archive(pack_native(case, name, binaries), output)
+    if runtime == "python" and platforms is not None:
+        raise InputError(f"platforms: must be left out for the runtime python, got {', '.join(platforms) or 'none'}")
+    if runtime == "native" or (runtime == "auto" and (platforms is not None or is_native_here(binaries))):
+        write_archive(pack_native(case, name, binaries, platforms), output)
     else:
         write_archive(pack_python(case, name), output)
     return output

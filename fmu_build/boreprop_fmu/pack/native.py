@@ -5,6 +5,7 @@ here; the binaries are those that there are, see `boreprop_fmu.native`. The fold
 C99 compiler and the headers of FMI 2.0.
 """
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from boreprop.case.case import Case
@@ -14,7 +15,7 @@ from boreprop.kernel.compiler import FOLDER as KERNEL
 from boreprop.kernel.compiler import host_platform
 from boreprop.kernel.generate import quantities_digest
 
-from ..native.binaries import NATIVE, PLATFORMS, SOURCE, binary_path, is_current
+from ..native.binaries import NATIVE, PLATFORMS, SOURCE, binary_path, check_platform, is_current
 from .archive import identify
 from .contents import describe, pack_manual, start_values
 
@@ -26,7 +27,7 @@ PREFIX = """\
 """
 
 
-def pack_native(case: Case, identifier: str, binaries: Path) -> dict[str, bytes]:
+def pack_native(case: Case, identifier: str, binaries: Path, platforms: Sequence[str] | None) -> dict[str, bytes]:
     """The files of an FMU that needs no Python: path in the FMU → content. Parameters are those of `build_fmu`."""
     code = pack_sources(identifier)
 
@@ -35,7 +36,7 @@ def pack_native(case: Case, identifier: str, binaries: Path) -> dict[str, bytes]
         return {**description, CASE_TEXT: case_text(case, guid)}
 
     guid = identify({**code, **numbers(guid="")})
-    return {**numbers(guid), **code, **pack_binaries(identifier, binaries), **pack_manual(case, "native")}
+    return {**numbers(guid), **code, **pack_binaries(identifier, binaries, platforms), **pack_manual(case, "native")}
 
 
 def pack_sources(identifier: str) -> dict[str, bytes]:
@@ -57,19 +58,22 @@ def case_text(case: Case, guid: str) -> bytes:
     return "".join(f"{name} {value}\n" for name, value in lines.items()).encode()
 
 
-def pack_binaries(identifier: str, folder: Path) -> dict[str, bytes]:
-    """The binaries that there are, under the FMU's name; `InputError` if one was compiled from other sources."""
+def pack_binaries(identifier: str, folder: Path, platforms: Sequence[str] | None) -> dict[str, bytes]:
+    """The binaries for some platforms, or all that there are, under the FMU's name; errors as in `build_fmu`."""
     packed = {}
-    for platform in PLATFORMS:
+    if platforms is None:
+        platforms = [platform for platform in PLATFORMS if binary_path(platform, folder).exists()]
+    for platform in platforms:
+        check_platform(platform)
         path = binary_path(platform, folder)
-        if path.exists():
-            content = path.read_bytes()
-            if not is_current(content):
-                raise InputError(
-                    f"{path}: must be compiled from the sources as they are, got one of others; "
-                    "compile it again: python -m boreprop_fmu.native"
-                )
-            packed[f"binaries/{platform}/{identifier}{path.suffix}"] = content
+        content = path.read_bytes() if path.exists() else b""
+        if not is_current(content):
+            got = "one of others" if content else "none"
+            raise InputError(
+                f"{path}: must be compiled from the sources as they are, got {got}; "
+                f"compile it: python -m boreprop_fmu.native {platform}"
+            )
+        packed[f"binaries/{platform}/{identifier}{path.suffix}"] = content
     return packed
 
 
