@@ -133,5 +133,3 @@ def test_the_command_simulates_with_the_kernel(command: Command, paper_case: Pat
     for name in python.columns:
         np.testing.assert_allclose(native[name], python[name], rtol=AGREEMENT, atol=1e-12, err_msg=name)
 
-
-# numbers that make no sense

@@ -44,18 +44,18 @@ class Plan:
 
     h: float  # its length
     resumed: float  # the length that may follow if a kink cuts it short
-    stretch: float = STRETCH
+    repeated: bool = False  # an earlier trial was no good: the next is never longer than planned
     switches: int = 0  # of the regime where it starts
     slack: float = ROUNDING  # by which its points may lie beyond a bound
 
     def shorten(self, h: float) -> None:
         """Try again, the error having been too large."""
         self.h = self.resumed = h
-        self.stretch = 1.0
+        self.repeated = True
 
     def look_closer(self, h: float) -> None:
         """Try again, each regime having met a bound before the first point."""
-        self.h, self.stretch, self.switches = h, 1.0, 0
+        self.h, self.repeated, self.switches = h, True, 0
         self.slack *= CLOSER
 
 
@@ -355,7 +355,8 @@ class Integrator:
         to_kink = self.kinks.next_kink(xi, 2 * h, law.gains, self.options.relative_tolerance) - xi
         if to_kink >= 2 * h:
             return h
-        return to_kink if to_kink <= min(plan.stretch * h, largest) else to_kink / 2
+        longest = h if plan.repeated else min(STRETCH * h, largest)
+        return to_kink if to_kink <= longest else to_kink / 2
 
     def _failure(self, code: str, xi: float) -> CannotContinue:
         return CannotContinue(Problem(code, limit=self.options.relative_tolerance, place=xi * self.length_scale))

@@ -58,6 +58,6 @@ class Options:
 class Statistics(NamedTuple):
     """What the integrator has done since the start of the run."""
 
-    accepted: int = 0  # steps
-    rejected: int = 0  # steps that were tried again, since their error was too large
-    events: int = 0  # bounds met
+    accepted: int  # steps
+    rejected: int  # trials that were repeated over a shorter length, since their error was too large
+    events: int  # bounds met

@@ -123,7 +123,7 @@ static inline int has_room(const Integrator *p) {
 typedef struct {
     double planned; /* its length, but for kinks */
     double resumed; /* the length to come back to after a step that a kink has made shorter */
-    double stretch; /* how much longer it may be than planned, to end on a kink */
+    int repeated;   /* an earlier trial was no good: the next is never longer than planned */
     double slack;   /* by how much a value may lie beyond its bound */
     int switches;   /* of regime at the start of the step */
     double h;       /* the length of the trial */
@@ -131,7 +131,7 @@ typedef struct {
 
 /* The plan of the step after `last`, which ended on a kink of some order. */
 static inline Plan first_plan(const Step *last, int kink, const Law *law, double layers) {
-    Plan plan = {last->next_h, last->next_h, STRETCH, ROUNDING, 0, 0.0};
+    Plan plan = {last->next_h, last->next_h, 0, ROUNDING, 0, 0.0};
     if (kink <= SMOOTHEST_KINK || last->end == last->xi) {
         plan.planned = smaller(plan.planned, layers * law->relaxation);
         if (last->event != NONE) plan.resumed = plan.planned;
@@ -143,7 +143,8 @@ static inline Plan first_plan(const Step *last, int kink, const Law *law, double
 static inline void choose_length(const Integrator *p, const Law *law, double xi, Plan *plan) {
     double largest = p->options.largest_step, h = smaller(plan->planned, largest);
     double way = next_kink(&p->now.kinks, &p->scaled, law->gains, p->options.relative_tolerance, xi, 2 * h) - xi;
-    if (way < 2 * h) h = way <= smaller(plan->stretch * h, largest) ? way : way / 2;
+    double longest = plan->repeated ? h : smaller(STRETCH * h, largest);
+    if (way < 2 * h) h = way <= longest ? way : way / 2;
     plan->h = h;
 }
 
@@ -187,7 +188,7 @@ static inline Status find_step(
         if (!is_finite(trial)) return failed(p, NOT_FINITE, xi, problem);
         if (trial->error > 1.0) {
             plan->planned = plan->resumed = plan->h * larger(growth(trial->error), LEAST_GROWTH);
-            plan->stretch = 1.0;
+            plan->repeated = 1;
             p->now.rejected++;
             continue;
         }
@@ -199,7 +200,7 @@ static inline Status find_step(
             continue;
         }
         plan->planned = larger(plan->h / CLOSER, shortest);
-        plan->stretch = 1.0, plan->switches = 0, plan->slack *= CLOSER;
+        plan->repeated = 1, plan->switches = 0, plan->slack *= CLOSER;
         if (plan->slack >= MOST_SLACK) return failed(p, NO_MODE, xi, problem);
     }
 }

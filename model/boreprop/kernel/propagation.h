@@ -14,7 +14,7 @@ static inline double present_force(const State *now) {
 /* What bends the beam with the bit at `xi` in the state `x`. */
 static inline Loads loads_at(const Integrator *p, double xi, const double x[COMPONENTS], double F_rss) {
     double delayed[MAX_STABILIZERS][DIRECTIONS] = {{0}};
-    Loads loads = {{0}, F_rss, 0};
+    Loads loads = {.F_rss = F_rss};
     hole_at_stabilizers(&p->now.hole, &p->scaled, xi, delayed);
     for (int i = 0; i < p->scaled.n; i++) loads.e[i] = x[LATERAL] - delayed[i][0] - p->scaled.s[i] * x[ANGLE];
     loads.sin_Theta_1 = sin(x[LATERAL] - delayed[0][0]);
