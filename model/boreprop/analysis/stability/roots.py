@@ -263,7 +263,7 @@ def rightmost_roots(
     frequencies, rightmost = characteristic.outline(eta_pi, abscissa - MARGIN / reach)
     if frequencies[-1] * reach > 2 * pi * MOST_ROOTS:
         raise ParameterError(
-            "abscissa", f"must be nearer to 0, too many roots lie right of it at ηΠ = {eta_pi:g}", abscissa
+            "abscissa", f"must be nearer to 0: right of it lie too many roots at ηΠ = {eta_pi:g}", abscissa
         )
     try:
         roots = find_zeros(
@@ -276,7 +276,7 @@ def rightmost_roots(
             SMOOTH / reach,
         )
     except ArithmeticError as error:
-        raise RootsNotFound(f"the roots at ηΠ = {eta_pi:.6g}: {error}; use a slightly other --eta-pi") from error
+        raise RootsNotFound(f"the roots at ηΠ = {eta_pi:.6g}: {error}; use a slightly different --eta-pi") from error
     roots = roots[roots.real >= abscissa]
     if not len(roots):
         return rightmost_roots(characteristic, eta_pi, abscissa + usual_abscissa(characteristic))
