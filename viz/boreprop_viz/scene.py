@@ -237,8 +237,5 @@ def section_bounds(position: Array, around: float) -> Bounds:
 def frame_bounds(reach: float) -> Bounds:
     """The range of the bit frame of a BHA that is `reach` metres long."""
     side = FRAME_WIDTH / 2 * reach
-    top, bottom = (
-        1.05 * REACH_ABOVE_BHA,
-        AHEAD + 0.06,
-    )  # a little room above the hole and below the directions, for text
+    top, bottom = 1.05 * REACH_ABOVE_BHA, AHEAD + 0.06  # with a little room for text at either end
     return Bounds((-side, side), (-top * reach, bottom * reach))
