@@ -36,7 +36,7 @@ class Quantity:
     start
         Its value where a case does not give one.
     follows
-        For an output, the inputs that it follows at once, without any drilling.
+        For an output, the inputs and parameters that it follows at once, without any drilling.
     slope
         For an input, whether the native engine also takes its change per metre drilled.
     key

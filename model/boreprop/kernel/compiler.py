@@ -205,10 +205,10 @@ def library_path() -> Path:
     return FOLDER / f"boreprop_kernel{suffix}"
 
 
-def sources_digest() -> str:
-    """A digest of names and contents of the kernel's sources. A library tells the digest of those it was made from."""
+def sources_digest(*folders: Path) -> str:
+    """A digest of the C files in these folders, else of the kernel's, by name and content; a library tells its own."""
     digest = sha256()
-    for path in sorted([*FOLDER.glob("*.c"), *FOLDER.glob("*.h")]):
+    for path in [path for folder in folders or (FOLDER,) for path in sorted(folder.glob("*.[ch]"))]:
         text = path.read_bytes()
         digest.update(f"{path.name} {len(text)}\n".encode() + text)
     return digest.hexdigest()[:16]

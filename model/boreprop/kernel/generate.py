@@ -89,7 +89,7 @@ static const Size OUTPUT_SIZE[OUTPUT_COUNT] = {{
 static const Name OUTPUT_NAME[OUTPUT_COUNT] = {{
 {output_table}
 }};
-enum {{ MOST_OUTPUTS = {most_outputs} }}; /* how many values the outputs of the largest BHA are */
+enum {{ MOST_OUTPUTS = {most_outputs} }}; /* values, of the largest assembly */
 
 /* How the integrator takes its steps: core/options.py says what each is. */
 typedef struct {{

@@ -8,7 +8,7 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "50736bad26666f0f" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "e6610a8e42b0c196" /* of this file, but for this line, and of problems.h */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: forces between closer ones are rounding errors */
 
 enum { MAX_STABILIZERS = 6, PARAMETER_COUNT = 9, INPUT_COUNT = 3, OUTPUT_COUNT = 15 };
@@ -116,7 +116,7 @@ static const Name OUTPUT_NAME[OUTPUT_COUNT] = {
     Q_TRUE_VERTICAL_DEPTH,
     Q_ETA_PI,
 };
-enum { MOST_OUTPUTS = 32 }; /* how many values the outputs of the largest BHA are */
+enum { MOST_OUTPUTS = 32 }; /* values, of the largest assembly */
 
 /* How the integrator takes its steps: core/options.py says what each is. */
 typedef struct {
