@@ -35,7 +35,7 @@ from ..core.checks import check_number
 from ..core.errors import ParameterError
 from ..core.linear import dot
 from ..core.modes import ROUNDING, Loads, Mode, Modes, Regime, Row, wall
-from ..core.system import BottomHoleAssembly, Scaled, eta_pi, scale
+from ..core.system import BottomHoleAssembly, Scaled, scale
 
 MOST_PIECES = 1000  # of the curve, so that the way along it ends: there are at most 729 regimes, few of them met twice
 
@@ -223,7 +223,7 @@ def _steady(case: Case, inclination: float, gravity: bool) -> "Steady":
     scaled = scale(case.bha, case.bit)
     if not gravity:
         scaled = replace(scaled, w=0.0)
-    return Steady(scaled, eta_pi(case.bha, case.bit, case.active_weight_on_bit), inclination)
+    return Steady(scaled, case.eta_pi, inclination)
 
 
 def _in_si(bha: BottomHoleAssembly, line: "Line", rss_force: float) -> SteadyResponse:

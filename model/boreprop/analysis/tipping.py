@@ -24,7 +24,6 @@ from ..core.checks import check_number
 from ..core.options import RELATIVE_TOLERANCE, Options
 from ..core.quantities import OUTPUTS, scalar_names
 from ..core.survey import Survey
-from ..core.system import eta_pi
 from ..errors import CannotContinue
 from ..run.engines import Engine, engine, start
 from ..run.trajectory import Stopped, Trajectory
@@ -282,7 +281,7 @@ def usual_map(case: Case) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     The map includes the case. Its ηΠ go from that of the case, or less, to a little beyond that at which the BHA in
     contact no longer oscillates, and at least to 1.5 times that of the case.
     """
-    own = eta_pi(case.bha, case.bit, case.active_weight_on_bit)
+    own = case.eta_pi
     inclination = case.survey.inclination[-1]
     contact = can_touch(case.bha, case.bit, inclination, case.schedule.rss_force)
     critical = critical_eta_pi(case, contact=contact, inclination=inclination)

@@ -15,7 +15,6 @@ from ...case.case import Case
 from ...core.checks import check_number
 from ...core.errors import ParameterError
 from ...core.system import BitRock, BottomHoleAssembly, scale
-from ...core.system import eta_pi as scaled_weight
 from ...errors import InputError, RootsNotFound
 from .characteristic import Characteristic
 from .zeros import Strip, find_zeros
@@ -136,7 +135,7 @@ def find_roots(
     (<Verdict.OSCILLATORY: 'oscillatory'>, 18.174)
     """
     if eta_pi is None:
-        eta_pi = scaled_weight(case.bha, case.bit, case.active_weight_on_bit)
+        eta_pi = case.eta_pi
     if inclination is None:
         inclination = case.survey.inclination[-1]
     check_number("eta_pi", eta_pi, at_least=SMALLEST_ETA_PI)
