@@ -129,40 +129,50 @@ def compile_library(
     OSError
         If `output` cannot be written.
     """
-    if platform is not None and platform not in PLATFORMS:
-        raise CompilerError(f"platform: must be one of {', '.join(PLATFORMS)}, got {platform!r}")
     folders = [Path(folder).resolve() for folder in (source.parent, *include)]
-    sources = [source.resolve()]
-    links: tuple[str, ...] = ("-lm",)
-    if compiler := [] if platform else _own_compiler():
-        flags = _words("CFLAGS")
-        environment = dict(os.environ)
-    elif (zig := _zig()) and (made := PLATFORMS.get(platform or host_platform() or "")):
-        compiler = [str(zig), "cc", "-target", made.target]
-        flags = [f"-fmacro-prefix-map={folder}{os.sep}=" for folder in folders]
-        sources, links = [*sources, *made.sources], made.links
-        environment = {name: value for name, value in os.environ.items() if name.upper() in ENVIRONMENT}
-    else:
-        what = "ziglang" if platform else "a C compiler (cc, gcc, clang or $CC) or ziglang"
-        target = platform or "this machine"
-        raise NoCompilerError(f"{what} must be installed to compile for {target}: pip install ziglang==0.15.2")
-
-    flags += [f"-I{folder}" for folder in folders]
-    flags += [f"-D{name}={value}" for name, value in defines.items()]
+    compiler = _compiler(platform, folders)
+    flags = [*(f"-I{folder}" for folder in folders), *(f"-D{name}={value}" for name, value in defines.items())]
+    sources, environment = [source.resolve(), *compiler.sources], compiler.environment
     output = output.resolve()
     # In a folder of its own, since linkers leave more than the library. They write its name, as it is given, into it.
     with TemporaryDirectory(dir=output.parent, prefix=f".{output.name}.") as draft:
         if not CACHES & set(environment):  # zig would not start
             environment["ZIG_GLOBAL_CACHE_DIR"] = str(Path(draft, "cache"))
         compiles = [["-c", str(path), "-o", f"{path.stem}.o"] for path in sources]
-        link = ["-shared", *(f"{path.stem}.o" for path in sources), "-o", output.name, *links]
+        link = ["-shared", *(f"{path.stem}.o" for path in sources), "-o", output.name, *compiler.links]
         for task in (*compiles, link):
-            command = [*compiler, *FLAGS, *flags, *task]
+            command = [*compiler.command, *flags, *task]
             run = subprocess.run(command, cwd=draft, env=environment, capture_output=True, text=True, errors="replace")
             if run.returncode:
-                raise CompilerError(f"{source}: must compile with {Path(compiler[0]).name}, got: {_gist(run.stderr)}")
+                raise CompilerError(f"{source}: must compile with {Path(command[0]).name}, got: {_gist(run.stderr)}")
         os.replace(Path(draft) / output.name, output)
     return output
+
+
+@dataclass(frozen=True)
+class _Compiler:
+    """What compiles for a platform: a command with flags, its environment, and what else it compiles and links."""
+
+    command: list[str]
+    environment: dict[str, str]
+    sources: tuple[Path, ...] = ()
+    links: tuple[str, ...] = ("-lm",)
+
+
+def _compiler(platform: str | None, folders: Sequence[Path]) -> _Compiler:
+    """The compiler that `compile_library` uses for a platform; with ziglang, C does not see where `folders` are."""
+    if platform is not None and platform not in PLATFORMS:
+        raise CompilerError(f"platform: must be one of {', '.join(PLATFORMS)}, got {platform!r}")
+    if own := [] if platform else _own_compiler():
+        return _Compiler([*own, *FLAGS, *_words("CFLAGS")], dict(os.environ))
+    if (zig := _zig()) and (made := PLATFORMS.get(platform or host_platform() or "")):
+        hidden = [f"-fmacro-prefix-map={folder}{os.sep}=" for folder in folders]
+        environment = {name: value for name, value in os.environ.items() if name.upper() in ENVIRONMENT}
+        command = [str(zig), "cc", "-target", made.target, *FLAGS, *hidden]
+        return _Compiler(command, environment, made.sources, made.links)
+    what = "ziglang" if platform else "a C compiler (cc, gcc, clang or $CC) or ziglang"
+    target = platform or "this machine"
+    raise NoCompilerError(f"{what} must be installed to compile for {target}: pip install ziglang==0.15.2")
 
 
 def _own_compiler() -> list[str]:
