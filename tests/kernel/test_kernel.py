@@ -58,7 +58,9 @@ def test_numbers_that_are_no_state_are_refused_and_change_nothing(case: Case, da
 def test_arrays_that_do_not_fit_are_refused(case: Case, forces: int, rows: list[int], lacking: int) -> None:
     columns = len(scalar_names(OUTPUTS, 2))
     run = NativeDrilling(case.bha, case.bit, case.survey, active_weight_on_bit=case.active_weight_on_bit)
-    with pytest.raises(ValueError, match=rf"must (be 2, of a table of 2|have {columns} columns), got "):
+    with pytest.raises(
+        ValueError, match=rf"must (hold 2 values like lengths, and rows below 2|have {columns} columns), got "
+    ):
         run.follow(np.array([1.0, 2.0]), np.zeros(forces), 5e4, rows, np.empty((2, columns - lacking)))
 
 

@@ -189,7 +189,8 @@ class NativeDrilling:
         """Drill leg after leg, as `Drilling.follow`; `ValueError` if the arrays do not fit together."""
         legs, on_rows = len(lengths), numbers(rows, np.intc)
         if not len(forces) == len(on_rows) == legs or (on_rows >= len(table)).any():
-            raise ValueError(f"forces, rows: must be {legs}, of a table of {len(table)}, got {len(forces)}, {on_rows}")
+            constraint = f"must hold {legs} values like lengths, and rows below {len(table)}"
+            raise ValueError(f"forces, rows: {constraint}, got {len(forces)} forces and rows {on_rows.tolist()}")
         if table.shape != (len(table), len(self._names)):
             raise ValueError(f"table: must have {len(self._names)} columns, got shape {table.shape}")
         done = self._library.boreprop_follow(
