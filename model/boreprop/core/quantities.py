@@ -36,9 +36,9 @@ class Quantity:
     start
         Its value where a case does not give one.
     follows
-        For an output, the inputs and parameters that it follows at once, without any drilling.
+        Of an output, the inputs and parameters that it follows at once, without any drilling.
     slope
-        For an input, whether the native engine also takes its change per metre drilled.
+        Of an input, whether the native engine also takes its change per metre drilled.
     key
         Its table and key in a case file, such as "bha.rss_position". A key that ends in _deg holds degrees.
     field

@@ -216,7 +216,7 @@ def library_path() -> Path:
 
 
 def sources_digest(*folders: Path) -> str:
-    """A digest of the C files in these folders, else of the kernel's, by name and content; a library tells its own."""
+    """A digest of the C in these folders, else of the kernel; a library says which sources it was made from."""
     digest = sha256()
     for path in [path for folder in folders or (FOLDER,) for path in sorted(folder.glob("*.[ch]"))]:
         text = path.read_bytes()
