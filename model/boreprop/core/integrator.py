@@ -307,7 +307,7 @@ class Integrator:
         self._accepted += 1
 
     def _first_plan(self, last: Step, kink: int | None) -> Plan:
-        """The plan of the next step: as the last one left it, but after a kink no longer than the layers of θ."""
+        """The plan of the next step: as the last one left it, but after a kink no longer than `layers` allow."""
         plan = Plan(last.next_h, last.next_h)
         if (kink is not None and kink <= SMOOTHEST_KINK) or last.end == last.xi:
             plan.h = min(plan.h, self.options.layers * self._law.relaxation)

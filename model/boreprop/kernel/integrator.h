@@ -1,4 +1,4 @@
-/* The integrator: it advances the state of a law, step by step. What is drilled only the law knows.
+/* The integrator: it advances the state of a law, step by step. Only the law knows what is drilled.
 
    A step ends where the solution is not smooth: on a change of input, on an event (contact or saturation comes or goes),
    and where a stabilizer passes the kink that either left in the hole. The steps are the integrator's own: the bit may
@@ -133,7 +133,7 @@ typedef struct {
     double h;       /* the length of the trial */
 } Plan;
 
-/* The plan of the next step: as the last one left it, but after a kink no longer than the layers of θ. */
+/* The plan of the next step: as the last one left it, but after a kink no longer than `layers` allow. */
 static inline Plan first_plan(const Step *last, int kink, const Law *law, double layers) {
     Plan plan = {last->next_h, last->next_h, 0, ROUNDING, 0, 0.0};
     if (kink <= SMOOTHEST_KINK || last->end == last->xi) {
