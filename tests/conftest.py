@@ -12,6 +12,7 @@ from pathlib import Path
 
 import hypothesis
 import pytest
+from hypothesis.internal.conjecture import providers
 
 from boreprop.case.case import Case
 from boreprop.case.file import load_case
@@ -22,14 +23,15 @@ from boreprop_fmu.pack.build import build_fmu
 from flavours import NATIVE, PYTHON, Flavour
 from places import EXAMPLES
 
-# The suite tries the same examples everywhere, on machines slow and fast, but for a few numbers: Hypothesis takes some
-# from those of our modules that are loaded. `make soak` tries new examples.
+# The suite tries the same examples everywhere, on machines slow and fast; `make soak` tries new ones. Hypothesis would
+# also draw numbers that it finds in the modules that happen to be loaded.
 SUITE = hypothesis.settings(
     database=None, deadline=None, derandomize=True, suppress_health_check=[hypothesis.HealthCheck.too_slow]
 )
 hypothesis.settings.register_profile("suite", SUITE)
 hypothesis.settings.register_profile("soak", SUITE, derandomize=False)
 hypothesis.settings.load_profile("suite")
+providers._get_local_constants = lambda: providers._local_constants
 
 pytest_plugins = ["studies", "steering_cases", "native_fmu", "numbered_runs"]  # their fixtures
 
