@@ -81,8 +81,10 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
 
     def exit_initialization_mode(self) -> None:
         """From here on parameters are fixed."""
-        left = self._call("fmi2ExitInitializationMode", (INITIALIZATION,), self._go_on_to, STEPPING)
-        if left and not self._safely(self._refresh):
+        if not self._call("fmi2ExitInitializationMode", (INITIALIZATION,), self._go_on_to, STEPPING):
+            return
+        self._stale = False  # whether it goes well or not: the log says it once
+        if not self._safely(self._refresh):
             self._tell_why_it_cannot_start()
 
     def do_step(self, current_time: float, step_size: float) -> bool:
