@@ -3,12 +3,14 @@ PYTHON ?= python3
 MINUTES ?= 40
 BIN = .venv/bin
 
-.PHONY: demo test soak lint bench clean
+.PHONY: demo binaries test soak lint bench clean
 
 demo: .venv/all.installed  # the main job: case file, FMU, run, viewer recording, figures, summary; results in out/
 	mkdir -p out
 	$(BIN)/boreprop-fmu build examples/build_section.toml --output out/Borehole.fmu
 	$(BIN)/boreprop-fmu run out/Borehole.fmu --schedule examples/build_section_rss.csv --output out/run.csv
+	$(BIN)/boreprop-fmu build examples/build_section.toml --runtime python --output out/python.fmu
+	$(BIN)/boreprop-fmu run out/python.fmu --schedule examples/build_section_rss.csv --output out/python.csv
 	$(BIN)/boreprop-view out/run.csv --plan examples/build_section_plan.csv --save out/run.rrd
 	$(BIN)/boreprop figures out
 	$(BIN)/boreprop summary out/run.csv
@@ -16,8 +18,12 @@ demo: .venv/all.installed  # the main job: case file, FMU, run, viewer recording
 	@printf '  %-15s %s\n' \
 		Borehole.fmu    'the FMU, for any FMI 2.0 co-simulation tool' \
 		run.csv         'the run, and its case in run.case.toml' \
+		python.fmu      'the same FMU as Python code, and its run in python.csv' \
 		run.rrd         'the recording: $(BIN)/rerun out/run.rrd' \
 		'figure_*.png'  'figures 6 to 8 of the paper'
+
+binaries: .venv/dev.installed  # what native FMUs are packed with, for all platforms
+	$(BIN)/python -m boreprop_fmu.native all
 
 test: .venv/dev.installed  # the whole suite
 	$(BIN)/python -m pytest -n auto
@@ -42,7 +48,7 @@ bench: .venv/bench.installed  # speed, side by side with something else
 	$(BIN)/python benchmarks/native.py
 
 clean:
-	rm -rf .venv out dist build .*_cache .hypothesis model/boreprop/kernel/boreprop_kernel.*
+	rm -rf .venv out dist build .*_cache .hypothesis model/boreprop/kernel/boreprop_kernel.* fmu_build/boreprop_fmu/binaries
 
 .venv/%.installed: pyproject.toml
 	@$(PYTHON) -c 'import sys; v = sys.version.split()[0]; sys.exit(v and sys.version_info < (3, 11) and \
@@ -50,5 +56,7 @@ clean:
 	@echo 'Installing into .venv: a minute or two the first time'
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[$*]"
-	@$(BIN)/python -m boreprop.kernel >/dev/null 2>&1 || true  # again: the compiler may have come with the extras
+	@# again: the compiler may have come with the extras
+	@$(BIN)/python -m boreprop.kernel >/dev/null 2>&1 || true
+	@$(BIN)/python -m boreprop_fmu.native >/dev/null 2>&1 || true
 	@touch $@

@@ -3,6 +3,7 @@
 import subprocess
 import zipfile
 from collections import deque
+from ctypes import CDLL
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -62,7 +63,8 @@ def test_both_flavours_describe_themselves_alike(case: Case, pack: Pack, borehol
 def test_the_table_is_in_the_order_that_the_c_code_counts_on() -> None:
     roles = [variable.role for variable in VARIABLES]
     assert roles == sorted(roles, key=("input", "output", "parameter").index)
-    assert [variable.name for variable in VARIABLES if variable.kind == "String"] == ["survey_file"]
+    assert [variable for variable in VARIABLES if variable.kind == "String"] == [VARIABLES[-1]]
+    assert VARIABLES[-1].name == "survey_file"
     assert not any(variable.kind == "Integer" and variable.role != "output" for variable in VARIABLES)
 
 
@@ -78,8 +80,7 @@ def test_the_sources_compile_without_a_warning_against_the_headers_of_an_importe
     sources = unpacked(case, tmp_path)
     assert not list(sources.glob("fmi2*.h"))
     flags = ["-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", f"-I{FMI_HEADERS}"]
-    command = [str(COMPILER), *flags, sources / "fmi2.c", "-lm", "-o", tmp_path / "Borehole.so"]
-    subprocess.run(command, check=True)
+    subprocess.run([str(COMPILER), *flags, sources / "fmi2.c", "-lm", "-o", tmp_path / "Borehole.so"], check=True)
 
 
 BOTH = """
@@ -100,6 +101,13 @@ def test_two_fmus_link_into_one_program(case: Case, tmp_path: Path) -> None:
     assert subprocess.run([tmp_path / "both"], check=True, capture_output=True, text=True).stdout == "2.0 2.0\n"
 
 
+def test_a_shared_library_of_the_sources_has_the_plain_names(case: Case, tmp_path: Path) -> None:
+    source, library = unpacked(case, tmp_path) / "fmi2.c", tmp_path / "plain.so"
+    flags = ["-shared", "-fPIC", f"-I{NATIVE / 'importer'}", "-DFMI2_FUNCTION_PREFIX="]  # as the FMU's page has it
+    subprocess.run([str(COMPILER), *flags, source, "-lm", "-o", library], check=True)
+    assert CDLL(str(library)).fmi2GetVersion
+
+
 def test_the_name_is_that_of_the_model_and_of_its_binaries(case: Case, binaries: Path, tmp_path: Path) -> None:
     fmu = build_fmu(case, tmp_path / "a.fmu", name="Well_7", binaries=binaries)
     description = read_description(fmu)
@@ -117,7 +125,7 @@ def test_the_name_is_that_of_the_model_and_of_its_binaries(case: Case, binaries:
     ],
 )
 def test_a_flavour_and_a_name_that_cannot_be_are_refused(
-    case: Case, tmp_path: Path, arguments: dict[str, str], message: str
+    case: Case, tmp_path: Path, arguments: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(InputError, match=message):
         build_fmu(case, tmp_path / "Borehole.fmu", **arguments)
@@ -137,7 +145,7 @@ def test_a_binary_of_other_sources_is_refused(case: Case, binaries: Path, tmp_pa
     path = binary_path(str(host_platform()), tmp_path)
     path.parent.mkdir()
     path.write_bytes(binary_path(str(host_platform()), binaries).read_bytes().replace(digest().encode(), b"0" * 16))
-    with pytest.raises(InputError, match=r"got one that is not; compile it: python -m boreprop_fmu\.native all"):
+    with pytest.raises(InputError, match=r"got one of others; compile it again: python -m boreprop_fmu\.native"):
         build_fmu(case, tmp_path / "a.fmu", binaries=tmp_path)
     assert not (tmp_path / "a.fmu").exists()
 

@@ -93,12 +93,13 @@ static void open_fmu(const char *folder) {
 
 static const fmi2CallbackFunctions callbacks = {listen, calloc, free, NULL, &lines};
 
-/* The status of a call that may say no, with a line in the log since there were `before`. */
-static fmi2Status answered(fmi2Status status, long before) {
+/* The status of a call that may say no, with a line in the log since there were `lines_before`. */
+static long lines_before;
+static fmi2Status answered(fmi2Status status) {
     must(status == fmi2OK || status == fmi2Discard || status == fmi2Error, "a status must be OK, Discard or Error");
-    must(status == fmi2OK || lines > before || !listening, "what is refused must be logged");
+    must(status == fmi2OK || lines > lines_before || !listening, "what is refused must be logged");
     return status;
 }
-#define CALL(expression) answered(expression, lines)
+#define CALL(expression) (lines_before = lines, answered(expression))
 
 #endif

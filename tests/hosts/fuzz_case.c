@@ -46,7 +46,7 @@ static void write_spoilt(void) {
     remove(spoilt_path); /* some systems write a file that is overwritten to the disk at once */
     FILE *file = fopen(spoilt_path, "wb");
     must(text && file, "a case must be written");
-    memcpy(text, good, size);
+    strcpy(text, good);
     for (size_t times = below(4); times--;) size = spoil(text, size, room);
     must(fwrite(text, 1, size, file) == size, "a case must be written");
     fclose(file);
@@ -91,7 +91,8 @@ int main(int count, char **arguments) {
     open_fmu(arguments[3]);
     snprintf(spoilt_path, sizeof spoilt_path, "%s/case.txt", resources);
     FILE *file = fopen(spoilt_path, "rb");
-    must(file && (good = read_all(file, &size)), "the case must be read");
+    good = file ? read_all(file, &size) : NULL;
+    must(good != NULL, "the case must be read");
     fclose(file);
     snprintf(spoilt_folder, sizeof spoilt_folder, "%s/spoilt", arguments[3]);
     snprintf(spoilt_path, sizeof spoilt_path, "%s/case.txt", spoilt_folder);

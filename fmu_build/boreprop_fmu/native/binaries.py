@@ -41,8 +41,8 @@ def build_binaries(platforms: Iterable[str] = (), folder: Path = BINARIES) -> It
     Parameters
     ----------
     platforms
-        Names of `PLATFORMS`, to be compiled with ziglang. None: this machine, with its own compiler where there is no
-        ziglang.
+        Names of `PLATFORMS`, to be compiled with ziglang. Without any: this machine, with its own compiler where there
+        is no ziglang.
     folder
         Where they go, each into the folder of its platform.
 

@@ -66,8 +66,8 @@ def pack_binaries(identifier: str, folder: Path) -> dict[str, bytes]:
             content = path.read_bytes()
             if not is_current(content):
                 raise InputError(
-                    f"{path}: must be compiled from the sources as they are, got one that is not; "
-                    "compile it: python -m boreprop_fmu.native all"
+                    f"{path}: must be compiled from the sources as they are, got one of others; "
+                    "compile it again: python -m boreprop_fmu.native"
                 )
             packed[f"binaries/{platform}/{identifier}{path.suffix}"] = content
     return packed
