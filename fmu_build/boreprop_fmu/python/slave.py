@@ -53,7 +53,8 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         forget(self.resources)
         packed = json.loads(Path(self.resources, "fmu.json").read_text(encoding="utf-8"))
         self.guid: str = packed["guid"]
-        self._log_switch = kwargs["logger"] + packed["log_switch"] if packed["log_switch"] else None
+        logger, place = kwargs.get("logger"), packed["log_switch"]
+        self._log_switch = logger + place if logger and place else None
         self._n: int = packed["stabilizers"]
         self._survey = Survey(**{name: tuple(values) for name, values in packed["survey"].items()})
         self._scalars = [(name, quantity) for quantity in VARIABLES for name in quantity.names(self._n)]
