@@ -19,9 +19,9 @@ from time import perf_counter, thread_time
 
 import numpy as np
 
-from boreprop.analysis.study.compute import outcome, study
+from boreprop.analysis.study.compute import study
 from boreprop.analysis.study.design import Study, grid, vary
-from boreprop.analysis.study.figures import key_figures
+from boreprop.analysis.study.figures import key_figures, outcome
 from boreprop.analysis.study.table import Table
 from boreprop.case.case import Case
 from boreprop.case.paper import paper_case

@@ -3,9 +3,11 @@
 import os
 import shutil
 import subprocess
+import sys
 import sysconfig
 from collections.abc import Callable
 from hashlib import sha256
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import hypothesis
@@ -147,6 +149,22 @@ def command(tmp_path: Path) -> Command:
         return subprocess.run(
             [program, *map(str, arguments)], cwd=tmp_path, capture_output=True, text=True, encoding="utf-8", timeout=300
         )
+
+    return run
+
+
+@pytest.fixture
+def command_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Command:
+    """The same in this process, where everything is loaded already: for many arguments of one kind."""
+
+    def run(name: str, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
+        [entry] = entry_points(group="console_scripts", name=name)
+        monkeypatch.setattr(sys, "argv", [name, *map(str, arguments)])
+        monkeypatch.chdir(tmp_path)
+        with pytest.raises(SystemExit) as end:
+            entry.load()()
+        printed = capfd.readouterr()
+        return subprocess.CompletedProcess(sys.argv, end.value.code or 0, printed.out, printed.err)  # type: ignore[arg-type]
 
     return run
 

@@ -7,6 +7,7 @@ the bit, so it is compared with the plan there, every `survey_interval`. In betw
       + proportional_gain · e + integral_force                   feedback: what the surveys say, e = plan − measured
 """
 
+import sys
 from math import floor, isfinite
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement
@@ -22,7 +23,7 @@ VARIABLES = (
     ("rss_force", "output", "N", 0.0, "steering force, positive builds"),
     ("start_inclination", "parameter", "rad", 0.0, "plan: inclination of the straight hole before the build"),
     ("build_rate", "parameter", "rad/m", 0.0, "plan: build rate"),
-    ("build_length", "parameter", "m", 0.0, "plan: drilled length at which the build ends"),
+    ("build_length", "parameter", "m", 0.0, "plan: drilled length at which the build ends; must be set"),
     ("survey_interval", "parameter", "m", 10.0, "drilled length between surveys"),
     ("sensor_distance", "parameter", "m", 0.0, "distance of the sensor from the bit"),
     ("steering_response", "parameter", "rad/(m.N)", 1.105e-7, "build rate per force, for the feed-forward"),
@@ -73,9 +74,15 @@ class InclinationController(Fmi2Slave):
             )
 
     def enter_initialization_mode(self) -> None:
-        """Before the first survey there is the feed-forward."""
+        """Before the first survey there is the feed-forward; without a plan, or with a bad value, no force at all."""
         if not self.fault():
             self.rss_force = self.limited(self.feed_forward(0.0))
+
+    def exit_initialization_mode(self) -> None:
+        """The same again, since hosts may set parameters in between; by now there must be a plan."""
+        self.enter_initialization_mode()
+        if fault := self.fault():  # many hosts show no log; there the first step says it again, and is discarded
+            print(f"{self.instance_name}: {fault}", file=sys.stderr)
 
     def do_step(self, current_time: float, step_size: float) -> bool:  # noqa: ARG002
         """Take a survey at the beginning of the step if one is due. With a bad value the step is discarded."""
@@ -96,6 +103,9 @@ class InclinationController(Fmi2Slave):
                 return f"{name}: must be finite, got {value}"
             if name in POSITIVE and value <= 0.0:
                 return f"{name}: must be > 0, got {value}"
+        if self.build_length <= 0.0:
+            plan = "start_inclination (rad), build_rate (rad/m) and build_length (m, > 0)"
+            return f"plan: must be given by the parameters {plan}, got a build_length of {self.build_length}"
         return ""
 
     def take_survey(self) -> None:

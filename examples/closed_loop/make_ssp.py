@@ -23,13 +23,17 @@ app = new_app("Pack the controller and the borehole as an SSP.")
 @app.command()
 def make_ssp(
     output: Annotated[Path, typer.Argument(metavar="SYSTEM.ssp", help="The SSP.")],
+    runtime: Annotated[
+        str, typer.Option(metavar="python|native", help="What computes in the borehole's FMU.")
+    ] = "python",
 ) -> None:
     """Build both FMUs and pack them."""
     console.check_output(output, (".ssp",))
     case = load_case(HERE.parent / "build_section.toml")
     with TemporaryDirectory() as directory, replacing(output) as draft, zipfile.ZipFile(draft, "w") as ssp:
         ssp.write(HERE / "SystemStructure.ssd", "SystemStructure.ssd")
-        for fmu in (build_fmu(case, Path(directory, "Borehole.fmu")), build_controller(Path(directory))):
+        borehole = build_fmu(case, Path(directory, "Borehole.fmu"), runtime=runtime)
+        for fmu in (borehole, build_controller(Path(directory))):
             ssp.write(fmu, f"resources/{fmu.name}")
     print(f"{output}: {output.stat().st_size / 1e6:.1f} MB")
 

@@ -41,6 +41,10 @@ class Unit:
         """The text of `number`, followed by the unit."""
         return f"{self.number(value, digits)} {self.shown}".rstrip()
 
+    def heading(self, what: str) -> str:
+        """What values are of, followed by the unit in brackets."""
+        return f"{what} ({self.shown})" if self.shown else what
+
 
 UNITS = {  # SI unit, as the table of quantities spells it
     "": Unit({}, ""),

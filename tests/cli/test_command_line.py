@@ -56,11 +56,11 @@ EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["p
     ],
 )
 def test_a_wrong_case_file(
-    command: Command, tmp_path: Path, paper_text: str, old: str, new: str, named: tuple[str, ...]
+    command_here: Command, tmp_path: Path, paper_text: str, old: str, new: str, named: tuple[str, ...]
 ) -> None:
     assert paper_text.count(old) == 1
     (tmp_path / "wrong.toml").write_text(paper_text.replace(old, new), encoding="utf-8")
-    result = command("boreprop", "simulate", "wrong.toml", "--output", "run.csv")
+    result = command_here("boreprop", "simulate", "wrong.toml", "--output", "run.csv")
     assert_refused(result, "wrong.toml: ", *named)
     assert [file.name for file in tmp_path.iterdir()] == ["wrong.toml"]
 
@@ -84,13 +84,13 @@ SCHEDULE = '[hole]\nmeasured_depth = [0]\ninclination_deg = [0]\n[rss]\nschedule
     ],
 )
 def test_a_wrong_file_that_the_case_file_names(
-    command: Command, tmp_path: Path, paper_text: str, tables: str, content: str | None, named: tuple[str, ...]
+    command_here: Command, tmp_path: Path, paper_text: str, tables: str, content: str | None, named: tuple[str, ...]
 ) -> None:
     (tmp_path / "case.toml").write_text(paper_text.partition("[hole]")[0] + tables, encoding="utf-8")
     if content is not None:
         (tmp_path / "data.csv").write_text(content)
     before = set(tmp_path.iterdir())
-    assert_refused(command("boreprop", "simulate", "case.toml", "--output", "run.csv"), "data.csv", *named)
+    assert_refused(command_here("boreprop", "simulate", "case.toml", "--output", "run.csv"), "data.csv", *named)
     assert set(tmp_path.iterdir()) == before
 
 
@@ -109,9 +109,9 @@ def test_a_wrong_file_that_the_case_file_names(
     ],
 )
 def test_a_wrong_argument(
-    command: Command, tmp_path: Path, paper_case: Path, arguments: list[str], named: tuple[str, ...]
+    command_here: Command, tmp_path: Path, paper_case: Path, arguments: list[str], named: tuple[str, ...]
 ) -> None:
-    result = command("boreprop", *(str(paper_case) if argument == "CASE" else argument for argument in arguments))
+    result = command_here("boreprop", *(str(paper_case) if argument == "CASE" else argument for argument in arguments))
     assert_refused(result, *named)
     assert not list(tmp_path.iterdir())
 

@@ -103,7 +103,7 @@ def test_stability_draws_a_picture_and_prints_the_critical_eta_pi(
     ],
 )
 def test_commands_refuse_what_they_cannot_use(
-    command: Command, paper_case: Path, tmp_path: Path, arguments: tuple[str, ...], named: tuple[str, ...]
+    command_here: Command, paper_case: Path, tmp_path: Path, arguments: tuple[str, ...], named: tuple[str, ...]
 ) -> None:
-    assert_refused(command("boreprop", arguments[0], paper_case, *arguments[1:]), *named)
+    assert_refused(command_here("boreprop", arguments[0], paper_case, *arguments[1:]), *named)
     assert not list(tmp_path.iterdir())

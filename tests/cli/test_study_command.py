@@ -48,9 +48,9 @@ def test_the_command_of_uncertain_parameters(command: Command, tmp_path: Path, p
     ],
 )
 def test_wrong_arguments_of_the_command(
-    command: Command, tmp_path: Path, paper_case: Path, arguments: list[str], named: tuple[str, ...]
+    command_here: Command, tmp_path: Path, paper_case: Path, arguments: list[str], named: tuple[str, ...]
 ) -> None:
-    result = command("boreprop", "study", paper_case, "--output", "study.parquet", *arguments)
+    result = command_here("boreprop", "study", paper_case, "--output", "study.parquet", *arguments)
     assert (result.returncode, result.stdout) == (2, "")
     assert len(result.stderr.splitlines()) == 1, result.stderr
     for name in named:

@@ -32,9 +32,9 @@ def test_the_commands_print_and_draw(command: Command, tmp_path: Path, paper_cas
     ],
 )
 def test_wrong_arguments_are_one_line(
-    command: Command, tmp_path: Path, paper_case: Path, arguments: list[str], named: tuple[str, ...]
+    command_here: Command, tmp_path: Path, paper_case: Path, arguments: list[str], named: tuple[str, ...]
 ) -> None:
-    result = command("boreprop", *(str(paper_case) if argument == "CASE" else argument for argument in arguments))
+    result = command_here("boreprop", *(str(paper_case) if argument == "CASE" else argument for argument in arguments))
     assert (result.returncode, result.stdout, result.stderr.count("\n")) == (2, "", 1)
     for name in named:
         assert name in result.stderr

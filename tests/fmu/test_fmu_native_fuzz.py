@@ -1,6 +1,6 @@
 """The native FMU under sanitizers: random lives of it, and the tests of its flavour.
 
-$BOREPROP_FUZZ lives are led, 30 000 if it is not set; a million take some minutes:
+$BOREPROP_FUZZ lives are led, 8 000 if it is not set; a million take some minutes:
 BOREPROP_FUZZ=1000000 pytest tests/fmu/test_fmu_native_fuzz.py -k live
 """
 
@@ -21,7 +21,7 @@ from boreprop_fmu.pack.build import build_fmu
 from places import FMI_HEADERS, HOSTS, TESTS
 
 FOLDER = Path(__file__).parent
-LIVES = int(os.environ.get("BOREPROP_FUZZ", "30000"))
+LIVES = int(os.environ.get("BOREPROP_FUZZ", "8000"))
 SEED = 1
 SANITIZERS = (
     "-fsanitize=address,undefined,float-cast-overflow",

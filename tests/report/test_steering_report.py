@@ -113,9 +113,9 @@ def test_the_command_prints_the_table_and_draws_only_if_asked(command: Command, 
     ],
 )
 def test_the_command_refuses_a_wrong_argument(
-    command: Command, tmp_path: Path, arguments: tuple[str, str], named: tuple[str, ...]
+    command_here: Command, tmp_path: Path, arguments: tuple[str, str], named: tuple[str, ...]
 ) -> None:
-    result = command("boreprop", "steering", EXAMPLES / "build_section.toml", *arguments)
+    result = command_here("boreprop", "steering", EXAMPLES / "build_section.toml", *arguments)
     assert (result.returncode, result.stdout, len(result.stderr.splitlines())) == (2, "", 1)
     for name in named:
         assert name in result.stderr

@@ -197,22 +197,22 @@ def test_a_summary_says_which_waves_the_rows_cannot_show(interval: float, length
 @pytest.mark.parametrize(
     ("wave", "words", "card"),
     [
-        (Rippling(), "no", "does not ripple"),
+        (Rippling(), "no", "no"),
         (
             Rippling(State.DYING, 5.0, 0.01, growth=-np.log(10.0) / 80.0),
             "no, dying out over 80 m: waves 5.00 m long",
-            "does not ripple: waves of 5.00 m, ±0.57°, die out over 80 m",
+            "no, dying out over 80 m: waves 5.00 m long, ±0.57 °",
         ),
-        (Rippling(State.LASTING, 5.0, 0.01, growth=0.0), "yes: 5.00 m long", "ripples: waves of 5.00 m, ±0.57°"),
+        (Rippling(State.LASTING, 5.0, 0.01, growth=0.0), "yes: 5.00 m long", "yes: 5.00 m long, ±0.57 °"),
         (
             Rippling(State.GROWING, 5.0, 0.01, growth=0.1),
             "yes, growing: 5.00 m long",
-            "ripples: waves of 5.00 m, ±0.57°, growing",
+            "yes, growing: 5.00 m long, ±0.57 °",
         ),
         (
             Rippling(State.STEERED, 5.0, 0.01, growth=0.0),
-            "no: waves 5.00 m long, but force or weight change too often to tell whether they would last",
-            "does not ripple as far as can be told: waves of 5.00 m, ±0.57°, but force or weight change too often",
+            "no, but force or weight change too often to tell: waves 5.00 m long",
+            "no, but force or weight change too often to tell: waves 5.00 m long, ±0.57 °",
         ),
     ],
     ids=[*State],

@@ -160,10 +160,10 @@ def test_a_tolerance_out_of_range_is_refused(text: str) -> None:
     ],
 )
 def test_each_command_that_drills_refuses_it(
-    command: Command, paper_case: Path, tmp_path: Path, arguments: list[str]
+    command_here: Command, paper_case: Path, tmp_path: Path, arguments: list[str]
 ) -> None:
     given = [str(paper_case) if argument == "CASE" else argument for argument in arguments]
-    done = command(*given, "--tolerance", "0.1")
+    done = command_here(*given, "--tolerance", "0.1")
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
     assert "--tolerance" in done.stderr
     assert "must be 1e-12 to 0.01, got '0.1'" in done.stderr

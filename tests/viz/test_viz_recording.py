@@ -249,8 +249,8 @@ def test_the_card_names_the_case_and_whether_it_ripples(tmp_path: Path, paper_ca
     [[text]] = static(tmp_path / "two.rrd", "case", "TextDocument:text")[-1:]
     assert "| **ηΠ** | **0.01** | **0.16** |" in text
     assert "| critical ηΠ | 0.1468 | 0.1468 |" in text
-    assert re.search(r"- \*\*a\*\* ripples: waves of 5\.0\d m", text)
-    assert "- **b** does not ripple" in text
+    assert re.search(r"- \*\*a\*\* yes: 5\.0\d m long, ±2\.\d\d °", text)
+    assert "- **b** no" in text
 
 
 def test_several_runs_are_drawn_over_each_other_each_under_its_name(
@@ -338,10 +338,10 @@ def test_the_command_runs_a_case_file(command: Command, paper_text: str, tmp_pat
     ],
 )
 def test_bad_input_is_one_line_and_leaves_no_file(
-    command: Command, run: Trajectory, tmp_path: Path, arguments: list[str], error: str
+    command_here: Command, run: Trajectory, tmp_path: Path, arguments: list[str], error: str
 ) -> None:
     write_trajectory(replace(run, case=None), tmp_path / "run.csv")
-    done = command("boreprop-view", *arguments)
+    done = command_here("boreprop-view", *arguments)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith(f"error: {error}")
     assert done.stderr.count("\n") == 1

@@ -146,12 +146,12 @@ def test_what_fmpy_wrote_is_drawn_with_the_case_in_the_fmu(command: Command, fmu
 
 @pytest.mark.parametrize("missing", ["bit_inclination", "average_inclination[2]"])
 def test_a_run_without_what_a_picture_needs_is_refused(
-    case: Case, command: Command, tmp_path: Path, missing: str
+    case: Case, command_here: Command, tmp_path: Path, missing: str
 ) -> None:
     run = simulate(replace(case, length=2.0))
     kept = {n: c for n, c in run.columns.items() if n not in (missing, "bit_tilt", "borehole_inclination")}
     write_trajectory(Trajectory(kept, run.case), tmp_path / "run.csv")
-    done = command("boreprop-view", "run.csv", "--save", "run.rrd")
+    done = command_here("boreprop-view", "run.csv", "--save", "run.rrd")
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith("error: run.csv: ")
     assert missing.partition("[")[0] in done.stderr

@@ -14,14 +14,14 @@ pytest.importorskip("rerun")
 pytest.importorskip("pandas")
 
 
-def test_a_run_is_drawn_without_pandas_matplotlib_and_fmpy(tmp_path: Path, paper_case: Path) -> None:
+def test_a_run_is_drawn_without_pandas_scipy_matplotlib_and_fmpy(tmp_path: Path, paper_case: Path) -> None:
     write_trajectory(simulate(load_case(paper_case), length=1.0), tmp_path / "run.csv")
     command = [sys.executable, "-X", "importtime", "-m", "boreprop_viz.cli", "run.csv", "--save", "run.rrd"]
     result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
     # pandas itself is in the list, because pyarrow asks for it; what it consists of is not
     loaded = {line.rpartition("|")[2].strip() for line in result.stderr.splitlines()}
     assert "rerun" in loaded
-    assert not [name for name in loaded if name.startswith(("pandas.", "matplotlib", "fmpy", "xarray"))]
+    assert not [name for name in loaded if name.startswith(("pandas.", "scipy", "matplotlib", "fmpy", "xarray"))]
 
 
 def test_pandas_can_be_loaded_after_the_viewer() -> None:

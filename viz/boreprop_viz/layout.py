@@ -88,7 +88,7 @@ def plot(entity: str, scales: Scales, legend: bool) -> rrb.TimeSeriesView:
     span = scales.ranges[entity]
     return rrb.TimeSeriesView(
         origin=f"plots/{entity}",
-        name=f"{shown.title} ({shown.unit.shown}) over drilled length (mm)",
+        name=f"{shown.unit.heading(shown.title)} over drilled length (mm)",
         axis_x=rrb.TimeAxis(view_range=rr.TimeRange(start=INFINITE, end=INFINITE)),
         axis_y=None if span is None else rrb.ScalarAxis(range=span),
         plot_legend=rrb.PlotLegend(rrb.Corner2D.LeftTop, visible=legend and len(shown.colours) > 1),

@@ -8,8 +8,7 @@ import typer
 from boreprop.case.tables import read_schedule
 from boreprop.cli import console
 from boreprop.cli.options import Tolerance, positive
-from boreprop.run.results import SUFFIXES, write_trajectory
-from boreprop.run.trajectory import Stopped
+from boreprop.run.results import SUFFIXES, keeping_rows, write_trajectory
 
 from ..host.drive import FmuRun
 
@@ -40,12 +39,7 @@ def run_command(
     console.check_output(output, SUFFIXES)
     forces = None if schedule is None else read_schedule(schedule)
     fmu_run = FmuRun(fmu, forces, step=step, stop=stop, relative_tolerance=tolerance)
-    try:
-        with console.progress("drilling", fmu_run.stop) as done:
-            trajectory = fmu_run.trajectory(done)
-    except Stopped as stopped:
-        if stopped.trajectory is not None:
-            write_trajectory(stopped.trajectory, output)
-        raise
+    with keeping_rows(output), console.progress("drilling", fmu_run.stop) as done:
+        trajectory = fmu_run.trajectory(done)
     write_trajectory(trajectory, output)
     print(f"{output}: {trajectory.row_count} rows over {trajectory['drilled_length'][-1]:g} m")

@@ -220,11 +220,11 @@ def find_rippling(
     if inclination is None:
         raise InputError("inclination: must be given with the drilled length, got None")
     found = _find(run, inclination, inf if longest is None else longest, modes, inputs)
-    return replace(found.rippling, since=_since(found))
+    return _with_course(found)
 
 
 def last_wave(run: Trajectory) -> Rippling:
-    """`find_rippling` of a run without the fields since, spread, axis_amplitude and modes.
+    """`find_rippling` of a run without the fields since, spread, inclination_drift, axis_amplitude and modes.
 
     Studies do not report these, and they take longest to compute.
     """
@@ -247,8 +247,7 @@ def _with_details(run: Trajectory, found: _Found) -> Rippling:
         return found.rippling
     starts = found.waves.starts()
     return replace(
-        found.rippling,
-        since=_since(found),
+        _with_course(found),
         spread=float(np.std(np.diff(starts))) if len(starts) > 1 else nan,
         axis_amplitude=_axis_amplitude(length, position, found.waves),
         modes=_modes(length, modes_of(run), starts) if len(starts) > 1 else (),
@@ -297,12 +296,16 @@ def _search(rows: _Rows, longest: float) -> _Found:
     return max(found, key=_weight)
 
 
-def _since(found: _Found) -> float:
-    """The drilled length from which on a wave has had at least half the size that it has at the end, m."""
+def _with_course(found: _Found) -> Rippling:
+    """The wave that was found, with the fields since and inclination_drift."""
     if found.waves is None or found.rows is None:
-        return nan
+        return found.rippling
     least = HALF * float(found.waves.sizes[-AT_THE_END:].min())
-    return large_since(found.rows.length, found.rows.inclination, found.waves.wavelength, least)
+    return replace(
+        found.rippling,
+        since=large_since(found.rows.length, found.rows.inclination, found.waves.wavelength, least),
+        inclination_drift=slope(found.waves.x, found.waves.trend),
+    )
 
 
 def _weight(found: _Found) -> tuple[bool, bool, float]:
@@ -340,7 +343,6 @@ def _wave(rows: _Rows, spacing: float, count: int, followed: float) -> _Found:
         wavelength,
         amplitude,
         growth / wavelength,
-        inclination_drift=slope(waves.x, waves.trend),
         switching=switching,
     )
     return _Found(rippling, waves, rows)

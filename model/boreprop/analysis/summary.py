@@ -1,6 +1,6 @@
 """Sums up a run in about a dozen numbers."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, pi
 
 import numpy as np
@@ -58,7 +58,7 @@ class Summary:
     contact_share: Floats
     saturation_share: float
     rippling: Rippling
-    hidden_waves: str
+    hidden_waves: str = ""
     stopped: str | None = None
 
 
@@ -87,18 +87,17 @@ def summarize(trajectory: Trajectory) -> Summary:
     >>> summary.rippling.ripples, round(summary.saturation_share, 2)
     (True, 0.81)
     """
-    case_of(trajectory)
-    return sum_up(trajectory, find_rippling(trajectory))
+    hidden = hidden_waves(trajectory["drilled_length"], case_of(trajectory).bha)
+    return replace(sum_up(trajectory, find_rippling(trajectory)), hidden_waves=hidden)
 
 
 def sum_up(trajectory: Trajectory, rippling: Rippling) -> Summary:
-    """`summarize` a run of which `find_rippling` or `last_wave` has found the rippling."""
+    """`summarize` a run without its hidden waves, once `find_rippling` or `last_wave` has found the rippling."""
     case = case_of(trajectory)
     length = trajectory["drilled_length"]
     over = averaging_length(case.bha, rippling)
     inclination = mean_inclination(trajectory, case.survey, over)
-    steps = np.diff(length)
-    weights = np.append(steps, 0.0) + np.append(0.0, steps)
+    weights = np.convolve(np.diff(length), (0.5, 0.5))  # half of what is drilled before a row and after it
 
     def share(happens: NDArray[np.bool_]) -> float:
         return float(weights[happens].sum() / weights.sum())
@@ -118,7 +117,6 @@ def sum_up(trajectory: Trajectory, rippling: Rippling) -> Summary:
         contact_share=np.array([share(contact != 0) for contact in trajectory.stack("stabilizer_contact").T]),
         saturation_share=share(trajectory["bit_tilt_saturation"] != 0),
         rippling=rippling,
-        hidden_waves=hidden_waves(length, case.bha),
         stopped=trajectory.stopped,
     )
 

@@ -70,8 +70,7 @@ def autocorrelation(signal: Floats, lags: int) -> Floats:
     spectrum = np.fft.rfft(signal, padded)
     products = np.fft.irfft(spectrum.real**2 + spectrum.imag**2, padded)[:lags]
     energy = np.concatenate(([0.0], np.cumsum(signal**2)))
-    lag = np.arange(lags)
-    scale = np.sqrt((energy[rows] - energy[lag]) * energy[rows - lag])
+    scale = np.sqrt((energy[-1] - energy[:lags]) * energy[: rows - lags : -1])
     alike: Floats = np.divide(products, scale, out=np.zeros(lags), where=scale > 0)
     return alike
 

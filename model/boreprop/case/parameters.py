@@ -2,8 +2,9 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
-from ..core.quantities import INPUTS, PARAMETERS, fields_of, scalar_names, values_of
+from ..core.quantities import INPUTS, PARAMETERS, fields_of, quantity_of, scalar_names, values_of
 from ..errors import InputError
 from .case import Case, Schedule
 
@@ -45,6 +46,10 @@ def with_parameters(case: Case, values: Mapping[str, float]) -> Case:
         if name not in own:
             raise InputError(f"a parameter must be one of {', '.join(own)}, got {name!r}")
     n, wanted = len(case.bha.stabilizer_positions), own | dict(values)
-    parts = {part: replace(getattr(case, part), **fields_of(part, wanted, n)) for part in PARTS}
-    schedule = Schedule((0.0,), (wanted["rss_force"],)) if "rss_force" in values else case.schedule
-    return replace(case, **parts, **fields_of("", wanted, n), schedule=schedule)
+    changed = {quantity_of(name).part for name in values}
+    parts: dict[str, Any] = {
+        part: replace(getattr(case, part), **fields_of(part, wanted, n)) for part in PARTS if part in changed
+    }
+    if "schedule" in changed:
+        parts["schedule"] = Schedule((0.0,), (wanted["rss_force"],))
+    return replace(case, **parts, **fields_of("", wanted, n))

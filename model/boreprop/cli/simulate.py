@@ -10,9 +10,8 @@ from ..case.file import load_case
 from ..core.checks import check_number
 from ..core.options import RELATIVE_TOLERANCE
 from ..errors import InputError
-from ..run.results import SUFFIXES, case_path, write_trajectory
+from ..run.results import SUFFIXES, case_path, keeping_rows, write_trajectory
 from ..run.simulate import SAMPLE_INTERVAL, simulate
-from ..run.trajectory import Stopped
 from . import console
 from .options import CaseFile, Tolerance, positive
 
@@ -50,18 +49,13 @@ def simulate_command(
     if length is not None:
         case = replace(case, length=length)
     check_number("--sample-interval", sample_interval, at_least=case.length / MAX_ROWS)
-    try:
-        with console.progress("drilling", case.length) as drilled:
-            trajectory = simulate(
-                case,
-                sample_interval=sample_interval,
-                relative_tolerance=tolerance or RELATIVE_TOLERANCE,
-                progress=drilled,
-                engine=engine,
-            )
-    except Stopped as stopped:
-        if stopped.trajectory is not None:
-            write_trajectory(stopped.trajectory, output)
-        raise
+    with keeping_rows(output), console.progress("drilling", case.length) as drilled:
+        trajectory = simulate(
+            case,
+            sample_interval=sample_interval,
+            relative_tolerance=tolerance or RELATIVE_TOLERANCE,
+            progress=drilled,
+            engine=engine,
+        )
     write_trajectory(trajectory, output)
     print(f"{output}: {trajectory.row_count} rows over {case.length:g} m ({trajectory.engine} engine)")

@@ -8,6 +8,8 @@ Other tools write our columns under longer names. OMSimulator and fmpy put the p
 """
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from csv import reader
 from pathlib import Path
 from typing import Any
@@ -21,7 +23,7 @@ from ..core.columns import read_columns
 from ..core.quantities import BY_NAME, INPUTS, OUTPUTS
 from ..errors import InputError
 from ..replacing import replacing
-from .trajectory import Trajectory, plain_name
+from .trajectory import Stopped, Trajectory, plain_name
 
 SUFFIXES = (".csv", ".parquet")
 CASE_KEY = b"boreprop.case"
@@ -51,6 +53,17 @@ def write_trajectory(trajectory: Trajectory, path: str | Path) -> None:
     if write is None:
         raise InputError(f"{path}: must end in {' or '.join(SUFFIXES)}, got {path.suffix!r}")
     write(trajectory, path)
+
+
+@contextmanager
+def keeping_rows(path: Path) -> Iterator[None]:
+    """Write the rows of a run that stops inside this context to a file, as `write_trajectory` does, and raise again."""
+    try:
+        yield
+    except Stopped as stopped:
+        if stopped.trajectory is not None:
+            write_trajectory(stopped.trajectory, path)
+        raise
 
 
 def read_trajectory(path: str | Path, case: Case | None = None) -> Trajectory:

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from boreprop.analysis.stability.characteristic import Characteristic, Crossings
+from boreprop.analysis.stability.characteristic import Characteristic, Crossings, zero_between
 from boreprop.analysis.stability.chart import (
     respaced,
     unstable_roots,
@@ -121,6 +121,14 @@ def test_the_crossings_account_for_every_unstable_root(
     crossings = characteristic.crossings(eta_pi)
     assume(crossings.eta_pi.min(initial=1.0) / eta_pi > 1 + 1e-5)
     assert unstable_roots(characteristic, np.array([eta_pi]))[0][0] == mode.unstable(eta_pi, mode.top(eta_pi))
+
+
+def test_zeros_are_found_to_rounding_where_secants_alone_creep() -> None:
+    """The cube is so flat at one end that false position without halving would need thousands of steps."""
+    cubes = np.array([1e-6, 1.0, 8.0, 1e6])
+    roots, none = np.cbrt(cubes), np.zeros(4)
+    for a, b in ((none, 20 * roots), (20 * roots, none), (roots, 2 * roots), (none, roots)):
+        np.testing.assert_allclose(zero_between(lambda x: x**3 - cubes, a, b), roots, rtol=1e-15)
 
 
 def test_two_crossings_that_are_about_to_vanish_are_both_found() -> None:

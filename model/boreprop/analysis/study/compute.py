@@ -32,12 +32,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...case.case import Case
 from ...core.quantities import BY_NAME
-from ...run.trajectory import Stopped
 from ...run.workers import work
-from .design import Study, parameter_of, vary
-from .figures import FIGURES, Function, key_figures
+from .design import Study, parameter_of
+from .figures import FIGURES, Function, key_figures, outcome
 from .table import Line, Table
 
 if TYPE_CHECKING:
@@ -187,20 +185,6 @@ def probability(happened: "DataArray", confidence: float = 0.95) -> Probability:
         return Probability(nan, 0.0, 1.0)
     interval = binomtest(int(finite.sum()), finite.size).proportion_ci(confidence)
     return Probability(float(finite.mean()), float(interval.low), float(interval.high))
-
-
-def outcome(
-    function: Function, case: Case, names: tuple[str, ...], values: tuple[float, ...]
-) -> dict[str, float] | str:
-    """Called in the worker: the results of one case, or the reason why there are none.
-
-    Errors that no choice of numbers can cause are bugs, and are raised.
-    """
-    try:
-        results = function(vary(case, dict(zip(names, values, strict=True))))
-        return {name: float(result) for name, result in results.items()}
-    except (ArithmeticError, RuntimeError, ValueError, Stopped) as error:
-        return str(error) or type(error).__name__
 
 
 def _labelled(cases: Study, table: Table) -> tuple[dict[str, Any], dict[str, Any], dict[str, str]]:

@@ -1,7 +1,7 @@
 """The cases of a study: they differ in some parameters, which lie on a grid or are drawn from distributions."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import radians
 from typing import Any, Protocol
 
@@ -54,16 +54,22 @@ def vary(case: Case, values: Mapping[str, float]) -> Case:
     (3224.9, (0.002,))
     """
     check_names(case, tuple(values))
+    return with_varied(case, values)
+
+
+def with_varied(case: Case, values: Mapping[str, float]) -> Case:
+    """`vary` a case by names that `check_names` has accepted."""
     wanted = {
         parameter_of(name): radians(value) if name.endswith("_deg") else value
         for name, value in values.items()
         if name != "eta_pi"
     }
-    varied = with_parameters(case, wanted)
+    if wanted:
+        case = with_parameters(case, wanted)
     if "eta_pi" not in values:
-        return varied
-    weight = values["eta_pi"] * varied.bha.force_scale / varied.bit.lateral_steering_resistance
-    return with_parameters(varied, {"active_weight_on_bit": weight})
+        return case
+    weight = values["eta_pi"] * case.bha.force_scale / case.bit.lateral_steering_resistance
+    return replace(case, active_weight_on_bit=weight)
 
 
 def parameter_of(name: str) -> str:

@@ -1,17 +1,38 @@
-"""The key figures of a simulation: the results that a study computes of each case if no function is given."""
+"""What a study computes of each case: the key figures of its run, unless it is given another function."""
 
 from collections.abc import Callable, Mapping
 from math import nan
 
 from ...case.case import Case
 from ...core.options import RELATIVE_TOLERANCE
-from ...run.engines import engine
+from ...core.quantities import BY_NAME
 from ...run.simulate import simulate
+from ...run.trajectory import Stopped
+from ...units import BUILD_LENGTH
 from ..rippling import State, last_wave
 from ..summary import sum_up
+from .design import with_varied
 
 Function = Callable[[Case], Mapping[str, float]]
 """A function that a study can compute of each case: it returns numbers by name."""
+
+ANGLE, CURVATURE, FORCE, LENGTH = (
+    BY_NAME[name].unit for name in ("borehole_inclination", "borehole_curvature", "stabilizer_force", "drilled_length")
+)
+
+FIGURES = {  # name → unit and meaning
+    "end_inclination": (ANGLE, "inclination at the end"),
+    "build_rate": (CURVATURE, "build rate, mean"),
+    "largest_build_rate": (CURVATURE, f"build rate, largest over {BUILD_LENGTH:g} m"),
+    "largest_contact_force": (FORCE, "largest contact force"),
+    "contact_share": ("", "share in contact"),
+    "saturation_share": ("", "share with saturated bit tilt"),
+    "ripples": ("", "1 if it ends rippling, else 0"),
+    "wavelength": (LENGTH, "ripple: wavelength"),
+    "amplitude": (ANGLE, "ripple: amplitude of the inclination"),
+    "growth": (f"1/{LENGTH}", "ripple: change of the logarithm of the amplitude"),
+    "state": ("", "ripple: " + ", ".join(f"{number} {state}" for number, state in enumerate(State))),
+}
 
 
 def key_figures(case: Case, relative_tolerance: float = RELATIVE_TOLERANCE) -> dict[str, float]:
@@ -27,7 +48,7 @@ def key_figures(case: Case, relative_tolerance: float = RELATIVE_TOLERANCE) -> d
     >>> figures["ripples"], round(figures["wavelength"], 2)
     (True, 5.07)
     """
-    run = simulate(case, relative_tolerance=relative_tolerance, engine=engine())
+    run = simulate(case, relative_tolerance=relative_tolerance)
     summary = sum_up(run, last_wave(run))
     wave = summary.rippling
     stabilizers = list(enumerate(zip(summary.largest_contact_force, summary.contact_share, strict=True), 1))
@@ -46,16 +67,15 @@ def key_figures(case: Case, relative_tolerance: float = RELATIVE_TOLERANCE) -> d
     }
 
 
-FIGURES = {  # name → unit and meaning
-    "end_inclination": ("rad", "inclination at the end"),
-    "build_rate": ("rad/m", "build rate, mean"),
-    "largest_build_rate": ("rad/m", "build rate, largest over 30 m"),
-    "largest_contact_force": ("N", "largest contact force"),
-    "contact_share": ("", "share in contact"),
-    "saturation_share": ("", "share with saturated bit tilt"),
-    "ripples": ("", "1 if it ends rippling, else 0"),
-    "wavelength": ("m", "ripple: wavelength"),
-    "amplitude": ("rad", "ripple: amplitude of the inclination"),
-    "growth": ("1/m", "ripple: change of the logarithm of the amplitude"),
-    "state": ("", "ripple: " + ", ".join(f"{number} {state}" for number, state in enumerate(State))),
-}
+def outcome(
+    function: Function, case: Case, names: tuple[str, ...], values: tuple[float, ...]
+) -> dict[str, float] | str:
+    """Called in the worker: the results of one case, or the reason why there are none.
+
+    Errors that no choice of numbers can cause are bugs, and are raised.
+    """
+    try:
+        results = function(with_varied(case, dict(zip(names, values, strict=True))))
+        return {name: float(result) for name, result in results.items()}
+    except (ArithmeticError, RuntimeError, ValueError, Stopped) as error:
+        return str(error) or type(error).__name__

@@ -4,10 +4,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ...case.case import Case
 from ...replacing import replacing
+from ...units import UNITS
 
 COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7")  # of Okabe and Ito: the colour-blind can tell them apart
 
@@ -23,6 +25,9 @@ def multiple(factor: float) -> tuple[Callable[[Any], Any], Callable[[Any], Any]]
     return lambda x: x * factor, lambda x: x / factor
 
 
-def kilonewtons_per_eta_pi(case: Case) -> float:
-    """The active weight on bit at ηΠ = 1, kN."""
-    return case.bha.force_scale / case.bit.lateral_steering_resistance / 1e3
+def add_weight_axis(panel: Axes, case: Case) -> None:
+    """Add a second axis, of the active weight on bit, to a panel over ηΠ."""
+    unit = UNITS["N"]
+    per_eta_pi = unit.factor * case.bha.force_scale / case.bit.lateral_steering_resistance
+    weight = panel.secondary_xaxis("top", functions=multiple(per_eta_pi))
+    weight.set_xlabel(unit.heading("active weight on bit"))

@@ -8,7 +8,8 @@ from matplotlib.figure import Figure
 from ...analysis.hysteresis import Hysteresis
 from ...analysis.rippling import Rippling
 from ...case.case import Case
-from .drawing import COLOURS, kilonewtons_per_eta_pi, multiple
+from ...units import SMALL_LENGTH, UNITS
+from .drawing import COLOURS, add_weight_axis
 
 
 def draw(case: Case, found: Hysteresis) -> Figure:
@@ -21,25 +22,25 @@ def draw(case: Case, found: Hysteresis) -> Figure:
     )
     axis, inclination = figure.subplots(2, 1, sharex=True)
     clearance = found.name != "eta_pi"
-    unit = 1e3 if clearance else 1.0
-    x = unit * np.array(found.values)
+    unit = SMALL_LENGTH if clearance else UNITS[""]
+    x = unit.factor * np.array(found.values)
     branches = (
         (found.up, found.dies, "o-", COLOURS[0], "going up, from a ripple"),
         (found.down, found.returns, "v--", COLOURS[1], "going down, from straight holes"),
     )
     for waves, end, style, colour, name in branches:
         drawn = {"color": colour, "markersize": 5, "label": name}
-        axis.plot(x, [1e3 * _size(wave, "axis_amplitude") for wave in waves], style, **drawn)
-        inclination.plot(x, [degrees(_size(wave, "amplitude")) for wave in waves], style, **drawn)
+        axis.plot(x, [SMALL_LENGTH.factor * _size(wave, "axis_amplitude") for wave in waves], style, **drawn)
+        inclination.plot(x, [UNITS["rad"].factor * _size(wave, "amplitude") for wave in waves], style, **drawn)
         if end:
             for panel in (axis, inclination):
-                panel.axvspan(unit * end[0], unit * end[1], color=colour, alpha=0.4, linewidth=0)
-    axis.set_ylabel("ripple of the hole axis (± mm)")
-    inclination.set_ylabel("ripple of the inclination (± °)")
-    inclination.set_xlabel(f"clearance of stabilizer {found.name.partition('[')[2][:-1]} (mm)" if clearance else "ηΠ")
+                panel.axvspan(unit.factor * end[0], unit.factor * end[1], color=colour, alpha=0.4, linewidth=0)
+    axis.set_ylabel(f"ripple of the hole axis (± {SMALL_LENGTH.shown})")
+    inclination.set_ylabel(f"ripple of the inclination (± {UNITS['rad'].shown})")
+    varied = f"clearance of stabilizer {found.name.partition('[')[2][:-1]}" if clearance else "ηΠ"
+    inclination.set_xlabel(unit.heading(varied))
     if not clearance:
-        weight = axis.secondary_xaxis("top", functions=multiple(kilonewtons_per_eta_pi(case)))
-        weight.set_xlabel("active weight on bit (kN)")
+        add_weight_axis(axis, case)
     for panel in (axis, inclination):
         panel.grid(alpha=0.3)
         panel.set_ylim(bottom=0.0)

@@ -5,18 +5,24 @@ from itertools import count
 from math import degrees, radians
 from pathlib import Path
 
-import numpy as np
 from matplotlib.figure import Figure
 
 from ...analysis.stability.chart import stability_chart, usual_grid
 from ...case.case import Case
 from ...case.paper import LENGTH_SCALE, paper_case
+from ...core.quantities import quantity_of
 from ...run.simulate import simulate
 from ...run.trajectory import Trajectory
+from ...units import UNITS
 from . import stability as stability_figure
-from .drawing import COLOURS, save
+from .drawing import COLOURS, multiple, save
 
 ROWS_PER_LENGTH_SCALE = 50  # about 70 rows in a wave, which make a smooth curve
+COLUMNS = {
+    "borehole_inclination": "borehole inclination Θ",
+    "bit_inclination": "bit inclination θ",
+    "stabilizer_force[1]": "contact force $F_{ℓ1} − F_{u1}$",
+}
 
 
 def figure_7_cases() -> dict[str, Case]:
@@ -34,22 +40,16 @@ def draw(runs: dict[str, Trajectory], title: str) -> Figure:
     figure = Figure(figsize=(10, 8), layout="constrained")
     figure.suptitle(title)
     panels = figure.subplots(3, 1, sharex=True)
-    labels = "borehole inclination Θ (°)", "bit inclination θ (°)", "contact force $F_{ℓ1} − F_{u1}$ (kN)"
-    for panel, label in zip(panels, labels, strict=True):
-        panel.set_ylabel(label)
+    for panel, (column, label) in zip(panels, COLUMNS.items(), strict=True):
+        unit = UNITS[quantity_of(column).unit]
+        panel.set_ylabel(unit.heading(label))
         panel.grid(alpha=0.3)
-    for (name, run), colour in zip(runs.items(), COLOURS, strict=False):
-        xi = run["drilled_length"] / LENGTH_SCALE
-        curves = (
-            np.degrees(run["borehole_inclination"]),
-            np.degrees(run["bit_inclination"]),
-            run["stabilizer_force[1]"] / 1e3,
-        )
-        for panel, curve in zip(panels, curves, strict=True):
-            panel.plot(xi, curve, color=colour, linewidth=1.1, label=name)
+        for (name, run), colour in zip(runs.items(), COLOURS, strict=False):
+            xi = run["drilled_length"] / LENGTH_SCALE
+            panel.plot(xi, unit.factor * run[column], color=colour, linewidth=1.1, label=name)
     panels[-1].set_xlabel(f"drilled length ξ (in ℓ₁ = {LENGTH_SCALE:g} m)")
     panels[-1].set_xlim(0, xi[-1])
-    metres = panels[0].secondary_xaxis("top", functions=(lambda x: x * LENGTH_SCALE, lambda x: x / LENGTH_SCALE))
+    metres = panels[0].secondary_xaxis("top", functions=multiple(LENGTH_SCALE))
     metres.set_xlabel("drilled length (m)")
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=len(runs))
     return figure

@@ -16,7 +16,7 @@ from ...analysis.stability.contacts import steady_mode
 from ...arrays import Floats
 from ...case.case import Case
 from ..tables.stability import contact_text
-from .drawing import kilonewtons_per_eta_pi, multiple
+from .drawing import add_weight_axis, multiple
 
 SHADES = {
     "stable": "#A9DBC8",
@@ -62,9 +62,7 @@ def draw(chart: Chart, case: Case) -> Figure:
     for axes in panels[-1]:
         axes.set_xlabel("ηΠ")
     for axes in panels[0]:
-        axes.secondary_xaxis("top", functions=multiple(kilonewtons_per_eta_pi(case))).set_xlabel(
-            "active weight on bit (kN)"
-        )
+        add_weight_axis(axes, case)
     for axes in panels[:, 0]:
         axes.set_ylabel("$λ_2$")
     for axes in panels[:, 1]:

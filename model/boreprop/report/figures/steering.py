@@ -4,7 +4,7 @@ from math import degrees
 
 from matplotlib.figure import Figure
 
-from ...units import BUILD_LENGTH
+from ...units import UNITS
 from ..tables.steering import SteeringSummary, at_force, kilonewtons, per_build_length, touching
 from .drawing import COLOURS
 
@@ -15,17 +15,18 @@ def draw(summary: SteeringSummary) -> Figure:
     """Draw build rate and bit tilt over the force: a colour for each set of contacts, dashed if the tilt saturates."""
     weight = f"{kilonewtons(summary.active_weight_on_bit)} active weight on bit (ηΠ = {summary.eta_pi:.3g})"
     setting = f"{degrees(summary.inclination):.4g}° inclination, {weight}"
+    force, angle = UNITS["N"], UNITS["rad"]
     figure = Figure(figsize=(9, 8.5), layout="constrained")
     figure.suptitle(f"Steady response to the steering force at {setting}")
     rates, tilts = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-    rates.set_ylabel(f"build rate (°/{BUILD_LENGTH:g} m)")
-    tilts.set_ylabel("bit tilt (°)")
-    tilts.set_xlabel("steering force, positive to the high side (kN)")
+    rates.set_ylabel(UNITS["rad/m"].heading("build rate"))
+    tilts.set_ylabel(angle.heading("bit tilt"))
+    tilts.set_xlabel(force.heading("steering force, positive to the high side"))
     for panel in (rates, tilts):
         panel.grid(alpha=0.3)
         panel.axhline(0.0, color="0.4", linewidth=0.8)
     kinks = [summary.without_gravity[0].start, *(piece.end for piece in summary.without_gravity)]
-    forces = [kink.rss_force / 1e3 for kink in kinks]
+    forces = [force.factor * kink.rss_force for kink in kinks]
     rates.plot(forces, [per_build_length(kink.build_rate) for kink in kinks], ":", color="0.5", label="without gravity")
     colours: dict[str, str] = {}
     for piece in summary.curve:
@@ -35,16 +36,17 @@ def draw(summary: SteeringSummary) -> Figure:
             rates.plot([], [], color=colours[contacts], label=f"on a wall: {contacts}")
         style = "--" if piece.start.bit_tilt_saturation else "-"
         ends = (piece.start, piece.end)
-        forces = [end.rss_force / 1e3 for end in ends]
+        forces = [force.factor * end.rss_force for end in ends]
         rates.plot(forces, [per_build_length(end.build_rate) for end in ends], style, color=colours[contacts])
-        tilts.plot(forces, [degrees(end.bit_tilt) for end in ends], style, color=colours[contacts])
+        tilts.plot(forces, [angle.factor * end.bit_tilt for end in ends], style, color=colours[contacts])
     if any(piece.start.bit_tilt_saturation for piece in summary.curve):
         rates.plot([], [], "--", color="0.4", label="bit tilt at its limit")
     for response in summary.holding:
         label = f"holds at {kilonewtons(response.rss_force, '+')}"
-        rates.plot(response.rss_force / 1e3, 0.0, "o", color="black", markerfacecolor="white", zorder=3, label=label)
+        at = force.factor * response.rss_force
+        rates.plot(at, 0.0, "o", color="black", markerfacecolor="white", zorder=3, label=label)
     for what, marker, response in (("highest", "^", summary.highest), ("lowest", "v", summary.lowest)):
-        point = response.rss_force / 1e3, per_build_length(response.build_rate)
+        point = force.factor * response.rss_force, per_build_length(response.build_rate)
         rates.plot(*point, marker, color="black", zorder=3, label=f"{what} build rate: {at_force(response)}")
     figure.legend(loc="outside lower center", ncols=2)
     return figure

@@ -13,8 +13,8 @@ from matplotlib.ticker import FixedLocator, NullLocator
 
 from ...analysis.tipping import DoglegMap
 from ...case.case import Case
-from ...units import BUILD_LENGTH
-from .drawing import kilonewtons_per_eta_pi, multiple
+from ...units import BUILD_LENGTH, SMALL_LENGTH, UNITS
+from .drawing import add_weight_axis, multiple
 
 LEVELS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)  # ticks, in degrees and degrees per 30 m
 NEVER = "0.8"  # grey
@@ -27,10 +27,9 @@ def draw(case: Case, found: DoglegMap, limit: float) -> Figure:
     panel = figure.subplots()
     panel.set_facecolor(NEVER)
     panel.set_xlabel("ηΠ")
-    panel.set_ylabel(f"clearance of stabilizer {found.stabilizer} (mm)")
-    weight = panel.secondary_xaxis("top", functions=multiple(kilonewtons_per_eta_pi(case)))
-    weight.set_xlabel("active weight on bit (kN)")
-    x, y = found.eta_pi, 1e3 * found.clearance
+    panel.set_ylabel(SMALL_LENGTH.heading(f"clearance of stabilizer {found.stabilizer}"))
+    add_weight_axis(panel, case)
+    x, y = found.eta_pi, SMALL_LENGTH.factor * found.clearance
     angle = np.degrees(found.angle)
     between = np.where(np.isfinite(angle) & (angle > 0.0), angle, np.nan)
     low, high = (np.nanmin(between), 1.001 * np.nanmax(between)) if np.isfinite(between).any() else (1.0, 10.0)
@@ -49,10 +48,7 @@ def draw(case: Case, found: DoglegMap, limit: float) -> Figure:
     if not found.monotonic.all():
         rows, columns = np.nonzero(~found.monotonic)
         keys += panel.plot(x[columns], y[rows], "kx", label="not every larger turn starts it")
-    own = (
-        case.eta_pi,
-        1e3 * case.bha.stabilizer_clearances[found.stabilizer - 1],
-    )
+    own = case.eta_pi, SMALL_LENGTH.factor * case.bha.stabilizer_clearances[found.stabilizer - 1]
     if x[0] <= own[0] <= x[-1] and y[0] <= own[1] <= y[-1]:
         keys += panel.plot(*own, "w*", markersize=14, markeredgecolor="k", label="the case")
     figure.legend(handles=keys, loc="outside lower center", ncols=len(keys))
@@ -63,7 +59,7 @@ def _add_scale(figure: Figure, shades: ScalarMappable, length: float) -> None:
     """Add the scale of the colours, in degrees and as a dogleg severity."""
     bar = figure.colorbar(shades, label=f"turn (°) over the last {length:.4g} m")
     severity = bar.ax.secondary_yaxis("left", functions=multiple(BUILD_LENGTH / length))
-    severity.set_ylabel(f"dogleg severity (°/{BUILD_LENGTH:g} m)")
+    severity.set_ylabel(UNITS["rad/m"].heading("dogleg severity"))
     for axis in (bar.ax.yaxis, severity.yaxis):
         axis.set_major_locator(FixedLocator(LEVELS))
         axis.set_major_formatter("{x:g}")

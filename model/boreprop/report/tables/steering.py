@@ -20,12 +20,12 @@ USUAL_FORCE = 30e3  # N: about the force of the pads of a large tool
 READABLE = 0.01  # ° per `BUILD_LENGTH`: surveys do not resolve less
 NEAR_REVERSAL = 0.8  # of the ηΠ at which the response is zero: from there on it is below a fifth, and a warning is due
 HEADINGS = (
-    "force\n(kN)",
+    f"force\n({UNITS['N'].shown})",
     f"build rate\n({UNITS['rad/m'].shown})",
-    "per kN\n",
-    "bit tilt\n(°)",
+    f"per {UNITS['N'].shown}\n",
+    f"bit tilt\n({UNITS['rad'].shown})",
     "on a wall\n",
-    "reverses at\nkN (ηΠ)",
+    f"reverses at\n{UNITS['N'].shown} (ηΠ)",
 )
 WALLS = {1: "low", -1: "high"}
 
@@ -128,7 +128,7 @@ def piece_lines(curve: tuple[Piece, ...]) -> list[tuple[str, ...]]:
         (
             forces(piece.start, piece.end),
             f"{per_build_length(piece.start.build_rate):+z.2f}…{per_build_length(piece.end.build_rate):+z.2f}",
-            f"{per_build_length(piece.gain * 1e3):+z.3f}",
+            f"{per_build_length(piece.gain / UNITS['N'].factor):+z.3f}",
             (
                 f"{tilt(piece.start)} (limit)"
                 if piece.start.bit_tilt_saturation
@@ -150,7 +150,9 @@ def piece_lines(curve: tuple[Piece, ...]) -> list[tuple[str, ...]]:
 def warnings(curve: tuple[Piece, ...], eta_pi: float) -> list[str]:
     """Warnings of forces at which more force builds less, or nearly does."""
     stretches = [(text, list(pieces)) for text, pieces in groupby(curve, lambda piece: _warning(piece, eta_pi))]
-    return [f"{forces(pieces[0].start, pieces[-1].end)} kN: {text}" for text, pieces in stretches if text]
+    return [
+        f"{forces(pieces[0].start, pieces[-1].end)} {UNITS['N'].shown}: {text}" for text, pieces in stretches if text
+    ]
 
 
 def _warning(piece: Piece, eta_pi: float) -> str:

@@ -29,7 +29,7 @@ def lines(results: "Dataset", q: Iterable[float]) -> list[tuple[str, ...]]:
         what = figure.attrs.get("long_name", kind) + (f", stabilizer {number[:-1]}" if number else "")
         table.append(
             (
-                (f"{what} ({unit.shown})" if unit.shown else what) + _which(results, np.isfinite(results[name].values)),
+                unit.heading(what) + _which(results, np.isfinite(results[name].values)),
                 *(unit.number(value, DIGITS) if isfinite(value) else "–" for value in figure.values),
             )
         )

@@ -53,7 +53,7 @@ def whether_it_ripples(wave: Rippling) -> str:
         State.DYING: f"no, dying out over {wave.fading_length:.3g} m: waves {length}",
         State.LASTING: f"yes: {length}",
         State.GROWING: f"yes, growing: {length}",
-        State.STEERED: f"no: waves {length}, but force or weight change too often to tell whether they would last",
+        State.STEERED: f"no, but force or weight change too often to tell: waves {length}",
     }[wave.state]
 
 
