@@ -33,7 +33,7 @@ hypothesis.settings.register_profile("soak", SUITE, derandomize=False)
 hypothesis.settings.load_profile("suite")
 providers._get_local_constants = lambda: providers._local_constants
 
-pytest_plugins = ["studies", "steering_cases", "native_fmu"]  # their fixtures
+pytest_plugins = ["studies", "steering_cases", "native_fmu", "numbered_runs"]  # their fixtures
 
 # what a terminal or a server that runs the suite sets would change what commands print
 for name in ("CI", "COLUMNS", "FORCE_COLOR", "GITHUB_ACTIONS", "LINES", "NO_COLOR", "PY_COLORS", "TTY_COMPATIBLE"):

@@ -237,7 +237,7 @@ def run_raising(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
         InputError("x: must be y, got z"),
         ParameterError("x", "must be y", 5),
         TableError("x: must be y, got z"),
-        RootsNotFound("x: 2 more zeros lie in the strip than were found"),
+        RootsNotFound("x: 2 were found, but by the argument principle there are 4"),
         FileNotFoundError(2, "no such file", "x"),
         ModuleNotFoundError("No module named 'rerun.x'", name="rerun.x"),
         InputError("x: must be y,\ngot z"),

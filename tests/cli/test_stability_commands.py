@@ -94,7 +94,7 @@ def test_stability_draws_a_picture_and_prints_the_critical_eta_pi(
     [
         (("roots", "--contact", "1,x"), ("--contact", "'1,x'")),
         (("roots", "--all", "--contact", "1"), ("--all", "--contact '1'")),
-        (("roots", "--contact", "2"), ("contact", "1 to 1 here", "got 2")),
+        (("roots", "--contact", "2"), ("contact", "there are 1", "got 2")),
         (("roots", "--eta-pi", "1e-5"), ("eta_pi", "0.0001", "1e-05")),
         (("roots", "--inclination-deg", "nan"), ("--inclination-deg", "finite", "nan")),
         (("stability", "--output", "chart.pdf"), ("chart.pdf", ".png")),

@@ -96,7 +96,7 @@ def test_forgetting_leaves_no_more_than_what_is_asked_for(parts: list[tuple[floa
     [
         ((), (), "measured_depth: must hold at least one station"),
         ((0.0, 2.0, 2.0), (0.0, 0.0, 0.0), r"measured_depth: must increase, got \(2.0, 2.0\)"),
-        ((0.0, 1.0), (0.0,), "inclination: must hold 2 values"),
+        ((0.0, 1.0), (0.0,), "inclination: must hold one value per measured_depth, 2 in all"),
         ((0.0, 1.0), (0.0, float("nan")), r"inclination\[2\]: must be a finite number, got nan"),
     ],
 )

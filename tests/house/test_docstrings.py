@@ -8,27 +8,8 @@ import pytest
 
 import boreprop
 from places import ROOT
+from public_names import EXPLAINED, PUBLIC
 
-PUBLIC = [name for name in boreprop.__all__ if name != "__version__"]
-WITH_EXAMPLE = (
-    "Trajectory",
-    "critical_dogleg",
-    "critical_eta_pi",
-    "find_rippling",
-    "find_roots",
-    "grid",
-    "hysteresis",
-    "load_case",
-    "paper_case",
-    "read_trajectory",
-    "sample",
-    "simulate",
-    "stability_chart",
-    "steady_response",
-    "study",
-    "summarize",
-    "vary",
-)
 MODEL = ROOT / "model"
 WITH_EXAMPLES = [path for path in sorted(MODEL.rglob("*.py")) if ">>> " in path.read_text(encoding="utf-8")]
 MODULES = [".".join(path.relative_to(MODEL).with_suffix("").parts) for path in WITH_EXAMPLES]
@@ -41,7 +22,7 @@ def test_examples_give_what_they_show(module: str) -> None:
     assert outcome.failed == 0
 
 
-@pytest.mark.parametrize("name", WITH_EXAMPLE)
+@pytest.mark.parametrize("name", EXPLAINED)
 def test_the_main_names_have_an_example(name: str) -> None:
     assert ">>> " in str(getdoc(getattr(boreprop, name))).partition("\nExamples\n--------\n")[2]
 

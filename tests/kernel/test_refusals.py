@@ -28,8 +28,22 @@ def test_each_number_of_a_state_counts(case: Case) -> None:
         np.testing.assert_array_equal(run.save(), changed)
 
 
+@pytest.mark.parametrize("number", [-2.0, 0.5])
+def test_a_state_with_a_count_a_contact_or_a_part_that_cannot_be_is_refused(case: Case, number: float) -> None:
+    """After its first number a state has 17 whole ones, none of which is below −1."""
+    run = NativeDrilling(case.bha, case.bit, case.survey, active_weight_on_bit=case.active_weight_on_bit)
+    run.advance(9.0, 300.0, 5e4)
+    for where in range(1, 18):
+        forged = run.save()
+        forged[where] = number
+        with pytest.raises(ParameterError, match=r"^state: must be a valid saved state"):
+            run.restore(forged)
+
+
 def test_a_bha_too_long_for_a_double_is_refused_by_both_engines() -> None:
     bha, bit = BottomHoleAssembly((0.01, 1e307), (1e-3,), 0.0, 1.0, 1.0), BitRock(1.0, 0.1, 0.02)
     for engine in (Drilling, NativeDrilling):
-        with pytest.raises(ParameterError, match=r"^s_n / l_1: must be a finite number, got inf$"):
+        with pytest.raises(ParameterError) as refused:
             engine(bha, bit, Survey((0.0,), (0.0,)), active_weight_on_bit=1.0)
+        ratio = "stabilizer_position[n] / stabilizer_position[1]"
+        assert str(refused.value) == f"{ratio}: must be a finite number, got inf"

@@ -9,7 +9,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from boreprop.core.errors import CannotContinue, ParameterError, error_of
-from boreprop.core.problems import CONSTRAINTS, OBSTACLES, SENTENCES, Problem
+from boreprop.core.problems import CONSTRAINTS, DERIVED, OBSTACLES, SENTENCES, Problem
 from boreprop.kernel import binding
 
 pytestmark = pytest.mark.usefixtures("kernel")
@@ -32,7 +32,7 @@ numbers = st.one_of(st.floats(), st.integers(-(10**18), 10**18).map(float)).filt
 @example("stabilizer_position", 0, [nan, inf, -inf, 0.0])
 @example("", 0, [1e15, 1e16, 12345678901234568.0, 1e-5])
 @example("rss_force", 0, [-0.0, 1e22, 1e23, 9007199254740993.0])
-@example("rss_force / F*", 0, [5e-324, 1.7976931348623157e308, 0.0001, 262144.0])
+@example(DERIVED["scaled_force"], 0, [5e-324, 1.7976931348623157e308, 0.0001, 262144.0])
 @given(st.sampled_from(binding.QUANTITIES), st.integers(0, 9), st.lists(numbers, min_size=4, max_size=4))
 def test_a_sentence_is_the_same_from_c_and_from_python(
     code: str, quantity: str, index: int, values: list[float]

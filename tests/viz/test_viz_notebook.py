@@ -10,6 +10,7 @@ from typing import Any
 import nbformat
 import numpy as np
 import pytest
+import rerun as rr
 import rerun_notebook
 from rerun.chunk import RrdReader
 
@@ -90,11 +91,21 @@ def test_the_widget_gets_the_layout(sent: list[RrdReader], run: Trajectory) -> N
 
 
 def test_the_viewer_has_the_size_asked_for(run: Trajectory, monkeypatch: pytest.MonkeyPatch) -> None:
-    displayed: list[rerun_notebook.Viewer] = []
-    monkeypatch.setattr("rerun.notebook.Viewer.display", lambda viewer: displayed.append(viewer._viewer))
+    sizes = []
+
+    class Viewer:
+        """In place of Rerun's."""
+
+        def __init__(self, *, recording: rr.RecordingStream, width: int | str, height: int | str) -> None:
+            sizes.append((width, height))
+
+        def display(self) -> None:
+            """Show nothing."""
+
+    monkeypatch.setattr("rerun.notebook.Viewer", Viewer)
     show(run)
     show(run, width=900, height=500)
-    assert [(viewer._width, viewer._height) for viewer in displayed] == [("auto", 720), (900, 500)]
+    assert sizes == [("auto", 720), (900, 500)]
 
 
 @pytest.mark.parametrize(

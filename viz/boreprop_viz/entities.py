@@ -11,13 +11,15 @@ from boreprop.analysis.axis import AXIS_REACH, axis_ripple
 from boreprop.core.quantities import BY_NAME
 from boreprop.units import UNITS
 
-from .scene import AHEAD, HoleAxis, Shapes, bit_positions
+from .scene import AHEAD, REACH_ABOVE_BHA, HoleAxis, Shapes, bit_positions
 from .source import Stretch
 from .style import LANES, PLOTS
 from .track import Track, points, send, send_arrows, send_curve, send_strips
 
 RIPPLE = "plots/ripple/ripple"
 BIT_LENGTH = 0.04  # length of the drawn bit over that of the BHA
+LABEL, LABELS_APART = 1.1, 0.2  # places of the labels of ψ over the length of the drawn directions: the first one just
+# ahead of these, those of further runs nearer to the bit, each clear of the one before
 
 # The vertical section
 
@@ -26,7 +28,7 @@ def log_existing_hole(track: Track, hole: HoleAxis, start: float) -> None:
     """The existing hole, up from where drilling starts, for at least the length of the BHA."""
     bha = track.case.bha.stabilizer_positions[-1]
     surveyed = track.case.survey.measured_depth[-1] - track.case.survey.measured_depth[0]
-    behind = hole.since(start - max(1.15 * bha, surveyed))
+    behind = hole.since(start - max(REACH_ABOVE_BHA * bha, surveyed))
     there = behind.position[behind.length <= start]
     track.rec.log(
         track.entity("vertical_section/existing_hole"), rr.LineStrips2D.from_fields(strips=[there]), static=True
@@ -90,7 +92,7 @@ def log_tilt(track: Track, shapes: Shapes) -> None:
         strips = points(track.scales.lateral * angles[..., None] * ahead, ahead)
         send_strips(track, f"bit_frame/tilt/{thing}", length, strips)
     tilts = [f"ψ {UNITS['rad'].number(tilt, '+.2f')}{UNITS['rad'].shown}" for tilt in shapes.rows["bit_tilt"]]
-    places = points(track.scales.lateral * shapes.bit_turn * reach, (1.1 - 0.2 * track.place) * reach)
+    places = points(track.scales.lateral * shapes.bit_turn * reach, (LABEL - LABELS_APART * track.place) * reach)
     labels = rr.Points2D.columns(positions=places, labels=tilts)
     send(track, "bit_frame/tilt/label", length, labels)
 

@@ -31,6 +31,9 @@ from .style import (
 )
 from .track import Track, points
 
+LINE = 0.045  # height of a line of text over that of its view, which is some 20 lines high
+# Other places in a view are parts of its width and height, chosen so that text neither is cut nor covers other text.
+
 
 def log_furniture(rec: rr.RecordingStream, scales: Scales, cases: Sequence[Case]) -> None:
     """What is common to all runs: the grid of the vertical section, the marks and the scales of the bit frame."""
@@ -131,7 +134,7 @@ def log_places(rec: rr.RecordingStream, scales: Scales, cases: Sequence[Case]) -
     (left, right), up = scales.frame.x, -np.array(list(names))
     lines = list(points(np.array([left, right]), up[:, None]))
     rec.log("bit_frame/places", rr.LineStrips2D.from_fields(strips=lines), static=True)
-    above = up + 0.045 * scales.frame.y[0]
+    above = up + LINE * scales.frame.y[0]
     labels = [f"{name}  {s:.4g} m" for s, name in names.items()]
     log_labels(rec, "bit_frame/places/labels", points(0.74 * left, above), labels)
 
@@ -156,7 +159,7 @@ def log_names(rec: rr.RecordingStream, scales: Scales, tracks: Sequence[Track]) 
     """The names of the runs in their colours, at the top of both pictures."""
     for view, bounds, side in (("vertical_section", scales.section, 0.9), ("bit_frame", scales.frame, 0.5)):
         (left, right), (top, bottom) = bounds.x, bounds.y
-        down = top + 0.045 * (bottom - top) * np.arange(1.0, len(tracks) + 1)
+        down = top + LINE * (bottom - top) * np.arange(1.0, len(tracks) + 1)
         names = rr.Points2D(
             points(left + side * (right - left), down),
             labels=[track.name for track in tracks],

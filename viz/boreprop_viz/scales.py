@@ -21,6 +21,10 @@ USUAL_WAVELENGTH = 1.4  # half lengths of the BHA: the wavelength assumed before
 TREND = 0.75  # wavelengths, at most half the BHA: width of the trend, see `axis_ripple`, of which a wave leaves < 0.1 %
 FULL_RIPPLE = 0.25  # ψ* times the wavelength: the ripple of a hole whose bit tilts from limit to limit
 ROOM_FOR_LEGEND = 0.35  # of the span of all curves, above them, for each line of the legend
+MARGIN = 0.1  # of that span, above and below the curves, so that they do not run along the edge
+TILTS = 1.15  # tilt limits to either side in the plot of the tilt, so that a tilt at its limit does not lie on the edge
+WALLS_APART = 0.6  # lengths of the BHA at most, in the bit frame: the factor that enlarges them is rounded down
+LONGEST_ARROW = 7  # parts into which the BHA is divided for the longest arrow to be one
 ARROWS = ("stabilizer_force", "bit_lateral_force", "rss_force")
 
 
@@ -66,12 +70,12 @@ def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) ->
     room = ROOM_FOR_LEGEND if len(runs) == 1 else 0.0
     ranges = {name: plot_range(PLOTS[name], found, room) if whole else None for name, found in curves.items() if found}
     starts = {case.survey.measured_depth[-1] for case in cases}
-    limit = 1.15 * UNITS["rad"].factor * max(case.bit.tilt_limit for case in cases)
+    limit = TILTS * UNITS["rad"].factor * max(case.bit.tilt_limit for case in cases)
     return Scales(
         section=section_bounds(section, around=2 * reach),
         frame=frame_bounds(reach),
-        lateral=max(1.0, round_down(0.6 * reach / max(case.bit_diameter for case in cases))),
-        newtons_per_metre=max(largest, 1.0) / (reach / 7),
+        lateral=max(1.0, round_down(WALLS_APART * reach / max(case.bit_diameter for case in cases))),
+        newtons_per_metre=max(largest, 1.0) / (reach / LONGEST_ARROW),
         window=WAVES * wavelength,
         ripple=1000 * FULL_RIPPLE * wavelength * max(case.bit.tilt_limit for case in cases),
         trend=min(TREND * wavelength, *(case.bha.half_length for case in cases)),
@@ -104,7 +108,7 @@ def plot_range(plot: Plot, curves: Sequence[Array], room: float) -> tuple[float,
     low = plot.unit.factor * min(float(np.nanmin(curve)) for curve in curves)
     high = plot.unit.factor * max(float(np.nanmax(curve)) for curve in curves)
     span = (high - low) or 1.0
-    return low - 0.1 * span, high + (0.1 + room * len(curves)) * span
+    return low - MARGIN * span, high + (MARGIN + room * len(curves)) * span
 
 
 def round_down(value: float) -> float:

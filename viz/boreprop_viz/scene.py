@@ -28,6 +28,7 @@ POINTS_ALONG_BHA = 48  # of the drawn BHA and hole: a smooth curve with little d
 POINTS_OF_PLAN = 1000  # of the drawn plan: at most a pixel apart
 REACH_ABOVE_BHA = 1.15  # lengths of the BHA up to which the bit frame shows the hole, so that its top can be seen
 AHEAD = 0.2  # lengths of the BHA ahead of the bit over which the bit frame shows the directions of bit and hole
+FRAME_WIDTH = 0.9  # lengths of the BHA: room for the walls, and for arrows and names beside them
 
 
 @dataclass(frozen=True)
@@ -235,4 +236,6 @@ def section_bounds(position: Array, around: float) -> Bounds:
 
 def frame_bounds(reach: float) -> Bounds:
     """The range of the bit frame of a BHA that is `reach` metres long."""
-    return Bounds((-0.45 * reach, 0.45 * reach), (-1.05 * REACH_ABOVE_BHA * reach, (AHEAD + 0.06) * reach))
+    side = FRAME_WIDTH / 2 * reach
+    top, bottom = 1.05 * REACH_ABOVE_BHA, AHEAD + 0.06  # with a little room for text at either end
+    return Bounds((-side, side), (-top * reach, bottom * reach))

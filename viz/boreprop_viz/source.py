@@ -19,6 +19,7 @@ from boreprop.units import BUILD_LENGTH
 from .scene import REACH_ABOVE_BHA, Array, HoleAxis, bit_positions, existing_hole, turning
 
 BATCH = 1000  # rows drawn at once, which limits memory
+POINTS_IN_HALF = 25  # points of the existing hole over half the length of the BHA: its curve looks smooth
 PATIENCE = 0.1  # s after which the rows of a live run are drawn though there are fewer: longer would look like stalling
 
 
@@ -158,7 +159,7 @@ def stretches(runs: Iterable[Trajectory], case: Case, plan: Survey | None) -> It
     """Add the hole behind them to consecutive rows. No more hole is kept than drawing the next rows needs."""
     half = case.bha.half_length
     reach = max(2 * REACH_ABOVE_BHA * half, BUILD_LENGTH + half, 2 * AXIS_REACH * half) + half
-    hole = existing_hole(case.survey, reach, spacing=half / 25)
+    hole = existing_hole(case.survey, reach, spacing=half / POINTS_IN_HALF)
     for rows in runs:
         length = rows["drilled_length"]
         hole = hole.followed_by(length, bit_positions(rows))

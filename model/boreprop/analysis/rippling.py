@@ -129,7 +129,7 @@ class Rippling:
 
     def growth_over(self, length: float) -> float:
         """The relative change of the amplitude over a drilled length, m: 0.1 is growth by a tenth."""
-        return exp(min(self.growth * length, 700.0)) - 1.0
+        return exp(min(self.growth * length, 700.0)) - 1.0  # of 710 the exponential would overflow
 
 
 @dataclass(frozen=True)

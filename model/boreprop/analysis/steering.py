@@ -35,7 +35,7 @@ from ..core.checks import check_number
 from ..core.errors import ParameterError
 from ..core.linear import dot
 from ..core.modes import ROUNDING, Loads, Mode, Modes, Regime, Row, wall
-from ..core.system import BottomHoleAssembly, Scaled, eta_pi, scale
+from ..core.system import BottomHoleAssembly, Scaled, scale
 
 MOST_PIECES = 1000  # of the curve, so that the way along it ends: there are at most 729 regimes, few of them met twice
 
@@ -163,8 +163,12 @@ def build_rate_curve(case: Case, inclination: float, force_limit: float, *, grav
     check_number("force_limit", force_limit, above=0.0)
     steady, bha = _steady(case, inclination, gravity), case.bha
     limit = force_limit / bha.force_scale
+    try:
+        lines = list(steady.walk(-limit, limit))
+    except RuntimeError as error:
+        raise ParameterError("force_limit", f"must be smaller (--force-limit), since {error}", force_limit) from error
     pieces = []
-    for line, start, end in steady.walk(-limit, limit):
+    for line, start, end in lines:
         zero = 0.0 if line.regime.saturation else reversal(steady.scaled, line.mode)
         pieces.append(
             Piece(
@@ -219,7 +223,7 @@ def _steady(case: Case, inclination: float, gravity: bool) -> "Steady":
     scaled = scale(case.bha, case.bit)
     if not gravity:
         scaled = replace(scaled, w=0.0)
-    return Steady(scaled, eta_pi(case.bha, case.bit, case.active_weight_on_bit), inclination)
+    return Steady(scaled, case.eta_pi, inclination)
 
 
 def _in_si(bha: BottomHoleAssembly, line: "Line", rss_force: float) -> SteadyResponse:
@@ -319,7 +323,7 @@ class Steady:
     def walk(self, start: float, stop: float) -> Iterator[tuple[Line, float, float]]:
         """The lines that hold from one force to a larger one, each with the two forces between which it holds.
 
-        Raises `ParameterError` if there are more than `MOST_PIECES`.
+        Raises `RuntimeError` if there are more than `MOST_PIECES`.
         """
         line, at = self.line_at(start), start
         for _ in range(MOST_PIECES):
@@ -329,7 +333,7 @@ class Steady:
             if min(end, stop) - at > ROUNDING:
                 yield line, at, min(end, stop)
             line, at = Line(self, line.regime.switch(part, side)), end
-        raise ParameterError("force_limit / F*", f"must be smaller: the curve has over {MOST_PIECES} pieces", stop)
+        raise RuntimeError(f"up to it the curve has more than {MOST_PIECES} pieces")
 
     def _first_met(self, line: Line, at: float) -> tuple[float, int, int]:
         """The first force from `at` on at which a line meets a bound, the part that the bound is of, and its side."""

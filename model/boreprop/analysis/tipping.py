@@ -24,7 +24,6 @@ from ..core.checks import check_number
 from ..core.options import RELATIVE_TOLERANCE, Options
 from ..core.quantities import OUTPUTS, scalar_names
 from ..core.survey import Survey
-from ..core.system import eta_pi
 from ..errors import CannotContinue
 from ..run.engines import Engine, engine, start
 from ..run.trajectory import Stopped, Trajectory
@@ -50,6 +49,8 @@ SCAN = 6  # doglegs tried first, each half of the last: from 10° down to 0.3°,
 SMALL = 11  # the same if the straight hole ripples by itself, to see whether it also does after the smallest turns
 TOLERANCE = 0.02  # relative, of the critical dogleg: no hole is surveyed as precisely
 FINEST = radians(0.001)  # a critical dogleg below this counts as zero
+COLUMNS, ROWS_OF_MAP = 16, 8  # of a map: each of its points takes ten runs or more, and together they take minutes
+CLEARANCES = 0.5e-3, 8e-3  # m, of a map, at least: from a stabilizer that hardly has any to one that hardly touches
 
 
 def drill_until_steady(case: Case, *, relative_tolerance: float = RELATIVE_TOLERANCE) -> tuple[Trajectory, Rippling]:
@@ -277,18 +278,19 @@ class DoglegMap:
 def usual_map(case: Case) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """ηΠ and clearances, m, of the first stabilizer that can touch, for a map of where a system ripples.
 
-    The map includes the case. Its ηΠ go from that of the case, or less, to where the BHA in contact no longer
-    oscillates, and at least to 1.5 times that of the case.
+    The map includes the case. Its ηΠ go from that of the case, or less, to a little beyond that at which the BHA in
+    contact no longer oscillates, and at least to 1.5 times that of the case.
     """
-    own = eta_pi(case.bha, case.bit, case.active_weight_on_bit)
+    own = case.eta_pi
     inclination = case.survey.inclination[-1]
     contact = can_touch(case.bha, case.bit, inclination, case.schedule.rss_force)
     critical = critical_eta_pi(case, contact=contact, inclination=inclination)
     highest = max(1.1 * critical.eta_pi if critical else 0.0, 1.5 * own)
     clearance = (*case.bha.stabilizer_clearances, 0.0)[first_that_touches(case) - 1]
+    smallest, largest = CLEARANCES
     return (
-        np.linspace(min(own, highest / 16), highest, 16),
-        np.linspace(min(0.5e-3, clearance), max(8e-3, 1.5 * clearance), 8),
+        np.linspace(min(own, highest / COLUMNS), highest, COLUMNS),
+        np.linspace(min(smallest, clearance), max(largest, 1.5 * clearance), ROWS_OF_MAP),
     )
 
 

@@ -22,6 +22,7 @@ FLANK = 0.15  # of a lag: noise may split the top of a peak into several within 
 DRIFT = 0.1  # of a wavelength: a peak is searched for this far to both sides of a multiple of the wavelength
 ALMOST = 0.02  # of a wave that may be missing from the last one, since its ends need not fall on rows
 LAST_LAG = 0.6  # of the rows: at larger lags too few rows overlap
+LEAST_SIZE = 1e-6  # of the largest wave: a smaller one counts as this, so that its logarithm is finite
 KEPT = 64  # bases of polynomials kept, one for each number of rows: the cases of a study share a few of them
 
 Integers = NDArray[np.intp]
@@ -208,7 +209,7 @@ class LastWaves:
         """The growth per wave of the logarithm of the size, by least squares, and twice its standard error."""
         middle = np.arange(self.count) - (self.count - 1) / 2
         square = float(middle @ middle)
-        logarithm = np.log(np.maximum(self.sizes, 1e-6 * self.sizes.max()))
+        logarithm = np.log(np.maximum(self.sizes, LEAST_SIZE * self.sizes.max()))
         rate = float(middle @ logarithm) / square
         residual = logarithm - logarithm.mean() - rate * middle
         return rate, 2 * float(residual @ residual / self.count / (square * (1 - 2 / self.count))) ** 0.5

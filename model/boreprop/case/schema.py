@@ -69,7 +69,7 @@ def check_keys(document: dict[str, Any], source: Path) -> None:
             if where not in BY_KEY:
                 raise InputError(f"{source}: {where}: {_unknown(key)}, got {shown(value)}")
             if BY_KEY[where].kind == "String" and not isinstance(value, str):
-                raise InputError(f"{source}: {where}: must be a text, got {shown(value)}")
+                raise InputError(f"{source}: {where}: must be text in quotes, got {shown(value)}")
     for where in OF_FILES:
         table, _, file = where.partition(".")
         columns = columns_of(table)

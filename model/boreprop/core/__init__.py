@@ -1,1 +1,1 @@
-"""The model itself. Standard library only, relative imports only: this package travels inside the FMU."""
+"""The model itself. It imports its own modules and the standard library only, since it travels inside the FMU."""

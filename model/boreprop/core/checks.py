@@ -34,7 +34,7 @@ def check_quantity(name: str, value: float | tuple[float, ...]) -> None:
 
 
 def check_part(part: str, fields: object) -> None:
-    """Raise `ParameterError` unless all that a part of a case has is in the ranges of the table of quantities."""
+    """Raise `ParameterError` unless every quantity of a part of a case is in its range of the table of quantities."""
     for quantity in BY_NAME.values():
         if quantity.field and quantity.part == part:
             check_quantity(quantity.name, getattr(fields, quantity.attribute))

@@ -8,7 +8,7 @@ from .errors import CannotContinue, ParameterError, error_of
 from .integrator import Integrator
 from .modes import Modes, bit_tilt, saturation, wall
 from .options import Options, Statistics
-from .problems import Problem
+from .problems import DERIVED, Problem
 from .survey import Survey
 from .system import BitRock, BottomHoleAssembly, eta_pi, scale
 
@@ -32,7 +32,7 @@ class Drilling:
     drilled_length
         Where the bit is, m from the start of the run.
     integrator
-        What drills, dimensionless.
+        The integrator, which has dimensionless lengths and forces.
 
     Raises
     ------
@@ -62,13 +62,13 @@ class Drilling:
             raise error_of(Problem("no start", "parameters")) from error
 
     def _scaled_inputs(self, rss_force: float, active_weight_on_bit: float) -> tuple[float, float]:
-        """F_RSS and ηΠ; `ParameterError` if they, or the inputs, are no numbers to go on with."""
+        """F_RSS and ηΠ; `ParameterError` if these numbers, or the inputs, are out of range."""
         check_quantity("rss_force", rss_force)
         check_quantity("active_weight_on_bit", active_weight_on_bit)
         F_rss, own_eta_pi = rss_force / self._force, eta_pi(self._bha, self._bit, active_weight_on_bit)
-        check_number("rss_force / F*", F_rss)
+        check_number(DERIVED["scaled_force"], F_rss)
         check_number("eta_pi", own_eta_pi, above=0.0)
-        check_number("1 / eta_pi", 1 / own_eta_pi)
+        check_number(DERIVED["inverse_eta_pi"], 1 / own_eta_pi)
         return F_rss, own_eta_pi
 
     def advance(self, drilled_length: float, rss_force: float, active_weight_on_bit: float) -> None:
@@ -77,7 +77,7 @@ class Drilling:
         Parameters
         ----------
         drilled_length
-            Where to stop, m from the start of the run. Where the bit is already: only the inputs are taken over.
+            Where to stop, m from the start of the run. If the bit is there already, only the inputs are taken over.
         rss_force, active_weight_on_bit
             N.
 
@@ -113,14 +113,14 @@ class Drilling:
         active_weight_on_bit
             N.
         rows
-            Which row of `table` the outputs at the end of each leg become, (legs,); −1: none.
+            The row of `table` that takes the outputs at the end of each leg, (legs,); −1 for none.
         table
-            (…, outputs), in the order of the table of quantities.
+            An array of shape (…, outputs), with the outputs in the order of the table of quantities.
 
         Raises
         ------
         ParameterError, CannotContinue
-            As `advance`, at the leg that fails; the bit is then where the one before ended.
+            As in `advance`, for the leg that fails; the bit is then where the leg before ended.
         """
         for length, force, row in zip(lengths, forces, rows, strict=True):
             self.advance(length, force, active_weight_on_bit)

@@ -1,4 +1,4 @@
-"""What goes wrong in a way that a user can do something about: what travels with the core."""
+"""The errors of the core: what goes wrong in a way that a user can do something about."""
 
 from math import isnan
 
@@ -17,9 +17,9 @@ class ParameterError(BorepropError, ValueError):
     Attributes
     ----------
     name, constraint, value
-        What the message says.
+        The parts of the message.
     problem
-        The same as both engines give it; None for a constraint that no engine has.
+        What an engine has found; None for a constraint that no engine checks.
     """
 
     def __init__(self, name: str, constraint: str, value: object, problem: Problem | None = None) -> None:
@@ -42,9 +42,9 @@ class CannotContinue(BorepropError):
     problem
         What it has met.
     code
-        The same as a key of `OBSTACLES`.
+        Its kind, a key of `OBSTACLES`.
     place
-        Where, m from the start of the run.
+        Where the bit was then, m from the start of the run.
     helps
         What a user can do about it.
     """
@@ -59,7 +59,7 @@ class CannotContinue(BorepropError):
 
 
 def error_of(problem: Problem) -> ParameterError | CannotContinue:
-    """The error to raise for a problem."""
+    """The error to raise for a problem that an engine has found."""
     if problem.code in OBSTACLES:
         return CannotContinue(problem)
     constraint = problem.tell(CONSTRAINTS[problem.code][0])

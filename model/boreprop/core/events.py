@@ -10,10 +10,10 @@ from .law import Bound, Law
 from .modes import ROUNDING, side_beyond
 from .step import Step, Trial
 
-NEAR = 0.3  # how far beyond its values at the points of a step a value may lie between them, over their range, so that
-# a bound farther away is not searched for: a parabola lies beyond them by an eighth at most
+NEAR = 0.3  # how far beyond its values at the points of a step a value may lie between them, over the range of these: a
+# bound farther away is not searched for. A parabola lies beyond them by an eighth of the range at most
 CLOSE = 1e-12  # ℓ₁: an event is located when the places on both sides of it are this close, or the value is rounding
-MOST_TRIES = 60  # to locate one: plain bisection would need 40
+MOST_TRIES = 60  # to locate an event: plain bisection of the longest step would need 40
 
 
 class Event(NamedTuple):
@@ -27,7 +27,7 @@ class Event(NamedTuple):
 def first_event(law: Law, hole: Hole, trial: Trial, slack: float) -> Event | None:
     """The first event of a trial step, if it has any.
 
-    It meets those bounds beyond which its points lie by more than `slack`.
+    A bound is met if the value lies beyond it by more than `slack` at a point of the step or an extreme between points.
     """
     first = None
     for bound in law.bounds:

@@ -5,11 +5,12 @@ from math import inf
 from typing import Any, NamedTuple
 
 from .checks import check_number
+from .problems import DERIVED
 from .survey import Survey
 
 
 class Drilled(NamedTuple):
-    """How a piece of the hole was drilled: θ = Σ theta[m] t^m, and the inputs."""
+    """How a piece of the hole was drilled: with θ = Σ theta[m] t^m, t as in `Hole`, and under which inputs."""
 
     theta: tuple[float, ...]
     F_rss: float
@@ -26,7 +27,7 @@ class Hole:
 
     Piece k covers ξ from starts[k] to the start of the next one; there Y = Σ coefficients[k][m] t^m with
     t = (ξ − starts[k]) · rates[k]. Y counts from an origin that moves with the bit, so only differences mean anything.
-    drilled[k] is None where piece k is of the survey.
+    drilled[k] is None if piece k comes from the survey.
     """
 
     def __init__(self, survey: Survey, length_scale: float, reach: float) -> None:
@@ -52,7 +53,7 @@ class Hole:
             slope, bend = inclinations[k] * width, (inclinations[k + 1] - inclinations[k]) * width / 2
             Y -= slope + bend
             rate = 1 / width if width else inf
-            check_number("l_1 / distance of stations", rate)
+            check_number(DERIVED["station_rate"], rate)
             self.rates.insert(0, rate)
             self.coefficients.insert(0, (Y, slope, bend, 0.0, 0.0, 0.0))
         slopes = [(b - a) * rate for a, b, rate in zip(inclinations, inclinations[1:], self.rates, strict=False)]
@@ -80,7 +81,7 @@ class Hole:
         return c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * c5))))
 
     def Theta(self, xi: float) -> float:
-        """Y' at `xi`: the inclination; where the hole was drilled, but for the error of a step between its nodes."""
+        """Y' at `xi`, the inclination; of drilled hole, within the error of a step between its nodes."""
         k = self.find(xi)
         t = (xi - self.starts[k]) * self.rates[k]
         _, c1, c2, c3, c4, c5 = self.coefficients[k]

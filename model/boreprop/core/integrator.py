@@ -27,15 +27,15 @@ from .survey import Survey
 LOOK_BACK = 1.0  # ℓ₁: how far behind the bit Θ may be asked for, as the curvature over the last ℓ₁ does
 SAFETY = 0.85  # of the step that the error estimate asks for, so that few of the next ones are rejected
 LARGEST_GROWTH = 8.0  # of a step over the last, as in RADAU5 (Hairer & Wanner, IV.8): an estimate reaches no farther
-SMALLEST_GROWTH = 0.1  # the same downwards
-LEAST_ERROR = 1e-12  # keeps the growth finite, far above its limit
+SMALLEST_GROWTH = 0.1  # of a trial over a rejected one, for the same reason
+LEAST_ERROR = 1e-12  # of a trial, over the tolerance: it is not zero, and its growth is far above the largest
 STRETCH = 1.3  # how much longer than planned a step may be if it then ends on the next kink: one long step that may be
 # rejected is tried before two short ones
 LARGEST_INCLINATION = 2 * pi  # beyond a full turn nothing is drilled
-CLOSER = 8.0  # how much shorter a step is tried where each regime meets a bound before its first point (2 to 64 serve
-# as well), while a value may lie so much farther beyond its bound at the points,
-MOST_SLACK = 1e-6  # at last by this: what needs more is no touch that rounding hides
-ORIGIN_LIMIT = 8.0  # |Y| beyond which the origin of Y is moved to the bit: what is lost by rounding stays below 1e-15
+CLOSER = 8.0  # by this factor a step is tried shorter where each regime meets a bound before its first point, and the
+# slack by which values may lie beyond their bounds at the points is made larger; 2 to 64 serve as well
+MOST_SLACK = 1e-6  # of that slack: what needs more is no touch that rounding hides
+ORIGIN_LIMIT = 8.0  # |Y| beyond which the origin of Y is moved to the bit: rounding errors of Y stay below 1e-15
 
 
 @dataclass
@@ -44,39 +44,39 @@ class Plan:
 
     h: float  # its length
     resumed: float  # the length that may follow if a kink cuts it short
-    stretch: float = STRETCH
+    repeated: bool = False  # an earlier trial was no good: the next is never longer than planned
     switches: int = 0  # of the regime where it starts
     slack: float = ROUNDING  # by which its points may lie beyond a bound
 
     def shorten(self, h: float) -> None:
         """Try again, the error having been too large."""
         self.h = self.resumed = h
-        self.stretch = 1.0
+        self.repeated = True
 
     def look_closer(self, h: float) -> None:
         """Try again, each regime having met a bound before the first point."""
-        self.h, self.stretch, self.switches = h, 1.0, 0
+        self.h, self.repeated, self.switches = h, True, 0
         self.slack *= CLOSER
 
 
 class Integrator:
-    """The bit at the front of its hole, dimensionless: `drill` and `step` move it, the rest looks.
+    """The bit at the front of its hole, dimensionless: `drill` and `step` move it, other methods tell where it is.
 
-    A change of input restarts the integrator where the bit is, and nothing else does: results do not depend on where
-    the bit stops on the way.
+    Only a change of input restarts the integrator, at the bit. So results do not depend on where the bit stops on the
+    way.
 
     Parameters
     ----------
     modes
-        Of the drilling system.
+        The modes of the drilling system.
     survey
-        The existing hole, SI units.
+        The existing hole, in SI units.
     length_scale
         ℓ₁, m.
     F_rss, eta_pi
         The inputs at the start.
     options
-        How it takes its steps.
+        How the integrator takes its steps.
 
     Raises
     ------
@@ -141,14 +141,14 @@ class Integrator:
 
     @contextmanager
     def _all_or_nothing(self) -> Iterator[None]:
-        """What fails within changes nothing."""
+        """Go back to the state before if the block fails."""
         before = self.save()
         try:
             yield
         except CannotContinue:
             self.restore(before)
             raise
-        except (ArithmeticError, ValueError) as error:  # what other languages call inf and nan
+        except (ArithmeticError, ValueError) as error:  # Python raises where C goes on with inf and nan
             failure = self._failure("not finite", self.present.end)
             self.restore(before)
             raise failure from error
@@ -180,7 +180,7 @@ class Integrator:
         return self._inclination(self.present.state(self.xi)[0], self.loads(), self.eta_pi)
 
     def earlier_inclination(self, xi: float) -> float:
-        """What Θ was when the bit was at `xi`, at most LOOK_BACK behind; where it jumped, after the jump."""
+        """Θ as it was when the bit was at `xi`, at most LOOK_BACK behind; where Θ jumped, its value after the jump."""
         hole = self.hole
         k = hole.find(xi + MERGE)
         drilled = hole.drilled[k]
@@ -219,7 +219,7 @@ class Integrator:
     # keeping
 
     def save(self) -> dict[str, Any]:
-        """The whole evolving state; what it holds is never changed afterwards."""
+        """The whole evolving state. Drilling on does not change what is saved."""
         return {
             "xi": self.xi,
             "F_rss": self.F_rss,
@@ -253,7 +253,7 @@ class Integrator:
         self._laws = Laws(self.modes, F_rss, eta_pi)
 
     def _restart(self, F_rss: float, eta_pi: float, Theta: float) -> None:
-        """Find the regime under new inputs and mark the jump of the inclination, which was Θ, that they make."""
+        """Take over inputs, find the regime under them, and mark the jump of the inclination, which was Θ so far."""
         self._take_over(F_rss, eta_pi)
         loads = self.loads()
         mode, psi_star = self.settled(loads), self.scaled.psi_star
@@ -272,7 +272,7 @@ class Integrator:
         self.path = (self.path[0] + x, self.path[1] + z)
 
     def _leave(self, last: Step) -> tuple[float, float, int | None]:
-        """Draw the consequences of how the last step ended: θ and Y there, and the order of a kink of Y, if any."""
+        """Go over the end of the last step, with its event: gives θ, Y and the order of the kink of Y there, if any."""
         self._move_path(last.end)
         theta, Y = last.state(last.end)
         if abs(Y) > ORIGIN_LIMIT:
@@ -307,7 +307,7 @@ class Integrator:
         self._accepted += 1
 
     def _first_plan(self, last: Step, kink: int | None) -> Plan:
-        """What the last step leaves for the next; after a kink a step no longer than the layer in which θ settles."""
+        """The plan of the next step: as the last one left it, but after a kink no longer than `layers` allow."""
         plan = Plan(last.next_h, last.next_h)
         if (kink is not None and kink <= SMOOTHEST_KINK) or last.end == last.xi:
             plan.h = min(plan.h, self.options.layers * self._law.relaxation)
@@ -355,7 +355,8 @@ class Integrator:
         to_kink = self.kinks.next_kink(xi, 2 * h, law.gains, self.options.relative_tolerance) - xi
         if to_kink >= 2 * h:
             return h
-        return to_kink if to_kink <= min(plan.stretch * h, largest) else to_kink / 2
+        longest = h if plan.repeated else min(STRETCH * h, largest)
+        return to_kink if to_kink <= longest else to_kink / 2
 
     def _failure(self, code: str, xi: float) -> CannotContinue:
         return CannotContinue(Problem(code, limit=self.options.relative_tolerance, place=xi * self.length_scale))

@@ -41,10 +41,10 @@ class Kinks:
         self._last = xi, order, jump
 
     def kink_here(self, xi: float, shortest: float) -> int | None:
-        """Take the kinks up to `xi` off the list; the lowest derivative of Y that those at `xi` make jump, if any.
+        """Take the kinks up to `xi` off the list; give the lowest derivative of Y that jumps at `xi` by them, if any.
 
-        Derivative k of Y at a stabilizer acts on derivative k + 1 at the bit. Half the way to a kink must be no shorter
-        than a step may be, `shortest`: one that is closer is met here.
+        Derivative k of Y at a stabilizer acts on derivative k + 1 at the bit. A step may have to stop half way to a
+        kink, and no step is shorter than `shortest`: a kink at less than twice that counts as met here.
         """
         near = max(MERGE, 2 * shortest)
         passed = list(takewhile(lambda kink: kink.xi - xi <= near, self.ahead))
@@ -54,8 +54,7 @@ class Kinks:
     def next_kink(self, xi: float, h: float, gains: list[float], tolerance: float) -> float:
         """Where the next kink lies that a step of length `h` from `xi` must not pass; inf if there is none.
 
-        It may pass those that change it by less than the tolerance: `gains` is what it changes by, per change of
-        Y(ξ−s_i).
+        It may pass those that change it by less than the tolerance; `gains` are those of the law.
         """
         for kink in self.ahead:
             if kink.xi >= xi + h:

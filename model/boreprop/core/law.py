@@ -71,19 +71,19 @@ class Sine(NamedTuple):
     slope: float
 
     def linear(self, averages: list[float]) -> list[float]:
-        """Its linear part at values of ⟨Θ⟩_1."""
+        """Its linear part, at values of ⟨Θ⟩_1."""
         at, value, slope = self
         return [value + slope * (average - at) for average in averages]
 
     def largest_error(self, averages: list[float]) -> float:
-        """A bound on the rest: |sin(a + d) − sin a − d cos a| <= d²/2."""
+        """A bound on what the linear part neglects: |sin(a + d) − sin a − d cos a| <= d²/2."""
         at = self.average
         far = max(max(averages) - at, at - min(averages))
         return far * far / 2
 
 
 class Bound(NamedTuple):
-    """What stays between `lower` and `upper` while a regime holds, see `modes.Bound`, on the state."""
+    """A `modes.Bound` under given inputs: `value` lies between `lower` and `upper` while the regime holds."""
 
     part: int
     value: Linear
@@ -103,12 +103,12 @@ class Law:
             self.Theta = Linear(1.0, 0.0, (0.0,) * len(self.s), 0.0, -regime.saturation * scaled.psi_star)
         else:
             self.Theta = Linear(1.0 - psi.theta, -psi.Y, tuple(-c for c in psi.delayed), -psi.g, -psi.constant)
-        self.relaxation = ratio(1, abs(self.theta_rate.theta + self.Theta.Y))  # length within which θ settles
+        self.relaxation = ratio(1, abs(self.theta_rate.theta + self.Theta.Y))  # length over which θ forgets
         self.bounds = [
             Bound(bound.part, Linear.of(bound.row, self.s, F_rss, bound.scale), bound.lower, bound.upper)
             for bound in regime.bounds(modes, eta_pi)
         ]
-        # change per change of Y(ξ−s_i): of Θ, once θ has followed, or of what the bounds are on
+        # per change of Y(ξ−s_i) the change of Θ, once θ has followed, or that of a bounded value if it is larger
         self.gains = [
             max(abs(ratio(a, self.theta_rate.theta)) + abs(b), *(abs(bound.value.delayed[i]) for bound in self.bounds))
             for i, (a, b) in enumerate(zip(self.theta_rate.delayed, self.Theta.delayed))
@@ -128,7 +128,7 @@ class Law:
 
 
 class Laws:
-    """The laws of one drilling system under given inputs, made when first asked for."""
+    """The laws of one drilling system under given inputs, each made when it is first asked for."""
 
     def __init__(self, modes: Modes, F_rss: float, eta_pi: float) -> None:
         self._modes, self._F_rss, self._eta_pi = modes, F_rss, eta_pi

@@ -1,4 +1,4 @@
-"""The little linear algebra the core needs, on lists of rows."""
+"""The little linear algebra that the core needs, on lists of rows."""
 
 from collections.abc import Iterable
 from math import copysign, inf
@@ -22,7 +22,7 @@ def dot(a: Iterable[float], b: Iterable[float]) -> float:
 
 
 def ratio(a: float, b: float) -> float:
-    """a/b as in C: by zero it is infinite, or no number."""
+    """a/b as in C, where division by zero gives an infinity or NaN."""
     return a / b if b else a * copysign(inf, b)
 
 

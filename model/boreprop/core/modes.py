@@ -17,7 +17,7 @@ from .system import Scaled
 
 ROUNDING = 1e-13  # how far a force or deflection of order one may lie beyond its bound by rounding alone
 MOST_PIVOTS = 3**5  # contacts at five stabilizers: a search that takes more pivots goes in circles
-LOOSER = 8.0  # how much farther it may lie there in the next search: gains a digit, not more than is needed
+LOOSER = 8.0  # factor on it for the next search: about a digit, so that hardly more is allowed than needed
 
 Contact = tuple[int, ...]
 """For each non-ideal stabilizer 1 at the lower wall, −1 at the upper wall, 0 free."""
@@ -104,7 +104,7 @@ class Mode:
 
 
 class Modes:
-    """The modes of one drilling system, made when first asked for."""
+    """The modes of one drilling system, each made when it is first asked for."""
 
     def __init__(self, scaled: Scaled) -> None:
         self.scaled, self.beam = scaled, Beam(scaled)
@@ -128,7 +128,7 @@ class Modes:
     def settle(self, loads: Loads, contact: Contact) -> Mode:
         """The mode whose contacts satisfy (7) under `loads`, starting the search from `contact`.
 
-        The tilt has no part in that: the contacts do not see it.
+        The tilt has no part in that, since the contacts do not depend on it.
         """
         start = Regime(self.touching(contact), 0)
         return self[start.settle(lambda regime: (self[regime.contact].bounds, loads)).contact]

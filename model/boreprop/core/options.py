@@ -1,4 +1,4 @@
-"""What steers the integrator, and what it says of its work."""
+"""The options of the integrator, and the statistics of its work."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -9,25 +9,27 @@ from .quantities import RELATIVE_TOLERANCE as RELATIVE_TOLERANCE
 
 @dataclass(frozen=True)
 class Options:
-    """How the integrator takes its steps. The defaults serve every case; tests steer by the rest.
+    """How the integrator takes its steps. The defaults serve every case; other values are for tests.
 
     Parameters
     ----------
     relative_tolerance
         Local error allowed in one step, relative to 1 rad and to ℓ₁; 1e-12 to 1e-2.
     largest_step
-        ℓ₁. The default is the shortest delay, so a step never needs hole that is not yet drilled.
+        Length of the longest step, in ℓ₁. The default is the shortest delay, so that a step never needs hole that is
+        not drilled yet.
     smallest_step
-        ℓ₁, from ξ = 1 on times ξ. The next position must differ from the last, and a double carries 16 digits; the
-        default leaves four of them for the length of a step.
+        Length of the shortest step, in ℓ₁; beyond ξ = 1 it is this times ξ. The next position must differ from the
+        last one, and a double carries 16 digits: the default leaves four of them for the length of a step.
     layers
-        First step after a kink, in relaxation lengths of θ. The transient that a kink starts has died out after 16 of
-        them (e⁻¹⁶ = 1e-7), and of 4 to 64 it makes the reference cases try the fewest steps.
+        Length of the longest first step after a kink, in relaxation lengths of θ. The transient that a kink starts has
+        died out after 16 of them (e⁻¹⁶ = 1e-7), and with 16 the reference cases take the fewest trials among 4 to 64.
     theta_weight
-        Weight of the error of θ, where that of Y counts whole: θ forgets an error within a relaxation length, Y
-        carries it for the length of the BHA. At 1 the reference cases would try 1.4 times the steps.
+        Weight of the error of θ in that of a step, in which the error of Y has weight 1: θ forgets an error within a
+        relaxation length, whereas Y carries it for the length of the BHA. With a weight of 1 the reference cases would
+        take 1.4 times the trials.
     most_steps
-        In one way to drill, so that a way without an end ends.
+        Number of steps after which a call gives up, so that it ends even if asked for a length without end.
 
     Raises
     ------
@@ -51,13 +53,13 @@ class Options:
         check_number("most_steps", self.most_steps, at_least=1)
 
     def shortest_step(self, xi: float) -> float:
-        """The shortest step at `xi`, in ℓ₁."""
+        """Length of the shortest step at `xi`, in ℓ₁."""
         return self.smallest_step * max(1.0, xi)
 
 
 class Statistics(NamedTuple):
     """What the integrator has done since the start of the run."""
 
-    accepted: int = 0  # steps
-    rejected: int = 0  # steps that were tried again, since their error was too large
-    events: int = 0  # bounds met
+    accepted: int  # steps
+    rejected: int  # trials that were repeated over a shorter length, since their error was too large
+    events: int  # bounds met

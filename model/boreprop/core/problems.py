@@ -1,10 +1,24 @@
 """What can be wrong: every code with its sentence, the same for both engines and for both flavours of the FMU.
 
-The engine in C has the codes, and the FMU in C the sentences too, from a header that is written from this file.
+The C sources have codes and sentences from a header that is written from this file.
 """
 
 from dataclasses import dataclass
 from math import nan
+
+F_STAR = "(3 flexural_stiffness / stabilizer_position[1]^2)"
+DERIVED = {
+    "scaled_force": f"rss_force / {F_STAR}",
+    "scaled_slope": f"rss_force_slope / {F_STAR}",
+    "inverse_eta_pi": "1 / eta_pi",
+    "force_scale": F_STAR.strip("()"),
+    "scaled_reach": "stabilizer_position[n] / stabilizer_position[1]",
+    "scaled_weight": f"distributed_weight stabilizer_position[1] / {F_STAR}",
+    "epsilon": "angular_steering_resistance / lateral_steering_resistance",
+    "inverse_epsilon": "lateral_steering_resistance / angular_steering_resistance",
+    "station_rate": "stabilizer_position[1] / distance between stations of the survey",
+}
+"""What is made of quantities of the table, and how messages name it: by what a user has given."""
 
 CONSTRAINTS = {
     "not a number": ("must be a finite number", "{value}"),
@@ -18,7 +32,7 @@ CONSTRAINTS = {
     "no start": ("must give a finite state where the run starts", "{value}"),
     "no state": ("must be a valid saved state of this system", "{count} numbers that are not"),
 }
-"""What a given value breaks, by code: the constraint, and what there is instead."""
+"""Constraints on given values, by code: the constraint, and what there is instead."""
 
 OBSTACLES = {
     "not finite": ("the state is not finite at {place} m", "check inputs and parameters"),
@@ -31,11 +45,17 @@ OBSTACLES = {
         "the steps of the integrator become too short at {place} m",
         "raise relative_tolerance (--tolerance), now {limit}",
     ),
-    "no mode": ("no contact mode holds at {place} m", "change relative_tolerance (--tolerance), now {limit}"),
-    "too many": ("step", "must take at most {limit} steps of the integrator, got more"),
-    "no memory": ("memory", "must hold the hole behind the bit, in at most {limit} pieces, got too little"),
+    "no mode": ("no contacts are found that hold at {place} m", "change relative_tolerance (--tolerance), now {limit}"),
+    "too many": (
+        "from {place} m on, more than {limit} steps of the integrator would be needed in one call",
+        "drill to a nearer length, change inputs less often, or raise relative_tolerance (--tolerance)",
+    ),
+    "no memory": (
+        "there is too little memory for the hole behind the bit, at most {limit} pieces",
+        "give a survey with fewer stations, or change inputs less often",
+    ),
 }
-"""What an engine meets on its way, by code: what it is, and what helps."""
+"""What may stop an engine on its way, by code: what it is, and what helps."""
 
 SENTENCES = {code: f"{{name}}: {constraint}, got {got}" for code, (constraint, got) in CONSTRAINTS.items()} | {
     code: f"{met}: {helps}" for code, (met, helps) in OBSTACLES.items()
@@ -44,7 +64,7 @@ SENTENCES = {code: f"{{name}}: {constraint}, got {got}" for code, (constraint, g
 
 @dataclass(frozen=True)
 class Problem:
-    """What is wrong: all that its sentence is made of. NaN stands for what it has not.
+    """What is wrong: all that its sentence is made of. NaN stands for a number that it does not have.
 
     Parameters
     ----------
@@ -53,13 +73,13 @@ class Problem:
     quantity
         What has the wrong value; empty for an obstacle.
     index
-        Which of several values, from 1 on; 0 where there is one.
+        Which of several values, counted from 1; 0 for a single value.
     value, before
-        The wrong value, and of a list that must increase the one before it.
+        The wrong value, and the value before it in a list that must increase.
     limit
-        What the value, or the number of steps, must keep to; of other obstacles the tolerance.
+        What the value, the number of steps or that of pieces must keep to; for other obstacles the tolerance.
     place
-        Where an engine has met it, m from the start of the run.
+        Where the bit was when an engine met it, m from the start of the run.
     """
 
     code: str

@@ -27,22 +27,22 @@ class Quantity:
     name, role, unit, symbol, equation, meaning
         What it is; symbol and equation are the paper's.
     kind, size
-        Of its values.
+        Type and number of its values.
     above, at_least, at_most
-        The range of a value that is accepted: above < value, at_least <= value <= at_most. What several values must
-        do together (positions must increase) is checked where they come together.
+        The accepted range of each value: above < value, at_least <= value <= at_most. Constraints between several
+        values (positions must increase) are checked where the values come together.
     nominal
-        The size that it usually has.
+        Its usual magnitude.
     start
-        What it starts from where a case does not say so.
+        Its value where a case does not give one.
     follows
         Of an output, the inputs and parameters that it follows at once, without any drilling.
     slope
         Of an input, whether the native engine also takes its change per metre drilled.
     key
-        Table and key in a case file, "bha.rss_position". A key that ends in _deg holds degrees.
+        Its table and key in a case file, such as "bha.rss_position". A key that ends in _deg holds degrees.
     field
-        Where a `Case` has it, "bha.rss_position".
+        The field of a `Case` that holds it, such as "bha.rss_position".
     """
 
     name: str
@@ -75,17 +75,17 @@ class Quantity:
 
     @property
     def part(self) -> str:
-        """The part of a `Case` that has it, "bha"; empty: the case itself."""
+        """The part of a `Case` that holds it, such as "bha"; empty for the case itself."""
         return self.field.rpartition(".")[0]
 
     @property
     def attribute(self) -> str:
-        """What it is called in that part."""
+        """Its name in that part."""
         return self.field.rpartition(".")[2]
 
     @property
     def range(self) -> str:
-        """What is accepted, in words: "> 0, <= 1"; empty if everything is."""
+        """The accepted range in words, such as "> 0, <= 1"; empty if every value is accepted."""
         bounds = ((">", self.above), (">=", self.at_least), ("<=", self.at_most))
         return ", ".join(f"{sign} {bound:g}" for sign, bound in bounds if isfinite(bound))
 
@@ -124,7 +124,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("lateral_steering_resistance", "parameter", "", "η", "(4)", "lateral over axial drilling resistance", above=0.0, nominal=10.0, key="bit.lateral_steering_resistance", field="bit.lateral_steering_resistance"),
     Quantity("angular_steering_resistance", "parameter", "", "χ", "(4)", "angular over axial drilling resistance", above=0.0, key="bit.angular_steering_resistance", field="bit.angular_steering_resistance"),
     Quantity("bit_tilt_limit", "parameter", "rad", "ψ*", "(10)", "tilt at which the bit gauge meets the wall", above=0.0, at_most=pi / 2, nominal=0.01, key="bit.tilt_limit_deg", field="bit.tilt_limit"),
-    Quantity("relative_tolerance", "parameter", "", "", "", "local error of one step of the integrator, over 1 rad and ℓ₁", at_least=1e-12, at_most=1e-2, nominal=1e-7, start=RELATIVE_TOLERANCE),
+    Quantity("relative_tolerance", "parameter", "", "", "", "local error allowed in one step of the integrator, relative to 1 rad and ℓ₁", at_least=1e-12, at_most=1e-2, nominal=1e-7, start=RELATIVE_TOLERANCE),
     Quantity("survey_file", "parameter", "", "", "", "survey of the existing hole (CSV); empty: the survey packed in the FMU", kind="String", start="", key="hole.survey"),
 
     Quantity("bit_diameter", "case", "m", "", "", "diameter of the hole, for drawing", above=0.0, key="bit.diameter", field="bit_diameter"),
@@ -133,7 +133,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("inclination", "case", "rad", "Θ", "", "inclination of the existing hole at each station", size="column", key="hole.inclination_deg", field="survey.inclination"),
     Quantity("schedule_file", "case", "", "", "", "steering force over the drilled length (CSV)", kind="String", key="rss.schedule"),
     Quantity("engine", "case", "", "", "", "which engine drilled the case, in the case file beside the run", kind="String", key="run.engine"),
-    Quantity("stopped", "case", "", "", "", "why the run of the case ended before its length, in the same place", kind="String", key="run.stopped"),
+    Quantity("stopped", "case", "", "", "", "why the run ended before the length of the case, in the case file beside the run", kind="String", key="run.stopped"),
 )  # fmt: skip
 
 BY_NAME = {quantity.name: quantity for quantity in QUANTITIES}
@@ -154,7 +154,7 @@ def quantity_of(scalar_name: str) -> Quantity:
 
 
 def columns_of(table: str) -> tuple[str, ...]:
-    """The columns of a table of the case file that may be a CSV file of its own, "hole" or "rss", as people name them."""
+    """The columns, as people name them, of "hole" or "rss": tables of a case file that may be CSV files of their own."""
     keys = (quantity.key.split(".") for quantity in QUANTITIES if quantity.key and quantity.field)
     return tuple(key for place, key in keys if place == table)
 
@@ -163,12 +163,12 @@ def columns_of(table: str) -> tuple[str, ...]:
 
 
 def values_of(part: str, fields: Any) -> dict[str, float]:
-    """The inputs and parameters that a part of a drilling system has, by scalar name; a column by its first value.
+    """The inputs and parameters in a part of a drilling system, by scalar name; a column is represented by its first value.
 
     Parameters
     ----------
     part
-        What the table calls it: "bha", "bit", …; empty: the case itself.
+        Its name in the table: "bha", "bit", …; empty for the case itself.
     fields
         The part.
     """
@@ -182,7 +182,7 @@ def values_of(part: str, fields: Any) -> dict[str, float]:
 
 
 def fields_of(part: str, values: Mapping[str, float], n: int) -> dict[str, Any]:
-    """The fields of a part of a drilling system with `n` stabilizers: what `values_of` gives, put together again."""
+    """The fields of a part of a drilling system with `n` stabilizers, from values as `values_of` gives them."""
     fields: dict[str, Any] = {}
     for quantity in INPUTS + PARAMETERS:
         if quantity.field and quantity.part == part:

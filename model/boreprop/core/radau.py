@@ -5,7 +5,7 @@ regime of the drilling system the equation is linear, so one linear solve gives 
 eigenvalues of the collocation matrix split that solve into one 2×2 solve per eigenvalue (Hairer & Wanner, Solving
 Ordinary Differential Equations II, sections IV.5 and IV.8).
 
-The numbers are printed, as in that book; `tests/core/test_radau.py` computes them anew from the nodes.
+The tables are printed numbers, as in that book; a test computes them anew from the nodes.
 """
 
 S = 5
@@ -149,7 +149,7 @@ def slope(parts: Parts) -> float:
 def error(h: float, J: Jacobian, defect_theta: float, defect_Y: float) -> tuple[float, float]:
     """Errors of θ and Y from h times the defects at the check, slope less right-hand side.
 
-    (1 − hJ/γ)⁻¹ times the defects, γ the real eigenvalue: stiffness does not blow that up.
+    They are (1 − hJ/γ)⁻¹ times the defects, with the real eigenvalue γ, so that stiffness does not blow them up.
     """
     scale = h / GAMMA[0].real
     h11, h12, h21, h22 = scale * J[0], scale * J[1], scale * J[2], scale * J[3]

@@ -9,12 +9,12 @@ from .law import Law, Sine
 from .options import Options
 
 GAUSS = [(0.5 - 0.15**0.5, 5 / 18), (0.5, 8 / 18), (0.5 + 0.15**0.5, 5 / 18)]  # nodes and weights on [0, 1]
-REST = 0.03  # what may be left of sin⟨Θ⟩_1 beyond its linear part, in tolerances of θ: little against the step's error
-ITERATIONS = 10  # on that rest; each gains two digits or more
+REST = 0.03  # what may be neglected of sin⟨Θ⟩_1, in tolerances of θ: little beside the error that a step may have
+ITERATIONS = 10  # on what is neglected, at most; each gains two digits or more
 
 
 class Step(NamedTuple):
-    """A stretch [xi, end] of the run: the state as polynomials in t = (ξ − xi)/h, and why it ends."""
+    """A stretch [xi, end] of the run: the state as polynomials in t = (ξ − xi)/h, and the event at its end, if any."""
 
     xi: float
     h: float
@@ -23,7 +23,7 @@ class Step(NamedTuple):
     end: float
     event: int | None = None  # the part whose bound is met at the end
     side: int = 0  # and on which side
-    next_h: float = inf
+    next_h: float = inf  # length planned for the next step
 
     @classmethod
     def standstill(cls, xi: float, theta: float, Y: float) -> "Step":
@@ -72,8 +72,8 @@ class Trial(NamedTuple):
 def try_step(law: Law, hole: Hole, xi: float, h: float, theta: float, Y: float, options: Options) -> Trial:
     """Collocation from (θ, Y) at `xi` over `h`, in the regime of `law`.
 
-    One linear solve, but for sin⟨Θ⟩_1: its linear part belongs to the Jacobian, and where the rest counts it goes to
-    the right-hand side and the solve is repeated.
+    This is one linear solve, but for sin⟨Θ⟩_1: its linear part belongs to the Jacobian. Where the rest counts, it is
+    added to the right-hand side and the solve is repeated.
     """
     delayed = [hole.look_up(xi - s_i, h, radau.POINTS) for s_i in law.s]
     average = Y - delayed[0][0]

@@ -32,5 +32,9 @@ class Survey:
             raise ParameterError("measured_depth", CONSTRAINTS["no station"][0], self.measured_depth)
         check_increasing("measured_depth", self.measured_depth)
         if len(self.inclination) != len(self.measured_depth):
-            raise ParameterError("inclination", f"must hold {len(self.measured_depth)} values", self.inclination)
+            raise ParameterError(
+                "inclination",
+                f"must hold one value per measured_depth, {len(self.measured_depth)} in all",
+                self.inclination,
+            )
         check_part("survey", self)

@@ -5,10 +5,10 @@ from itertools import pairwise
 
 from .checks import check_increasing, check_number, check_part
 from .errors import ParameterError, error_of
-from .problems import CONSTRAINTS, Problem
+from .problems import CONSTRAINTS, DERIVED, Problem
 from .quantities import MAX_STABILIZERS as MAX_STABILIZERS
 
-LEAST_SPAN = 0.01  # m between stabilizers: none is shorter, and the force between closer ones is rounding
+LEAST_SPAN = 0.01  # m between stabilizers, at least: none stand closer, and the forces there would be rounding errors
 
 
 @dataclass(frozen=True)
@@ -125,9 +125,15 @@ class Scaled:
 
 
 def scale(bha: BottomHoleAssembly, bit: BitRock) -> Scaled:
-    """The dimensionless numbers of a drilling system, section II of the paper; `ParameterError` if one is none."""
+    """The dimensionless numbers of a drilling system, section II of the paper.
+
+    Raises
+    ------
+    ParameterError
+        If one of them is not finite, though the parameters are in their ranges.
+    """
     l1 = bha.length_scale
-    check_number("F*", bha.force_scale, above=0.0)
+    check_number(DERIVED["force_scale"], bha.force_scale, above=0.0)
     scaled = Scaled(
         s=tuple(position / l1 for position in bha.stabilizer_positions),
         y_star=tuple(clearance / l1 for clearance in bha.stabilizer_clearances),
@@ -136,10 +142,10 @@ def scale(bha: BottomHoleAssembly, bit: BitRock) -> Scaled:
         epsilon=bit.angular_steering_resistance / bit.lateral_steering_resistance,
         psi_star=bit.tilt_limit,
     )
-    check_number("s_n / l_1", scaled.s[-1])
-    check_number("w l_1 / F*", scaled.w)
-    check_number("epsilon", scaled.epsilon, above=0.0)
-    check_number("1 / epsilon", 1 / scaled.epsilon)
+    check_number(DERIVED["scaled_reach"], scaled.s[-1])
+    check_number(DERIVED["scaled_weight"], scaled.w)
+    check_number(DERIVED["epsilon"], scaled.epsilon, above=0.0)
+    check_number(DERIVED["inverse_epsilon"], 1 / scaled.epsilon)
     return scaled
 
 

@@ -1,1 +1,1 @@
-"""The core once more, in C: for FMUs that need no Python, and for `simulate(case, engine="native")`."""
+"""The core written in C, for FMUs that need no Python and for `simulate(case, engine="native")`."""

@@ -1,4 +1,4 @@
-"""Compile the kernel for this machine, where the binding finds it: ``python -m boreprop.kernel``."""
+"""Compile the kernel for this machine, where the binding looks for it: ``python -m boreprop.kernel``."""
 
 import sys
 

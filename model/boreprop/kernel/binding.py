@@ -1,4 +1,4 @@
-"""The kernel from Python: the same runs as `core.drilling`, in compiled code, through ctypes."""
+"""The kernel from Python, through ctypes: the same runs as those of `core.drilling`, in compiled code."""
 
 import ctypes
 from dataclasses import astuple, fields
@@ -23,11 +23,11 @@ CODES, QUANTITIES = ("", *SENTENCES), ("", *NAMES.values())  # by their numbers 
 
 
 class KernelError(BorepropError, RuntimeError):
-    """The kernel is not there. The message says why, and what helps."""
+    """The kernel cannot be used. The message says why, and what helps."""
 
 
 class Inputs(ctypes.Structure):
-    """What acts from where the bit is, as in quantities.h."""
+    """The inputs, as in quantities.h."""
 
     _fields_ = tuple((name, ctypes.c_double) for name, _, _ in acting())
 
@@ -46,7 +46,7 @@ class ProblemInC(ctypes.Structure):
     )
 
     def read(self) -> Problem:
-        """The same in Python."""
+        """The same as a `Problem`."""
         code, quantity, *rest = (getattr(self, field.name) for field in fields(Problem))
         return Problem(CODES[code], QUANTITIES[quantity], *rest)
 
@@ -63,7 +63,7 @@ def library() -> ctypes.CDLL:
     Raises
     ------
     KernelError
-        If it is not built, cannot be loaded, or is not made from its sources and the table of quantities as they are.
+        If it is not built, cannot be loaded, or was made from other sources or for another table of quantities.
     """
     return load(library_path())
 
@@ -109,7 +109,7 @@ def _array(kind: Any) -> Any:
 
 
 def available() -> bool:
-    """Whether the kernel is there."""
+    """Whether the kernel can be used."""
     try:
         library()
     except KernelError:
@@ -118,12 +118,12 @@ def available() -> bool:
 
 
 class NativeDrilling:
-    """A borehole as it is drilled: parameters, numbers, units and errors are those of `core.drilling.Drilling`.
+    """A borehole as it is drilled. Parameters, units, numbers and errors are those of `core.drilling.Drilling`.
 
     Raises
     ------
     KernelError
-        If the kernel is not there.
+        If the kernel cannot be used.
     """
 
     def __init__(
@@ -158,7 +158,7 @@ class NativeDrilling:
             self._library.boreprop_end(self._run)
 
     def _check(self, done: object) -> None:
-        """Raise the error for what the kernel has found, unless it is done."""
+        """Unless a call is done, raise the error for the problem that the kernel has found."""
         if not done:
             raise error_of(self._problem.read())
 
@@ -189,7 +189,8 @@ class NativeDrilling:
         """Drill leg after leg, as `Drilling.follow`; `ValueError` if the arrays do not fit together."""
         legs, on_rows = len(lengths), numbers(rows, np.intc)
         if not len(forces) == len(on_rows) == legs or (on_rows >= len(table)).any():
-            raise ValueError(f"forces, rows: must be {legs}, of a table of {len(table)}, got {len(forces)}, {on_rows}")
+            constraint = f"must hold {legs} values like lengths, and rows below {len(table)}"
+            raise ValueError(f"forces, rows: {constraint}, got {len(forces)} forces and rows {on_rows.tolist()}")
         if table.shape != (len(table), len(self._names)):
             raise ValueError(f"table: must have {len(self._names)} columns, got shape {table.shape}")
         done = self._library.boreprop_follow(
@@ -208,7 +209,7 @@ class NativeDrilling:
         return dict(zip(self._names, row.tolist(), strict=True))
 
     def save(self) -> Floats:
-        """The whole evolving state."""
+        """The whole evolving state, an array of numbers."""
         state = np.empty(self._library.boreprop_state_size(self._run))
         self._library.boreprop_save(self._run, state)
         return state

@@ -11,26 +11,26 @@
 #define EXPORT __attribute__((visibility("default")))
 #endif
 
-/* Which sources this was made from. */
+/* A digest of the sources that this was compiled from. */
 EXPORT const char *boreprop_sources_digest(void);
 
-/* Which table of quantities. */
+/* A digest of the table of quantities that it was compiled for. */
 EXPORT const char *boreprop_quantities_digest(void);
 
-/* A problem in words. */
+/* The sentence that says what a problem is. */
 EXPORT void boreprop_sentence(const Problem *problem, char line[MESSAGE]);
 
 /* A run of n stabilizers at the end of its survey, with parameters in the order of the table of quantities; NULL, and
-   the problem, where one is bad. To be ended with `boreprop_end`. The tolerance is that of the parameters; the options
-   are taken as they are. */
+   the problem, if a value is out of range. The caller ends it with `boreprop_end`. The tolerance is that of the
+   parameters; the other options are not checked. */
 EXPORT Run *boreprop_start(
     int n, const double *parameters, const Options *options, Count count, const double *measured_depth,
     const double *inclination, const Inputs *inputs, Problem *problem
 );
 EXPORT void boreprop_end(Run *run);
 
-/* Drill leg after leg: to lengths[k] under forces[k]; where rows[k] is not negative the outputs there become that row
-   of the table. Returns how many legs are drilled; if not all, there is a problem with the next one. */
+/* Drill leg after leg, to lengths[k] under forces[k]. Unless rows[k] is negative, the outputs there become that row of
+   the table. Returns how many legs are drilled; if not all are, the problem is that of the next one. */
 EXPORT Count boreprop_follow(
     Run *run, Count count, const double *lengths, const double *forces, double active_weight_on_bit, const int *rows,
     double *table, Problem *problem
@@ -42,18 +42,18 @@ EXPORT int boreprop_step(Run *run, Problem *problem);
 /* All outputs where the bit is, in the order of the table of quantities; returns how many. */
 EXPORT int boreprop_outputs(Run *run, double out[MOST_OUTPUTS]);
 
-/* m drilled. */
+/* The length drilled, m. */
 EXPORT double boreprop_length(const Run *run);
 
-/* How many steps were accepted and rejected since the start of the run, and how many bounds met. */
+/* How many steps were accepted and rejected, and how many bounds were met, since the start of the run. */
 EXPORT void boreprop_statistics(const Run *run, double counts[3]);
 
-/* How many numbers `boreprop_save` writes: the state of the run. */
+/* How many numbers the state of the run has, which `boreprop_save` writes. */
 EXPORT Count boreprop_state_size(const Run *run);
 EXPORT void boreprop_save(const Run *run, double *state);
 
-/* Go to a state of a run with the same system; 0, and the problem, if these numbers cannot be one: nothing has
-   changed. */
+/* Go to a saved state of a run with the same system; 0, and the problem, if these numbers cannot be such a state.
+   Nothing has changed then. */
 EXPORT int boreprop_restore(Run *run, const double *state, Count count, Problem *problem);
 
 #endif

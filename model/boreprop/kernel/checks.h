@@ -1,29 +1,30 @@
-/* What a call answers, what a problem is, and the checks of numbers that come from outside. */
+/* What a call returns, what a problem is, and the checks of numbers that come from outside. */
 #ifndef BOREPROP_CHECKS_H
 #define BOREPROP_CHECKS_H
 
 #include "numbers.h"
 #include "problems.h"
 
-/* FAILED: there is a problem, and nothing has moved. FULL: the memory is too small. */
+/* FAILED: there is a problem, and the bit has not moved. FULL: the memory is too small; more of it, and the same call
+   goes on. */
 typedef enum { DONE, FAILED, FULL } Status;
 
-/* What is wrong: all that its sentence is made of. NaN stands for what it has not. */
+/* What is wrong: all that its sentence is made of. NaN stands for a number that it does not have. */
 typedef struct {
     Code code;
     Name quantity;                      /* what has the wrong value */
-    int index;                          /* which of several values, from 1 on; 0 where there is one */
+    int index;                          /* which of several values, counted from 1; 0 for a single value */
     double value, before, limit, place; /* before: the value before it, of a list; place: m from the start of the run */
 } Problem;
 
-/* Note a value that is not as it must be. Gives 0, for `return wrong(…)`. */
+/* Note what is wrong with a value. Returns 0, for `return wrong(…)`. */
 static inline int wrong(Problem *problem, Code code, Name quantity, int index, double value, double limit) {
     Problem found = {code, quantity, index, value, NAN, limit, NAN};
     *problem = found;
     return 0;
 }
 
-/* Note an obstacle on the way. */
+/* Note an obstacle on the way. Returns FAILED, for `return met(…)`. */
 static inline Status met(Problem *problem, Code code, double limit, double place) {
     Problem found = {code, Q_NOTHING, 0, NAN, NAN, limit, place};
     *problem = found;

@@ -21,22 +21,22 @@ from tempfile import TemporaryDirectory
 
 FOLDER = Path(__file__).resolve().parent  # of the kernel's sources
 
-# results must not depend on the processor: no fused multiply-add, no -march. -O3 vectorizes the loops over the points
-# of a step, within the order of operations that C prescribes, and saves a fifth of the time. No output of the table of
-# quantities may be left out where they are computed.
+# Results must not depend on the processor: no fused multiply-add, no -march. -O3 vectorizes the loops over the points
+# of a step, within the order of operations that C prescribes, and saves a fifth of the time. With -Werror=switch an
+# output of the table of quantities that C does not compute is an error.
 FLAGS = ("-std=c99", "-O3", "-g0", "-ffp-contract=off", "-fPIC", "-Werror=switch")
 
-# what zig may know of its surroundings: where its cache is, and what Windows needs to run anything
+# The environment variables that zig gets: where its cache is, and what Windows needs to run anything.
 CACHES = {"HOME", "LOCALAPPDATA", "XDG_CACHE_HOME", "ZIG_GLOBAL_CACHE_DIR"}
 ENVIRONMENT = CACHES | {"PATH", "SYSTEMROOT", "TEMP", "TMP", "TMPDIR", "USERPROFILE"}
 
 
 class CompilerError(RuntimeError):
-    """Nothing was compiled. The message says on one line what is missing or wrong and what helps."""
+    """Nothing was compiled. The message is one line and says what is missing or wrong, and what helps."""
 
 
 class NoCompilerError(CompilerError):
-    """There is nothing to compile with."""
+    """There is no compiler."""
 
 
 @dataclass(frozen=True)
@@ -46,15 +46,15 @@ class Platform:
     Parameters
     ----------
     system, machine
-        Its operating system and processor, as Python calls them.
+        Operating system and processor, in Python's names.
     target
-        The same, as zig calls them.
+        The same in zig's names.
     suffix
-        Of its shared libraries.
+        How the name of a shared library ends there.
     sources
         C files that are part of every library for it.
     links
-        What zig is told to link it with.
+        Options with which zig links it.
     """
 
     system: str
@@ -73,7 +73,7 @@ PLATFORMS = {  # under the names of FMI 2.0.4
         "x86_64-windows-gnu",
         ".dll",
         (FOLDER / "windows.c",),
-        ("-nostdlib", "-lucrtbase", "-s"),  # not stripped it would hold when it was linked; what it exports stays
+        ("-nostdlib", "-lucrtbase", "-s"),  # -s leaves out the time of linking; what is exported stays
     ),
     "darwin64": Platform("darwin", "x86_64", "x86_64-macos.11.0", ".dylib"),
     "aarch64-linux": Platform("linux", "aarch64", "aarch64-linux-gnu.2.17", ".so"),
@@ -82,7 +82,7 @@ PLATFORMS = {  # under the names of FMI 2.0.4
 
 
 def host_platform() -> str | None:
-    """The name in `PLATFORMS` of what this Python runs on; None if it is none of them."""
+    """The name in `PLATFORMS` of the platform that this Python runs on; None if it is another one."""
     if sys.maxsize < 2**32 or (sys.platform == "linux" and libc_ver()[0] != "glibc"):
         return None
     processor = {"amd64": "x86_64", "arm64": "aarch64"}.get(machine().lower(), machine())
@@ -111,10 +111,10 @@ def compile_library(
     defines
         Macros: name → what takes its place.
     platform
-        A name of `PLATFORMS`: with ziglang, for machines as old as with glibc 2.17 or macOS 11. The bytes depend on
-        `source`, what it includes, `defines`, the name of `output` and the version of ziglang, on nothing else.
-        For win64 there is of the C library what ucrtbase.dll has, and of printf's family snprintf and vsnprintf.
-        None: for this machine, with $CC, else cc, gcc or clang, else ziglang; $CFLAGS are for the former.
+        A name of `PLATFORMS`: compile with ziglang, for machines as old as those of glibc 2.17 or macOS 11. The bytes
+        then depend on `source`, what it includes, `defines`, the name of `output` and the version of ziglang, and on
+        nothing else. A library for win64 can call what ucrtbase.dll has, and snprintf and vsnprintf of printf's family.
+        None: compile for this machine, with $CC and $CFLAGS, else with cc, gcc or clang and $CFLAGS, else with ziglang.
 
     Returns
     -------
@@ -125,44 +125,54 @@ def compile_library(
     NoCompilerError
         If there is no compiler.
     CompilerError
-        If it finds a mistake, or the platform is not known.
+        If the source does not compile, or the platform is not known.
     OSError
         If `output` cannot be written.
     """
-    if platform is not None and platform not in PLATFORMS:
-        raise CompilerError(f"platform: must be one of {', '.join(PLATFORMS)}, got {platform!r}")
     folders = [Path(folder).resolve() for folder in (source.parent, *include)]
-    sources = [source.resolve()]
-    links: tuple[str, ...] = ("-lm",)
-    if compiler := [] if platform else _own_compiler():
-        flags = _words("CFLAGS")
-        environment = dict(os.environ)
-    elif (zig := _zig()) and (made := PLATFORMS.get(platform or host_platform() or "")):
-        compiler = [str(zig), "cc", "-target", made.target]
-        flags = [f"-fmacro-prefix-map={folder}{os.sep}=" for folder in folders]
-        sources, links = [*sources, *made.sources], made.links
-        environment = {name: value for name, value in os.environ.items() if name.upper() in ENVIRONMENT}
-    else:
-        what = "ziglang" if platform else "a C compiler (cc, gcc, clang or $CC) or ziglang"
-        target = platform or "this machine"
-        raise NoCompilerError(f"{what} must be installed to compile for {target}: pip install ziglang==0.15.2")
-
-    flags += [f"-I{folder}" for folder in folders]
-    flags += [f"-D{name}={value}" for name, value in defines.items()]
+    compiler = _compiler(platform, folders)
+    flags = [*(f"-I{folder}" for folder in folders), *(f"-D{name}={value}" for name, value in defines.items())]
+    sources, environment = [source.resolve(), *compiler.sources], compiler.environment
     output = output.resolve()
-    # linkers leave more than the library, and write its name, as it is given, into it
+    # In a folder of its own, since linkers leave more than the library. They write its name, as it is given, into it.
     with TemporaryDirectory(dir=output.parent, prefix=f".{output.name}.") as draft:
         if not CACHES & set(environment):  # zig would not start
             environment["ZIG_GLOBAL_CACHE_DIR"] = str(Path(draft, "cache"))
         compiles = [["-c", str(path), "-o", f"{path.stem}.o"] for path in sources]
-        link = ["-shared", *(f"{path.stem}.o" for path in sources), "-o", output.name, *links]
+        link = ["-shared", *(f"{path.stem}.o" for path in sources), "-o", output.name, *compiler.links]
         for task in (*compiles, link):
-            command = [*compiler, *FLAGS, *flags, *task]
+            command = [*compiler.command, *flags, *task]
             run = subprocess.run(command, cwd=draft, env=environment, capture_output=True, text=True, errors="replace")
             if run.returncode:
-                raise CompilerError(f"{source}: must compile with {Path(compiler[0]).name}, got: {_gist(run.stderr)}")
+                raise CompilerError(f"{source}: must compile with {Path(command[0]).name}, got: {_gist(run.stderr)}")
         os.replace(Path(draft) / output.name, output)
     return output
+
+
+@dataclass(frozen=True)
+class _Compiler:
+    """What compiles for a platform: a command with flags, its environment, and what else it compiles and links."""
+
+    command: list[str]
+    environment: dict[str, str]
+    sources: tuple[Path, ...] = ()
+    links: tuple[str, ...] = ("-lm",)
+
+
+def _compiler(platform: str | None, folders: Sequence[Path]) -> _Compiler:
+    """The compiler that `compile_library` uses for a platform; with ziglang, C does not see where `folders` are."""
+    if platform is not None and platform not in PLATFORMS:
+        raise CompilerError(f"platform: must be one of {', '.join(PLATFORMS)}, got {platform!r}")
+    if own := [] if platform else _own_compiler():
+        return _Compiler([*own, *FLAGS, *_words("CFLAGS")], dict(os.environ))
+    if (zig := _zig()) and (made := PLATFORMS.get(platform or host_platform() or "")):
+        hidden = [f"-fmacro-prefix-map={folder}{os.sep}=" for folder in folders]
+        environment = {name: value for name, value in os.environ.items() if name.upper() in ENVIRONMENT}
+        command = [str(zig), "cc", "-target", made.target, *FLAGS, *hidden]
+        return _Compiler(command, environment, made.sources, made.links)
+    what = "ziglang" if platform else "a C compiler (cc, gcc, clang or $CC) or ziglang"
+    target = platform or "this machine"
+    raise NoCompilerError(f"{what} must be installed to compile for {target}: pip install ziglang==0.15.2")
 
 
 def _own_compiler() -> list[str]:
@@ -178,13 +188,13 @@ def _own_compiler() -> list[str]:
 
 
 def _words(name: str) -> list[str]:
-    """The words of an environment variable; none if it is not set."""
+    """The words of an environment variable; an empty list if it is not set."""
     return shlex.split(os.environ.get(name, ""), posix=os.name == "posix")
 
 
 def _zig() -> Path | None:
     """The program zig of the package ziglang, if that is installed."""
-    # pip hides the packages of an environment from what it builds there, but not where they are
+    # While pip builds, the packages of the environment cannot be imported, but their folders are known.
     folders = [sysconfig.get_path("purelib"), sysconfig.get_path("platlib")]
     spec = find_spec("ziglang")
     if spec and spec.origin:
@@ -215,6 +225,6 @@ def sources_digest(*folders: Path) -> str:
 
 
 def build_library(output: Path | None = None) -> Path:
-    """Compile the kernel for this machine, to `library_path` if not told otherwise; errors as in `compile_library`."""
+    """Compile the kernel for this machine, to `output` or `library_path`; errors as in `compile_library`."""
     defines = {"BOREPROP_SOURCES_DIGEST": f'"{sources_digest()}"'}
     return compile_library(FOLDER / "library.c", output or library_path(), defines=defines)

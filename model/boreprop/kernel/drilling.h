@@ -19,7 +19,7 @@ static inline int check_inputs(Inputs inputs, Problem *problem) {
            check_quantity(&INPUT_TABLE[IN_ACTIVE_WEIGHT_ON_BIT], 0, inputs.active_weight_on_bit, problem);
 }
 
-/* The dimensionless inputs; 0, with the problem, if they are bad, in N or over F*. */
+/* The dimensionless inputs; 0, and the problem, if these numbers, or the inputs, are out of range. */
 static inline int scale_inputs(const System *system, Inputs inputs, ScaledInputs *scaled, Problem *problem) {
     double F_star = force_scale(system);
     scaled->F_rss = inputs.rss_force / F_star;
@@ -31,7 +31,7 @@ static inline int scale_inputs(const System *system, Inputs inputs, ScaledInputs
            check_finite(Q_INVERSE_ETA_PI, 0, 1 / scaled->eta_pi, problem);
 }
 
-/* Capacity, in pieces of hole, that a run under ordinary inputs needs. */
+/* The capacity, in pieces of hole, that a run needs if its inputs do not change often. */
 static inline Count drilling_capacity(const System *system, const Survey *survey) {
     double l1 = length_scale(system), reach = LOOK_BACK + system->stabilizer_position[system->n - 1] / l1;
     Count count, first = first_station(survey, l1, reach, &count), capacity = LEAST_CAPACITY;
@@ -39,19 +39,19 @@ static inline Count drilling_capacity(const System *system, const Survey *survey
     return capacity;
 }
 
-/* Bytes for a capacity (a power of two). */
+/* Bytes of memory for a capacity, which is a power of two. */
 static inline size_t drilling_memory(Count capacity) { return (size_t)capacity * (sizeof(Piece) + sizeof(Kink)); }
 
-/* Where the kinks lie in it: behind the pieces. */
+/* Where the kinks lie in that memory: behind the pieces. */
 static inline Kink *kinks_in(void *memory, Count capacity) { return (Kink *)(void *)((Piece *)memory + capacity); }
 
-/* Go on in a larger memory; the old one may be freed then. */
+/* Go on in a larger memory; the old one may be freed afterwards. */
 static inline void drilling_move(Drilling *d, void *memory, Count capacity) {
     move_rings(&d->integrator, memory, kinks_in(memory, capacity), capacity);
 }
 
-/* A drilling system that has not begun: `drilling_start` or `drilling_restore` is next. The memory must live on. Of the
-   options the tolerance is that of the system. */
+/* Prepare a drilling system, to be followed by `drilling_start` or `drilling_restore`. The memory must live on. The
+   tolerance of the system takes the place of that of the options. */
 static inline Status drilling_prepare(
     Drilling *d, const System *system, Options options, void *memory, Count capacity, Problem *problem
 ) {
@@ -101,7 +101,7 @@ static inline Status drilling_step(Drilling *d, Problem *problem) {
 
 static inline void drilling_cancel(Drilling *d) { go_back(&d->integrator); }
 
-/* What the outputs follow from: the state where the bit is. */
+/* What the outputs are computed from: the state where the bit is. */
 typedef struct {
     double l1, F_star, theta, Theta, psi, F_0, F[MAX_STABILIZERS], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
     Loads loads;
@@ -127,7 +127,7 @@ static inline Present present(Drilling *d) {
     return at;
 }
 
-/* One output; of several of a kind the one with this index. A compiler refuses it where one of the table is missing. */
+/* One output, the value with this index if it has several. If an output of the table were missing, it would not compile. */
 static inline double output(const Drilling *d, const Present *at, Output which, int i) {
     const Scaled *scaled = &d->integrator.scaled;
     const Loads *loads = &at->loads;
@@ -180,7 +180,7 @@ static inline int check_outputs(int n, const double *outputs, Problem *problem) 
     return 1;
 }
 
-/* m drilled. */
+/* The length drilled, m. */
 static inline double drilling_length(const Drilling *d) { return d->drilled_length; }
 
 #endif

@@ -5,12 +5,12 @@
 #include "hole.h"
 #include "law.h"
 
-/* How far beyond its values at the points of a step a value may lie between them, over their range. Ample: where the
-   bounds are farther away nothing is looked at more closely. */
+/* How far beyond its values at the points of a step a value may lie between them, over the range of these: a bound
+   farther away is not searched for. A parabola lies beyond them by an eighth of the range at most. */
 #define NEAR 0.3
-#define CLOSE_ENOUGH (ROUNDING / 10) /* to a bound, at a crossing: no closer than values can be told apart */
-#define CLOSEST 1e-12                /* ℓ₁: of the ends of a stretch, a few digits above the rounding of ξ */
-#define MOST_TRIALS 60               /* of a crossing: halving a step forty times makes it the smallest */
+#define CLOSE 1e-12                  /* ℓ₁: an event is located when the places on both sides of it are this close, … */
+#define CLOSE_ENOUGH (ROUNDING / 10) /* … or the value lies this near to its bound, which is rounding */
+#define MOST_TRIES 60                /* to locate an event: plain bisection of the longest step would need 40 */
 
 /* A bound that is watched along a trial step. */
 typedef struct {
@@ -21,7 +21,7 @@ typedef struct {
     const Bound *bound;
 } Watch;
 
-/* Value of what is bounded at `xi`. */
+/* The bounded value at `xi`. */
 static inline double watched_value(const Watch *watch, double xi) {
     double x[COMPONENTS], delayed[MAX_STABILIZERS][DIRECTIONS];
     step_state(watch->step, xi, x);
@@ -29,16 +29,16 @@ static inline double watched_value(const Watch *watch, double xi) {
     return law_at(watch->law, watch->bound, xi, x, delayed);
 }
 
-/* Where the bound is passed on `side` in [a, b], its value at `b` being f_b beyond: by regula falsi with the weights of
-   Anderson and Björck. */
+/* Where the bound is passed on `side` in [a, b], at whose end the value lies f_b beyond it, by regula falsi with the
+   weights of Anderson and Björck. */
 static inline double crossing(const Watch *watch, int side, double a, double b, double f_b) {
     double limit = side > 0 ? watch->bound->upper : watch->bound->lower;
     double f_a = side * (watched_value(watch, a) - limit), c = b;
     if (f_a >= 0) return a;
-    for (int k = 0; k < MOST_TRIALS; k++) {
+    for (int k = 0; k < MOST_TRIES; k++) {
         c = (a * f_b - b * f_a) / (f_b - f_a);
         double f_c = side * (watched_value(watch, c) - limit);
-        if (fabs(f_c) < CLOSE_ENOUGH || fabs(b - a) < CLOSEST) break;
+        if (fabs(f_c) < CLOSE_ENOUGH || fabs(b - a) < CLOSE) break;
         if ((f_c > 0) == (f_b > 0)) {
             double weight = 1 - f_c / f_b;
             f_a *= weight > 0 ? weight : 0.5;
@@ -71,7 +71,7 @@ static inline void insert(Sample *samples, int *count, Sample added) {
     samples[place] = added;
 }
 
-/* Where the step first meets the bound, given its values at the points; on which side, 0 if it does not. */
+/* Where the step first meets the bound, given the values at the points; returns on which side, or 0 if it does not. */
 static inline int meet(const Watch *watch, double slack, const double values[POINTS], double *where) {
     const Step *step = watch->step;
     const Bound *bound = watch->bound;
@@ -100,7 +100,8 @@ static inline int meet(const Watch *watch, double slack, const double values[POI
     return 0;
 }
 
-/* End a trial step where it first meets a bound of its regime, if it lies beyond one by more than `slack` somewhere. */
+/* End a trial step where it first meets a bound of its regime. A bound is met if the value lies beyond it by more than
+   `slack` at a point of the step or an extreme between points. */
 static inline void cut_at_event(const Scaled *scaled, const Hole *hole, const Law *law, double slack, Trial *trial) {
     Step *step = &trial->step;
     for (int b = 0; b < law->bound_count; b++) {

@@ -7,7 +7,7 @@ from hashlib import sha256
 
 from ..core import radau
 from ..core.options import Options
-from ..core.problems import SENTENCES
+from ..core.problems import DERIVED, SENTENCES
 from ..core.quantities import INPUTS, MAX_STABILIZERS, OUTPUTS, PARAMETERS, QUANTITIES, Quantity
 from ..core.system import LEAST_SPAN
 from ..replacing import replacing
@@ -22,15 +22,7 @@ ROOMS = {"1": "", "n": "[MAX_STABILIZERS]", "n-1": "[MAX_STABILIZERS - 1]"}
 
 NAMES = {quantity.name: quantity.name for quantity in QUANTITIES} | {
     "rss_force_slope": "rss_force_slope",
-    "scaled_force": "rss_force / F*",
-    "scaled_slope": "rss_force_slope / F*",
-    "inverse_eta_pi": "1 / eta_pi",
-    "force_scale": "F*",
-    "scaled_reach": "s_n / l_1",
-    "scaled_weight": "w l_1 / F*",
-    "epsilon": "epsilon",
-    "inverse_epsilon": "1 / epsilon",
-    "station_rate": "l_1 / distance of stations",
+    **DERIVED,
     "parameters": "parameters",
     "state": "state",
     "start_time": "startTime",
@@ -38,7 +30,7 @@ NAMES = {quantity.name: quantity.name for quantity in QUANTITIES} | {
     "step_size": "step_size",
     "step_end": "current_time + step_size",
 }
-"""What a problem may be about: the names of the table, and of what is made of them or asked by a host of the FMU."""
+"""What a problem may be about → its name in messages: quantities, what is made of them, arguments of FMI calls."""
 
 QUANTITIES_HEADER = """\
 /* The table of quantities, as C needs it. Written from core/quantities.py by `python -m boreprop.kernel.generate`. */
@@ -52,7 +44,7 @@ QUANTITIES_HEADER = """\
 /* clang-format off */
 
 #define QUANTITIES_DIGEST "{digest}" /* of this file, but for this line, and of problems.h */
-#define LEAST_SPAN {least_span!r} /* m between stabilizers, at least: between closer ones the force is rounding */
+#define LEAST_SPAN {least_span!r} /* m between stabilizers, at least: forces between closer ones are rounding errors */
 
 enum {{ MAX_STABILIZERS = {most}, PARAMETER_COUNT = {parameters}, INPUT_COUNT = {inputs}, OUTPUT_COUNT = {outputs} }};
 
@@ -62,7 +54,7 @@ typedef struct {{
 {system}
 }} System;
 
-/* What acts from where the bit is: values, and the change of some per metre drilled. */
+/* The inputs from where the bit is: their values, and the change of some per metre drilled. */
 typedef struct {{
 {acting}
 }} Inputs;
@@ -70,7 +62,7 @@ typedef struct {{
 /* How many values a quantity has. */
 typedef enum {{ {sizes} }} Size;
 
-/* A quantity that is given from outside: its range, above < value, at_least <= value <= at_most. */
+/* A parameter or input, and its range: above < value, at_least <= value <= at_most. */
 typedef struct {{
     Name name;
     Size size;
@@ -113,10 +105,11 @@ static const Options USUAL_OPTIONS = {{{usual}}};
 """
 
 PROBLEMS_HEADER = """\
-/* What can be wrong, and what is said of it. Written from core/problems.py by `python -m boreprop.kernel.generate`.
+/* What can be wrong, and the sentence that says so. Written from core/problems.py by
+   `python -m boreprop.kernel.generate`.
 
-   In a sentence stand {{name}}, {{value}}, {{before}}, {{count}} (the value, if it is a whole number), {{limit}} and
-   {{place}} for what a Problem has. */
+   {{name}}, {{value}}, {{before}}, {{limit}} and {{place}} stand for members of a Problem, {{count}} for its value as a
+   whole number. */
 #ifndef BOREPROP_PROBLEMS_H
 #define BOREPROP_PROBLEMS_H
 
@@ -128,7 +121,7 @@ typedef enum {{
     CODE_COUNT
 }} Code;
 
-/* What a problem is about: of the table of quantities, or made of them. */
+/* What a problem is about: a quantity of the table, something made of quantities, or an argument of a call. */
 typedef enum {{
     Q_NOTHING,
 {names}

@@ -6,8 +6,8 @@
 #include "step.h"
 #include "survey.h"
 
-/* From `start` to the start of the next piece the state is x[c] = Σ x[c][m] t^m with t = (ξ − start) · rate, and these
-   were the inputs from its start on. Of the survey there are the lateral coordinates only, and ηΠ is zero. */
+/* From `start` to the start of the next piece the state is x[c] = Σ x[c][m] t^m with t = (ξ − start) · rate. The inputs
+   are those at its start. A piece of the survey has lateral coordinates only, and its ηΠ is zero. */
 typedef struct {
     double start, rate, x[COMPONENTS][S + 1];
     ScaledInputs inputs;
@@ -15,8 +15,8 @@ typedef struct {
 
 /* The borehole's lateral coordinate Y(ξ) = ∫Θ dξ. It counts from an origin that moves with the bit, so only differences
    mean anything. The pieces that are kept, oldest first, are number `first` up to the one before `end`; number k lies at
-   k modulo the capacity of the ring, a power of two. A look-up at stabilizer i begins at piece cursor[i] if that lies
-   before the place; where else the cursors stand costs time only. */
+   k modulo the capacity of the ring, a power of two. A look-up at stabilizer i begins at piece cursor[i] if that piece
+   lies before the place, and searches all pieces otherwise: where the cursors stand affects the speed only. */
 typedef struct {
     Piece *ring;
     Count capacity, first, end, cursor[MAX_STABILIZERS];
@@ -24,7 +24,7 @@ typedef struct {
 
 static inline Piece *piece(const Hole *hole, Count k) { return &hole->ring[k & (hole->capacity - 1)]; }
 
-/* Take the last `reach` (in ℓ₁) of the survey; the bit is at ξ = 0, where Y = 0. Gives the inclination there. */
+/* Take the last `reach` (in ℓ₁) of the survey; the bit is at ξ = 0, where Y = 0. Returns the inclination there. */
 static inline double take_survey(Hole *hole, const Survey *survey, double length_scale, double reach) {
     Count count, first = first_station(survey, length_scale, reach, &count);
     double Y = 0.0, end_inclination, final_inclination;
@@ -44,7 +44,7 @@ static inline double take_survey(Hole *hole, const Survey *survey, double length
     return final_inclination;
 }
 
-/* The kinks at the stations that were taken: jumps of the curvature. */
+/* Take the kinks at the stations within reach: jumps of the curvature. */
 static inline void take_kinks(const Hole *hole, Kinks *kinks, const Survey *survey, double length_scale, double reach) {
     Count count, first = first_station(survey, length_scale, reach, &count);
     double curvature = 0.0;
@@ -77,7 +77,7 @@ static inline Count find(const Hole *hole, double xi) {
     return low > hole->first ? low - 1 : low;
 }
 
-/* The same by a walk from a piece before it. */
+/* The same, by a walk from piece k if that lies before it. */
 static inline Count find_from(const Hole *hole, Count k, double xi) {
     if (k < hole->first || k >= hole->end || piece(hole, k)->start > xi) return find(hole, xi);
     while (k + 1 < hole->end && piece(hole, k + 1)->start <= xi) k++;
@@ -119,8 +119,8 @@ static inline void look_up(const Hole *hole, const Scaled *scaled, Trial *trial)
 /* Drop the pieces that end before `xi`. */
 static inline void forget(Hole *hole, double xi) { hole->first = find_from(hole, hole->first, xi); }
 
-/* Move the origin of the lateral coordinates by those of `x`. The moved pieces are new ones: the old ones stay where
-   they are. */
+/* Move the origin of the lateral coordinates by those of `x`. The moved pieces are appended as new ones: a way back may
+   still need the old ones. */
 static inline void shift_origin(Hole *hole, const double x[COMPONENTS]) {
     for (Count k = hole->first, count = hole->end - k; count > 0; k++, count--) {
         Piece *moved = piece(hole, hole->end++);

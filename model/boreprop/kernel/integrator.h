@@ -1,4 +1,4 @@
-/* The integrator: it advances the state of a law, step by step, and does not know what is drilled.
+/* The integrator: it advances the state of a law, step by step. Only the law knows what is drilled.
 
    A step ends where the solution is not smooth: on a change of input, on an event (contact or saturation comes or goes),
    and where a stabilizer passes the kink that either left in the hole. The steps are the integrator's own: the bit may
@@ -8,18 +8,21 @@
 
 #include "events.h"
 
+/* integrator.py gives the reasons for these numbers. */
 #define LOOK_BACK 1.0      /* ℓ₁: how far behind the bit Θ may be asked for */
-#define LARGEST_GROWTH 8.0 /* of the length from step to step: an error that happens to vanish foretells nothing */
-#define LEAST_GROWTH 0.1   /* after an error above the tolerance: far enough, and the next trial tells more */
-#define LEAST_ERROR 1e-12  /* over the tolerance: its growth is beyond the largest, and it is not zero */
-#define SAFETY 0.85        /* of the length at which the error would meet the tolerance: few steps are then rejected */
-#define STRETCH 1.3        /* how much longer than planned a step may be if it then ends on the next kink */
-#define CLOSER 8.0       /* how much shorter a step is tried where each regime meets a bound before its first point, */
-#define MOST_SLACK 1e-6  /* while a value may lie so much farther beyond its bound at the points, at last by this */
-#define ORIGIN_LIMIT 8.0 /* |Y| beyond which the origin of Y is moved to the bit, to keep the digits of differences */
-#define LARGEST_INCLINATION 6.283185307179586
+#define SAFETY 0.85        /* of the step that the error estimate asks for, so that few of the next ones are rejected */
+#define LARGEST_GROWTH 8.0 /* of a step over the last */
+#define SMALLEST_GROWTH 0.1 /* of a trial over a rejected one */
+#define LEAST_ERROR 1e-12   /* of a trial, over the tolerance */
+#define STRETCH 1.3         /* how much longer than planned a step may be if it then ends on the next kink */
+/* By this factor a step is tried shorter where each regime meets a bound before its first point, and the slack by which
+   values may lie beyond their bounds at the points is made larger. */
+#define CLOSER 8.0
+#define MOST_SLACK 1e-6                       /* of that slack */
+#define ORIGIN_LIMIT 8.0                      /* |Y| beyond which the origin of Y is moved to the bit */
+#define LARGEST_INCLINATION 6.283185307179586 /* beyond a full turn nothing is drilled */
 
-/* Everything that evolves, but for what the rings of the hole and its kinks hold: a copy of it is the way back. */
+/* Everything that evolves, but for what the rings of the hole and its kinks hold. A copy of it is a way back. */
 typedef struct {
     double xi;
     ScaledInputs inputs;
@@ -30,7 +33,7 @@ typedef struct {
     Step step;
     Hole hole;
     Kinks kinks;
-    double accepted, rejected, events; /* steps, steps, bounds met */
+    double accepted, rejected, events; /* counts of steps, of rejected trials and of bounds met */
 } State;
 
 /* The bit at the front of its hole, dimensionless. */
@@ -40,11 +43,11 @@ typedef struct {
     double length_scale;
     Options options;
     State now;
-    Law law;       /* of the present regime and inputs, */
-    int law_known; /* once it has been asked for */
-    int under_way; /* from `before`, and what the way back there needs: */
-    State before;
-    Kink last_kink;
+    Law law;        /* of the present regime and inputs, */
+    int law_known;  /* if it is made already */
+    int under_way;  /* whether a call has set out and not yet arrived; then the way back leads to … */
+    State before;   /* … the state before it, */
+    Kink last_kink; /* with its last kink, whose jump may have changed since */
 } Integrator;
 
 /* Note what the integrator has met at `xi`. */
@@ -57,7 +60,7 @@ static inline Status too_many(const Integrator *p, Problem *problem) {
     return met(problem, TOO_MANY, p->options.most_steps, p->now.xi * p->length_scale);
 }
 
-/* The shortest step at `xi`: the next position must differ. */
+/* The length of the shortest step at `xi`. */
 static inline double shortest_step(const Integrator *p, double xi) {
     return p->options.smallest_step * larger(1.0, xi);
 }
@@ -94,7 +97,8 @@ static inline void keep_origin_near(State *now, double x[COMPONENTS]) {
     for (int c = LATERAL; c < COMPONENTS; c++) now->origin[c - LATERAL] += x[c], x[c] = 0.0;
 }
 
-/* Draw the consequences of how the last step ended: the state `x` there, and the order of a kink of the hole. */
+/* Go over the end of the last step, with its event: gives the state `x` there, and returns the order of the kink that the
+   hole has there. */
 static inline int leave(Integrator *p, const Step *last, double x[COMPONENTS]) {
     State *now = &p->now;
     double xi = last->end;
@@ -103,7 +107,7 @@ static inline int leave(Integrator *p, const Step *last, double x[COMPONENTS]) {
     keep_origin_near(now, x);
     forget(&now->hole, xi - LOOK_BACK - p->scaled.s[p->scaled.n - 1]);
     move_cursors(&now->hole, &p->scaled, xi);
-    /* half the way to a kink is no shorter than a step may be */
+    /* a step may have to stop half way to a kink: a kink too near for that counts as met here */
     int kink = kink_here(&now->kinks, &p->scaled, xi, larger(MERGE, 2 * shortest_step(p, xi)));
     if (last->event == NONE) return kink;
     pass_event(p, last);
@@ -119,19 +123,19 @@ static inline int has_room(const Integrator *p) {
            now->kinks.end - first_kink(&oldest->kinks, p->scaled.n) + 2 <= now->kinks.capacity;
 }
 
-/* What the next trial of a step goes by. */
+/* How a step is tried, and tried again. */
 typedef struct {
-    double planned; /* its length, but for kinks */
-    double resumed; /* the length to come back to after a step that a kink has made shorter */
-    double stretch; /* how much longer it may be than planned, to end on a kink */
-    double slack;   /* by how much a value may lie beyond its bound */
-    int switches;   /* of regime at the start of the step */
+    double planned; /* length of the next trial if there is no kink */
+    double resumed; /* the length that may follow if a kink cuts the step short */
+    int repeated;   /* an earlier trial was no good: the next is never longer than planned */
+    double slack;   /* by which values at its points may lie beyond a bound */
+    int switches;   /* of the regime where it starts */
     double h;       /* the length of the trial */
 } Plan;
 
-/* The plan of the step after `last`, which ended on a kink of some order. */
+/* The plan of the next step: as the last one left it, but after a kink no longer than `layers` allow. */
 static inline Plan first_plan(const Step *last, int kink, const Law *law, double layers) {
-    Plan plan = {last->next_h, last->next_h, STRETCH, ROUNDING, 0, 0.0};
+    Plan plan = {last->next_h, last->next_h, 0, ROUNDING, 0, 0.0};
     if (kink <= SMOOTHEST_KINK || last->end == last->xi) {
         plan.planned = smaller(plan.planned, layers * law->relaxation);
         if (last->event != NONE) plan.resumed = plan.planned;
@@ -139,15 +143,16 @@ static inline Plan first_plan(const Step *last, int kink, const Law *law, double
     return plan;
 }
 
-/* Choose the length of the trial: to the next kink if that is near, half the way there if that is not much farther. */
+/* Choose the length of the trial: as planned, but no kink lies within it, and none is left a short step ahead. */
 static inline void choose_length(const Integrator *p, const Law *law, double xi, Plan *plan) {
     double largest = p->options.largest_step, h = smaller(plan->planned, largest);
     double way = next_kink(&p->now.kinks, &p->scaled, law->gains, p->options.relative_tolerance, xi, 2 * h) - xi;
-    if (way < 2 * h) h = way <= smaller(plan->stretch * h, largest) ? way : way / 2;
+    double longest = plan->repeated ? h : smaller(STRETCH * h, largest);
+    if (way < 2 * h) h = way <= longest ? way : way / 2;
     plan->h = h;
 }
 
-/* A step over the planned length from the state `x` at `xi`, before events cut it. */
+/* A trial step of length `h` from the state `x` at `xi`, before events cut it. */
 static inline void try_step(
     const Integrator *p, const Law *law, double xi, double h, const double x[COMPONENTS], Trial *trial
 ) {
@@ -157,17 +162,17 @@ static inline void try_step(
     law_try(law, &p->options, x, trial);
 }
 
-/* Whether numbers have run away in a trial step. */
+/* Whether the numbers of a trial step are finite. */
 static inline int is_finite(const Trial *trial) {
     for (int c = 0; c < COMPONENTS; c++)
         if (!isfinite(trial->step.x[c][S])) return 0;
     return isfinite(trial->error);
 }
 
-/* How much longer than a step with this error the next one may be: the error grows as h^(S+1). */
+/* How much longer than a trial with this error the next one may be: the error grows as h^(S+1). */
 static inline double growth(double error) { return SAFETY * pow(larger(error, LEAST_ERROR), -1.0 / (S + 1)); }
 
-/* Find the step from the state `x` at `xi` on.
+/* Find the first trial of a step whose error is tolerable and whose regime holds beyond its start at `xi`, and its event.
 
    A bound that is met where the step starts switches the regime there. By the rates exactly one regime holds, but
    perhaps for a touch that is over before the first point of the step: then each regime finds itself beyond a bound
@@ -186,8 +191,8 @@ static inline Status find_step(
         try_step(p, law, xi, plan->h, x, trial);
         if (!is_finite(trial)) return failed(p, NOT_FINITE, xi, problem);
         if (trial->error > 1.0) {
-            plan->planned = plan->resumed = plan->h * larger(growth(trial->error), LEAST_GROWTH);
-            plan->stretch = 1.0;
+            plan->planned = plan->resumed = plan->h * larger(growth(trial->error), SMALLEST_GROWTH);
+            plan->repeated = 1;
             p->now.rejected++;
             continue;
         }
@@ -199,7 +204,7 @@ static inline Status find_step(
             continue;
         }
         plan->planned = larger(plan->h / CLOSER, shortest);
-        plan->stretch = 1.0, plan->switches = 0, plan->slack *= CLOSER;
+        plan->repeated = 1, plan->switches = 0, plan->slack *= CLOSER;
         if (plan->slack >= MOST_SLACK) return failed(p, NO_MODE, xi, problem);
     }
 }
@@ -231,7 +236,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     return DONE;
 }
 
-/* Go back to where the way began that is not yet at its end. */
+/* Go back to where a call has set out that has not arrived. */
 static inline void go_back(Integrator *p) {
     if (!p->under_way) return;
     p->now = p->before;
@@ -239,7 +244,7 @@ static inline void go_back(Integrator *p) {
     p->law_known = p->under_way = 0;
 }
 
-/* Remember where a way begins; 0 if the rings have no room. */
+/* Remember the state where a call sets out; 0 if the rings have no room. */
 static inline int set_out(Integrator *p) {
     if (p->under_way) return 1;
     if (!has_room(p)) return 0;
@@ -259,7 +264,7 @@ static inline Status integrate(Integrator *p, double xi, Problem *problem) {
     return status;
 }
 
-/* Go on in larger rings; the old ones may be freed then. */
+/* Go on in larger rings; the old ones may be freed afterwards. */
 static inline void move_rings(Integrator *p, Piece *pieces, Kink *kinks, Count capacity) {
     State *now = &p->now;
     const State *oldest = p->under_way ? &p->before : now;

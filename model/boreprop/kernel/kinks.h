@@ -1,23 +1,23 @@
-/* The kinks of the hole, where a derivative of its lateral coordinate jumps: the stabilizers will pass them, and no step
-   may pass over one that matters. */
+/* The kinks of the hole, where a derivative of its lateral coordinate jumps. The stabilizers will pass them, and no step
+   may pass over a kink that matters. */
 #ifndef BOREPROP_KINKS_H
 #define BOREPROP_KINKS_H
 
 #include "system.h"
 
 #define MERGE 1e-9 /* ℓ₁: kinks closer than this are one; far above the rounding of their sums ξ + s_i */
-/* The highest derivative of the hole in which a jump is followed: for jumps in smoother ones the error estimate, which
-   sees order S, shortens the steps enough. */
+/* The highest derivative of Y whose jumps are followed: what a jump in a higher one does is small, and the error
+   estimate sees it. */
 #define SMOOTHEST_KINK 3
-enum { SMOOTH = 100 }; /* no kink: of an order higher than any */
+enum { SMOOTH = 100 }; /* the order where there is no kink: higher than that of any */
 
 /* A jump in derivative `order` of the lateral coordinate at `xi`. */
 typedef struct {
     double xi, jump, order;
 } Kink;
 
-/* The kinks that are kept, up to the one before `end`: number k lies at k modulo the capacity of the ring, a power of
-   two. The next that stabilizer i will pass is number ahead[i]. */
+/* The kinks that are kept, up to the one before `end`; number k lies at k modulo the capacity of the ring, a power of
+   two. Stabilizer i will next pass number ahead[i]. */
 typedef struct {
     Kink *ring;
     Count capacity, end, ahead[MAX_STABILIZERS];
@@ -25,7 +25,7 @@ typedef struct {
 
 static inline Kink *kink(const Kinks *kinks, Count k) { return &kinks->ring[k & (kinks->capacity - 1)]; }
 
-/* Number of the oldest kink that is kept: the next one of the last stabilizer. */
+/* Number of the oldest kink that is kept: the one that the last stabilizer will pass next. */
 static inline Count first_kink(const Kinks *kinks, int n) { return kinks->ahead[n - 1]; }
 
 /* Mark a jump, which the stabilizers will pass; jumps at one place in one derivative add up. */
@@ -36,8 +36,8 @@ static inline void add_kink(Kinks *kinks, int n, double xi, int order, double ju
     else *kink(kinks, kinks->end++) = added;
 }
 
-/* Take the kinks up to `xi` off the lists; the lowest derivative of the hole, as it is drilled on, that those within
-   `near` of `xi` make jump. */
+/* Take the kinks up to `xi` off the lists; returns the lowest derivative of the hole that jumps at `xi` by those within
+   `near` of it. */
 static inline int kink_here(Kinks *kinks, const Scaled *scaled, double xi, double near) {
     int lowest = SMOOTH;
     for (int i = 0; i < scaled->n; i++)
@@ -50,8 +50,8 @@ static inline int kink_here(Kinks *kinks, const Scaled *scaled, double xi, doubl
     return lowest;
 }
 
-/* Where the next kink lies over which a step of length `h` from `xi` must not pass, if there is one; it may pass over
-   those that change the state by less than the tolerance. `gains` are the law's. */
+/* Where the next kink lies that a step of length `h` from `xi` must not pass; infinity if there is none. It may pass
+   those that change it by less than the tolerance; `gains` are those of the law. */
 static inline double next_kink(
     const Kinks *kinks, const Scaled *scaled, const double *gains, double tolerance, double xi, double h
 ) {

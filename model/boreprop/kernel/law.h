@@ -7,8 +7,8 @@
    touch which wall, tilt saturated or not) only sin⟨Θ⟩_1 is not linear, so one step is one linear solve of Radau
    collocation.
 
-   What the integrator asks of a law is `make_law`, `law_try`, `law_at`, `law_along` and `displacement`, and of what is in
-   a `Law` the relaxation length, the bounds and the gains; it asks modes.h for what comes after a bound. */
+   The integrator uses of a law `make_law`, `law_try`, `law_at`, `law_along` and `displacement`, and of a `Law` the
+   relaxation length, the bounds and the gains; modes.h tells it which regime lies beyond a bound. */
 #ifndef BOREPROP_LAW_H
 #define BOREPROP_LAW_H
 
@@ -36,7 +36,7 @@ static inline Linear make_linear(const Row *row, const Scaled *scaled, ScaledInp
     return linear;
 }
 
-/* What stays between `lower` and `upper` while a regime holds: of stabilizer `part`, or of the tilt (part n−1). */
+/* While a regime holds, `value` lies between `lower` and `upper`: of stabilizer `part`, or of the tilt (part n−1). */
 typedef struct {
     int part;
     Linear value;
@@ -48,10 +48,11 @@ typedef struct {
     int n;
     double inputs_xi; /* where the inputs were taken over */
     Linear theta_rate, Theta;
-    double relaxation; /* ℓ₁ over which θ forgets */
+    double relaxation; /* length over which θ forgets */
     int bound_count;
     Bound bounds[MAX_STABILIZERS];
-    double gains[MAX_STABILIZERS]; /* change per change of Y(ξ−s_i): of Θ, θ having settled, or of what is bounded */
+    /* per change of Y(ξ−s_i) the change of Θ, once θ has followed, or that of a bounded value if it is larger */
+    double gains[MAX_STABILIZERS];
 } Law;
 
 /* Θ = θ − ψ, with ψ as it is without saturation. */
@@ -90,7 +91,7 @@ static inline Law make_law(const Scaled *scaled, Modes *modes, Regime regime, Sc
     return law;
 }
 
-/* Value of what is bounded at one place. */
+/* A bounded value at one place. */
 static inline double law_at(
     const Law *law, const Bound *bound, double xi, const double x[COMPONENTS], double delayed[][DIRECTIONS]
 ) {
@@ -101,7 +102,7 @@ static inline double law_at(
     return value + f->slope * (xi - law->inputs_xi);
 }
 
-/* Add the parts of stabilizers 2 … n, and of a force that changes along the step. */
+/* Add the terms of stabilizers 2 … n, and that of a force which changes along the step. */
 static inline void add_others(const Linear *f, int n, const Trial *trial, double values[POINTS]) {
     for (int i = 1; i < n; i++)
         if (f->delayed[i] != 0)
@@ -110,7 +111,7 @@ static inline void add_others(const Linear *f, int n, const Trial *trial, double
         for (int k = 0; k < POINTS; k++) values[k] += f->slope * trial->ahead[k];
 }
 
-/* Value of what is bounded at the points of a trial step. */
+/* A bounded value at the points of a trial step. */
 static inline void law_along(const Law *law, const Bound *bound, const Trial *trial, double values[POINTS]) {
     const Linear *f = &bound->value;
     const double *theta = trial->x[ANGLE], *Y = trial->x[LATERAL], *Y_1 = trial->delayed[0][0];
@@ -129,23 +130,23 @@ static inline void linear_frozen(
     add_others(f, n, trial, values);
 }
 
-#define REST 0.03     /* what may be left of sin⟨Θ⟩_1 beyond its linear part, in tolerances of θ: a small part of one */
-#define ITERATIONS 10 /* on that rest, more than are ever needed: each gains two digits or more */
+#define REST 0.03     /* what may be neglected of sin⟨Θ⟩_1, in tolerances of θ: little beside the error of a step */
+#define ITERATIONS 10 /* on what is neglected, at most; each gains two digits or more */
 
-/* sin⟨Θ⟩_1 linearized about a value near the start of a step, ⟨Θ⟩_1 = Y(ξ) − Y(ξ−1). */
+/* sin⟨Θ⟩_1 about its value at the start of a step, where ⟨Θ⟩_1 = Y(ξ) − Y(ξ−1) is `average`. */
 typedef struct {
-    double near, sine, cosine;
+    double average, sine, cosine;
 } Tangent;
 
-/* The sines of ⟨Θ⟩_1 at the points of a step that was solved with `frozen` sines; whether that step is good enough. If
-   not, `frozen` are better ones: the part with Y belongs to the Jacobian. */
+/* The sines of ⟨Θ⟩_1 at the points of a step that was solved with `frozen` sines. Returns whether these agree well
+   enough; if they do not, `frozen` becomes better ones, less the linear part in Y, which belongs to the Jacobian. */
 static inline int sines_agree(
     Tangent tangent, double Y, double gain, double allowed, Trial *trial, double frozen[POINTS]
 ) {
     const double *Ys = trial->x[LATERAL], *Y_1 = trial->delayed[0][0];
     double far = 0.0, largest = 0.0;
     for (int k = 0; k < POINTS; k++) {
-        double away = Ys[k] - Y_1[k] - tangent.near;
+        double away = Ys[k] - Y_1[k] - tangent.average;
         trial->sines[k] = tangent.sine + tangent.cosine * away;
         far = larger(far, fabs(away));
     }
@@ -159,7 +160,7 @@ static inline int sines_agree(
     return largest * gain <= allowed;
 }
 
-/* Collocation from the state `x` over a trial step, of which the place, the length and the delayed hole are given. */
+/* Collocation from the state `x` over a trial step, whose place, length and delayed hole are given. */
 static inline void law_try(const Law *law, const Options *options, const double x[COMPONENTS], Trial *trial) {
     const Linear *rate = &law->theta_rate, *Theta = &law->Theta;
     const double theta = x[ANGLE], Y = x[LATERAL], h = trial->step.h, *Y_1 = trial->delayed[0][0];
@@ -169,7 +170,7 @@ static inline void law_try(const Law *law, const Options *options, const double 
     double allowed = REST * options->relative_tolerance * (fabs(rate->theta) + 1 / h);
     for (int k = 0; k < POINTS; k++) {
         trial->ahead[k] = trial->step.xi - law->inputs_xi + POINT[k] * h;
-        frozen[k] = tangent.sine + tangent.cosine * (Y - Y_1[k] - tangent.near);
+        frozen[k] = tangent.sine + tangent.cosine * (Y - Y_1[k] - tangent.average);
     }
     for (int iteration = 0; iteration < ITERATIONS; iteration++) {
         linear_frozen(rate, law->n, x, trial, frozen, f_theta);
@@ -192,7 +193,7 @@ static inline void law_try(const Law *law, const Options *options, const double 
 
 #define SMALL_TURN 0.05 /* rad: up to here the series below are off by less than 1e-15 */
 
-/* Sine and cosine of an angle and a little more, `turn`, from those of the angle. */
+/* Sine and cosine of an angle that is larger by a small `turn` than the one whose sine and cosine are given. */
 static inline void turn_by(double turn, double sine, double cosine, double *new_sine, double *new_cosine) {
     double square = turn * turn;
     double s = turn * (1 - square / 6 * (1 - square / 20 * (1 - square / 42)));

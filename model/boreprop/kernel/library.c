@@ -1,4 +1,4 @@
-/* The kernel as a shared library, for the binding in Python: boreprop.h says what the functions do. */
+/* The kernel as a shared library for the binding in Python; boreprop.h says what the functions do. */
 #include "boreprop.h"
 
 const char *boreprop_sources_digest(void) { return BOREPROP_SOURCES_DIGEST; }

@@ -1,4 +1,4 @@
-/* The little linear algebra the kernel needs. */
+/* The little linear algebra that the kernel needs. */
 #ifndef BOREPROP_LINEAR_H
 #define BOREPROP_LINEAR_H
 

@@ -1,7 +1,7 @@
 /* The two nonlinearities: stabilizers that touch the wall or not, and a bit tilt that saturates.
 
    With the contacts known (a mode), F follows from q̃ by elimination, so M, F_0, δ and F are linear functions of the
-   hole, the RSS force and the weight; which contacts hold is found by pivoting from the last mode. */
+   hole, the RSS force and the weight. Which contacts hold is found by pivoting from the last mode. */
 #ifndef BOREPROP_MODES_H
 #define BOREPROP_MODES_H
 
@@ -84,9 +84,9 @@ static inline Mode make_mode(const Beam *beam, const double *y_star, Contact con
     return mode;
 }
 
-enum { MODES = 4 };
+enum { MODES = 4 }; /* that are kept: a few take turns where a hole ripples */
 
-/* The last few modes of one beam that were asked for. */
+/* The modes of one beam that were asked for last. */
 typedef struct {
     Beam beam;
     double y_star[MAX_STABILIZERS - 1];
@@ -109,15 +109,15 @@ static inline int side_beyond(double value, double lower, double upper, double s
     return value > upper + slack ? 1 : value < lower - slack ? -1 : 0;
 }
 
-/* The contact after leaving the bounds on `side`: a touching stabilizer comes free, a free one touches δ = ±y*. */
+/* The contact beyond a bound on `side`: a touching stabilizer comes free, a free one touches at δ = ±y*. */
 static inline signed char change(int contact, int side) { return (signed char)(contact ? 0 : -side); }
 
 /* The wall that bears a stabilizer with the force F: 1 the lower, −1 the upper, 0 none. */
 static inline int wall(double F) { return F > 0 ? 1 : F < 0 ? -1 : 0; }
 
-/* What must lie between two bounds for stabilizer `i` to stay as it is in `mode`: F_i in contact, else δ_i.
+/* The row that lies between two bounds while stabilizer `i` stays as it is in `mode`: F_i in contact, else δ_i, (7).
 
-   Without clearance the stabilizer is held on both sides and nothing can change. */
+   A stabilizer without clearance is held on both sides, and its bounds are infinite. */
 static inline const Row *contact_bounds(const Modes *modes, const Mode *mode, int i, double *lower, double *upper) {
     int contact = mode->contact.of[i];
     if (modes->y_star[i] == 0.0) {
@@ -132,16 +132,15 @@ static inline const Row *contact_bounds(const Modes *modes, const Mode *mode, in
     return &mode->delta[i];
 }
 
-/* Pivots after which contacts must have come back: three contacts at each of five stabilizers are all there are. */
-#define MOST_PIVOTS 243
-#define LOOSER 8.0 /* how much farther conditions may fail in the next search: nine digits in ten searches */
+#define MOST_PIVOTS 243 /* contacts at five stabilizers: a search that takes more pivots goes in circles */
+#define LOOSER 8.0      /* factor on the slack for the next search: about a digit */
 
 /* The mode that satisfies (7) under `loads`, starting the search from `contact`.
 
-   Least-index pivoting: change the first stabilizer whose condition fails, until none does. K is positive definite, so
+   Least-index pivoting: switch the first stabilizer that is beyond its bounds, until none is. K is positive definite, so
    no set of contacts comes back and the search ends (Murty 1974; Júdice & Pires 1992 for two walls). Where one does
-   come back, by rounding under huge loads or of stabilizers close together, conditions may fail by more and more until
-   a mode satisfies them: at last by any amount. */
+   come back, by rounding under huge loads or of stabilizers close together, stabilizers may lie beyond their bounds by
+   more and more until a mode is within them: at last by any amount. */
 static inline const Mode *settle(Modes *modes, const Loads *loads, Contact contact) {
     int n = modes->beam.n;
     double slack = ROUNDING;
@@ -166,9 +165,8 @@ static inline double bit_tilt(double F_0, double eta_pi, double psi_star) {
     return smaller(larger(F_0 / eta_pi, -psi_star), psi_star);
 }
 
-/* Within a regime the law is one and the same: which stabilizers touch which wall, and whether the bit tilt is saturated:
-   1 at ψ*, −1 at −ψ*, else 0. A change of regime is a change of one part: of stabilizer 0 … n−2, or of the tilt, part
-   n−1. */
+/* The contacts, and the saturation of the bit tilt: 1 at ψ*, −1 at −ψ*, 0 between. A regime is left by a switch of one
+   part: stabilizer i is part i − 1, the tilt the last part, n − 1. */
 typedef struct {
     Contact contact;
     int saturation;
@@ -180,7 +178,7 @@ static inline void saturation_bounds(int saturation, double psi_star, double *lo
     *upper = saturation > 0 ? INFINITY : saturation < 0 ? -psi_star : psi_star;
 }
 
-/* The regime on the other side of a bound: `part` has left its bounds on `side`. */
+/* The regime beyond the bound of `part` on `side`. */
 static inline Regime switch_over(Regime regime, int n, int part, int side) {
     if (part < n - 1) regime.contact.of[part] = change(regime.contact.of[part], side);
     else regime.saturation = regime.saturation ? 0 : side;

@@ -1,4 +1,4 @@
-/* Counts, the larger and smaller of two numbers, and numbers as text. */
+/* A type for counts, the larger and the smaller of two numbers, and numbers as text. */
 #ifndef BOREPROP_NUMBERS_H
 #define BOREPROP_NUMBERS_H
 

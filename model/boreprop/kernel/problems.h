@@ -1,7 +1,8 @@
-/* What can be wrong, and what is said of it. Written from core/problems.py by `python -m boreprop.kernel.generate`.
+/* What can be wrong, and the sentence that says so. Written from core/problems.py by
+   `python -m boreprop.kernel.generate`.
 
-   In a sentence stand {name}, {value}, {before}, {count} (the value, if it is a whole number), {limit} and
-   {place} for what a Problem has. */
+   {name}, {value}, {before}, {limit} and {place} stand for members of a Problem, {count} for its value as a
+   whole number. */
 #ifndef BOREPROP_PROBLEMS_H
 #define BOREPROP_PROBLEMS_H
 
@@ -28,7 +29,7 @@ typedef enum {
     CODE_COUNT
 } Code;
 
-/* What a problem is about: of the table of quantities, or made of them. */
+/* What a problem is about: a quantity of the table, something made of quantities, or an argument of a call. */
 typedef enum {
     Q_NOTHING,
     Q_DRILLED_LENGTH,
@@ -100,9 +101,9 @@ static const char *const SENTENCE[CODE_COUNT] = {
     "the state is not finite at {place} m: check inputs and parameters",
     "the bit turns over at {place} m: its inclination grows beyond a full turn; use a smaller or shorter rss_force, a larger active_weight_on_bit, or check the parameters",
     "the steps of the integrator become too short at {place} m: raise relative_tolerance (--tolerance), now {limit}",
-    "no contact mode holds at {place} m: change relative_tolerance (--tolerance), now {limit}",
-    "step: must take at most {limit} steps of the integrator, got more",
-    "memory: must hold the hole behind the bit, in at most {limit} pieces, got too little",
+    "no contacts are found that hold at {place} m: change relative_tolerance (--tolerance), now {limit}",
+    "from {place} m on, more than {limit} steps of the integrator would be needed in one call: drill to a nearer length, change inputs less often, or raise relative_tolerance (--tolerance)",
+    "there is too little memory for the hole behind the bit, at most {limit} pieces: give a survey with fewer stations, or change inputs less often",
 };
 
 static const char *const NAME[NAME_COUNT] = {
@@ -143,15 +144,15 @@ static const char *const NAME[NAME_COUNT] = {
     "engine",
     "stopped",
     "rss_force_slope",
-    "rss_force / F*",
-    "rss_force_slope / F*",
+    "rss_force / (3 flexural_stiffness / stabilizer_position[1]^2)",
+    "rss_force_slope / (3 flexural_stiffness / stabilizer_position[1]^2)",
     "1 / eta_pi",
-    "F*",
-    "s_n / l_1",
-    "w l_1 / F*",
-    "epsilon",
-    "1 / epsilon",
-    "l_1 / distance of stations",
+    "3 flexural_stiffness / stabilizer_position[1]^2",
+    "stabilizer_position[n] / stabilizer_position[1]",
+    "distributed_weight stabilizer_position[1] / (3 flexural_stiffness / stabilizer_position[1]^2)",
+    "angular_steering_resistance / lateral_steering_resistance",
+    "lateral_steering_resistance / angular_steering_resistance",
+    "stabilizer_position[1] / distance between stations of the survey",
     "parameters",
     "state",
     "startTime",

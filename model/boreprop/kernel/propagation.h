@@ -1,4 +1,5 @@
-/* The borehole propagation, dimensionless: the bit at the front of its hole. `drill` moves it, the rest looks. */
+/* The borehole propagation, dimensionless: the bit at the front of its hole. `drill` and `drill_step` move it, other
+   functions tell where it is. */
 #ifndef BOREPROP_PROPAGATION_H
 #define BOREPROP_PROPAGATION_H
 
@@ -6,7 +7,7 @@
 
 /* looking */
 
-/* The force where the bit is. */
+/* The steering force where the bit is. */
 static inline double present_force(const State *now) {
     return now->inputs.F_rss + now->inputs.F_rss_slope * (now->xi - now->inputs_xi);
 }
@@ -14,7 +15,7 @@ static inline double present_force(const State *now) {
 /* What bends the beam with the bit at `xi` in the state `x`. */
 static inline Loads loads_at(const Integrator *p, double xi, const double x[COMPONENTS], double F_rss) {
     double delayed[MAX_STABILIZERS][DIRECTIONS] = {{0}};
-    Loads loads = {{0}, F_rss, 0};
+    Loads loads = {.F_rss = F_rss};
     hole_at_stabilizers(&p->now.hole, &p->scaled, xi, delayed);
     for (int i = 0; i < p->scaled.n; i++) loads.e[i] = x[LATERAL] - delayed[i][0] - p->scaled.s[i] * x[ANGLE];
     loads.sin_Theta_1 = sin(x[LATERAL] - delayed[0][0]);
@@ -28,7 +29,7 @@ static inline Loads present_loads(const Integrator *p) {
     return loads_at(p, p->now.xi, x, present_force(&p->now));
 }
 
-/* Θ, eq. (16): algebraic, it jumps with the inputs. */
+/* Θ under given loads, eq. (16): algebraic, so it jumps with the inputs. */
 static inline double inclination_under(Integrator *p, double theta, const Loads *loads, double eta_pi) {
     const Mode *mode = settle(&p->modes, loads, p->now.regime.contact);
     return theta - bit_tilt(row_value(&mode->F_0, loads, p->scaled.n), eta_pi, p->scaled.psi_star);
@@ -42,7 +43,7 @@ static inline double inclination(Integrator *p) {
     return inclination_under(p, x[ANGLE], &loads, p->now.inputs.eta_pi);
 }
 
-/* What Θ was when the bit was at `xi`, at most LOOK_BACK behind; where it jumped, after the jump. */
+/* Θ as it was when the bit was at `xi`, at most LOOK_BACK behind; where Θ jumped, its value after the jump. */
 static inline double earlier_inclination(Integrator *p, double xi) {
     const Hole *hole = &p->now.hole;
     const Piece *at = piece(hole, find(hole, xi + MERGE));
@@ -64,8 +65,8 @@ static inline void position(const State *now, double *x, double *z) {
 
 /* moving */
 
-/* Start anew under new inputs from the state `x` where the bit is: find the regime, and mark the jump of the inclination,
-   which was Θ, that they make. */
+/* Take over inputs where the bit is, in the state `x`: find the regime under them, and mark the jump of the inclination,
+   which was Θ so far. */
 static inline Status restart(
     Integrator *p, ScaledInputs inputs, const double x[COMPONENTS], double Theta, Problem *problem
 ) {
@@ -83,7 +84,7 @@ static inline Status restart(
     return DONE;
 }
 
-/* Take over inputs where the bit is. */
+/* Take over inputs on the way: the path up to the bit, and the jump of curvature where a slope changes, count too. */
 static inline Status steer(Integrator *p, ScaledInputs inputs, Problem *problem) {
     State *now = &p->now;
     double Theta = inclination(p), bend = inputs.F_rss_slope - now->inputs.F_rss_slope, x[COMPONENTS];
@@ -124,7 +125,7 @@ static inline Status drill_step(Integrator *p, Problem *problem) {
     return DONE;
 }
 
-/* What does not evolve; before `begin`, or before a state is restored. */
+/* Set what does not evolve, to be followed by `begin` or by a state that is restored. */
 static inline void prepare(Integrator *p, const Scaled *scaled, double length_scale, Options options) {
     memset(p, 0, sizeof *p);
     p->scaled = *scaled;

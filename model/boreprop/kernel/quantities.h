@@ -8,8 +8,8 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "faa5648992a5329c" /* of this file, but for this line, and of problems.h */
-#define LEAST_SPAN 0.01 /* m between stabilizers, at least: between closer ones the force is rounding */
+#define QUANTITIES_DIGEST "87c8efeb937e7b5e" /* of this file, but for this line, and of problems.h */
+#define LEAST_SPAN 0.01 /* m between stabilizers, at least: forces between closer ones are rounding errors */
 
 enum { MAX_STABILIZERS = 6, PARAMETER_COUNT = 9, INPUT_COUNT = 3, OUTPUT_COUNT = 15 };
 
@@ -24,10 +24,10 @@ typedef struct {
     double lateral_steering_resistance; /* lateral over axial drilling resistance */
     double angular_steering_resistance; /* angular over axial drilling resistance */
     double bit_tilt_limit; /* rad: tilt at which the bit gauge meets the wall */
-    double relative_tolerance; /* local error of one step of the integrator, over 1 rad and ℓ₁ */
+    double relative_tolerance; /* local error allowed in one step of the integrator, relative to 1 rad and ℓ₁ */
 } System;
 
-/* What acts from where the bit is: values, and the change of some per metre drilled. */
+/* The inputs from where the bit is: their values, and the change of some per metre drilled. */
 typedef struct {
     double rss_force; /* N: force of the steering pads on the BHA, positive builds */
     double rss_force_slope; /* N/m: its change per metre drilled */
@@ -37,7 +37,7 @@ typedef struct {
 /* How many values a quantity has. */
 typedef enum { ONE, EACH_STABILIZER, EACH_NON_IDEAL } Size;
 
-/* A quantity that is given from outside: its range, above < value, at_least <= value <= at_most. */
+/* A parameter or input, and its range: above < value, at_least <= value <= at_most. */
 typedef struct {
     Name name;
     Size size;

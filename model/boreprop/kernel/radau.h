@@ -11,8 +11,8 @@
 #include "radau_tables.h"
 
 /* W holds one complex number for each eigenvalue, W_k = (γ_k − hJ)⁻¹ h f_k, where f_k is the share of the right-hand
-   side in eigenvector k. A step of one component is the five parts of its W (real; real, imaginary; real, imaginary);
-   the tables make its polynomial of them, and the parts of f of its values. */
+   side in eigenvector k. A step of one component is the five parts of its W (real; real, imaginary; real, imaginary).
+   The tables give its polynomial from these, and the parts of f from the values of f. */
 
 typedef struct {
     double theta_theta, theta_Y, Y_theta, Y_Y;
@@ -96,7 +96,7 @@ static inline double radau_slope(const double p[S]) {
 
 /* Errors of θ and Y from h times the defects at the check, slope less right-hand side.
 
-   (1 − hJ/γ)⁻¹ times the defects, γ the real eigenvalue: stiffness does not blow that up. */
+   They are (1 − hJ/γ)⁻¹ times the defects, with the real eigenvalue γ, so that stiffness does not blow them up. */
 static inline void radau_error(double h, Jacobian J, double defect_theta, double defect_Y, double *theta, double *Y) {
     double scale = h / GAMMA[0].re;
     double h11 = scale * J.theta_theta, h12 = scale * J.theta_Y, h21 = scale * J.Y_theta, h22 = scale * J.Y_Y;

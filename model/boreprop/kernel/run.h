@@ -1,4 +1,4 @@
-/* A drilling run that owns its memory, and takes more where inputs change so often that the hole has many pieces. */
+/* A drilling run that owns its memory. It takes more where inputs change so often that the hole has many pieces. */
 #ifndef BOREPROP_RUN_H
 #define BOREPROP_RUN_H
 
@@ -15,7 +15,7 @@ static inline void run_end(Run *run) {
     free(run);
 }
 
-/* Take memory of a capacity; what the run held stays. */
+/* Take memory of a capacity, with all that the run has in its memory so far. */
 static inline Status grow(Run *run, Count capacity, Problem *problem) {
     void *memory = capacity <= MOST_PIECES ? malloc(drilling_memory(capacity)) : NULL;
     if (!memory) return met(problem, NO_MEMORY, MOST_PIECES, 0.0);
@@ -25,7 +25,7 @@ static inline Status grow(Run *run, Count capacity, Problem *problem) {
     return DONE;
 }
 
-/* A drilling system that has not begun: `run_start` or `run_restore` is next. */
+/* Prepare a drilling system, to be followed by `run_start` or `run_restore`. */
 static inline Status run_prepare(Run *run, const System *system, Options options, Problem *problem) {
     if (grow(run, LEAST_CAPACITY, problem) != DONE) return FAILED;
     return drilling_prepare(&run->drilling, system, options, run->memory, LEAST_CAPACITY, problem);
@@ -38,7 +38,8 @@ static inline Status run_start(Run *run, const Survey *survey, Inputs inputs, Pr
     return drilling_start(&run->drilling, survey, inputs, problem);
 }
 
-/* Twice the memory for the way under way; where there is none that takes too many steps, and is taken back. */
+/* Take twice the memory, so that a call can go on. Where that cannot be had the call fails, for it takes too many steps,
+   and the bit goes back to where it was. */
 static inline Status grow_on_the_way(Run *run, Problem *problem) {
     Drilling *drilling = &run->drilling;
     if (grow(run, 2 * drilling->integrator.now.hole.capacity, problem) == DONE) return DONE;
@@ -53,7 +54,7 @@ static inline Status run_advance(Run *run, double drilled_length, Inputs inputs,
     return status;
 }
 
-/* To the end of the integrator's next step. */
+/* Drill on to the end of the integrator's next step. */
 static inline Status run_step(Run *run, Problem *problem) {
     Status status;
     while ((status = drilling_step(&run->drilling, problem)) == FULL)

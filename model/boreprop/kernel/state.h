@@ -1,6 +1,6 @@
-/* The state of a drilling run as numbers: saving it, and restoring it with suspicion, for it may come from anywhere.
+/* The state of a drilling run as numbers. It is checked when it is restored, since the numbers may come from anywhere.
 
-   First come the numbers of which there is a fixed count, then the pieces of the hole and the kinks. */
+   First come the numbers of which there is a fixed count, then the pieces of the hole, then the kinks. */
 #ifndef BOREPROP_STATE_H
 #define BOREPROP_STATE_H
 
@@ -13,7 +13,7 @@ typedef struct {
     double *to;
     const double *from;
     Count passed;
-    int sound; /* what was to be whole and between limits was */
+    int sound; /* whether all whole numbers so far are whole and within their limits */
 } Tape;
 
 enum { NUMBERS_OF_PIECE = sizeof(Piece) / sizeof(double), NUMBERS_OF_KINK = sizeof(Kink) / sizeof(double) };
@@ -22,7 +22,7 @@ enum { NUMBERS_OF_PIECE = sizeof(Piece) / sizeof(double), NUMBERS_OF_KINK = size
 typedef struct {
     double drilled_length;
     State now;
-    Count pieces, kinks, passed[MAX_STABILIZERS]; /* of the kinks so many have been passed by each stabilizer */
+    Count pieces, kinks, passed[MAX_STABILIZERS]; /* passed: how many of the kinks each stabilizer has passed */
 } Snapshot;
 
 static inline void pass(Tape *tape, int count, double *values) {
@@ -32,7 +32,8 @@ static inline void pass(Tape *tape, int count, double *values) {
     tape->passed += count;
 }
 
-/* A whole number; if the one that is read is none or beyond its limits, the lower limit, and the tape is not sound. */
+/* A whole number. If the number read is not whole, or beyond its limits, the tape is not sound, and the lower limit is
+   taken instead. */
 static inline Count pass_whole(Tape *tape, Count value, Count least, Count most) {
     double number = (double)value;
     pass(tape, 1, &number);
@@ -45,7 +46,7 @@ static inline void pass_piece(Tape *tape, Piece *piece) { pass(tape, NUMBERS_OF_
 
 static inline void pass_kink(Tape *tape, Kink *kink) { pass(tape, NUMBERS_OF_KINK, (double *)kink); }
 
-/* All but pieces and kinks, of a system of n stabilizers. Only the first number may be infinite. */
+/* All numbers but pieces and kinks, of a system of n stabilizers. Only the first one may be infinite. */
 static inline void pass_snapshot(Tape *tape, int n, Snapshot *snapshot) {
     State *now = &snapshot->now;
     Step *step = &now->step;
@@ -130,8 +131,8 @@ static inline int is_joined(const Piece *piece, double end, double x[COMPONENTS]
     return 1;
 }
 
-/* Whether the pieces are a hole in one piece, of which the last is that of the present step unless that has no length,
-   and the kinks are of some order. */
+/* Whether the pieces join to one hole, whose last piece is the present step unless that has no length, and the kinks are
+   of an order that is followed. */
 static inline int is_hole(Snapshot *snapshot, Tape tape) {
     Step *step = &snapshot->now.step;
     Piece own = {0}, next = {0};
@@ -153,7 +154,7 @@ static inline int is_hole(Snapshot *snapshot, Tape tape) {
     return 1;
 }
 
-/* Read a state, all but its pieces and kinks, before which the tape then stands: 0 if these numbers cannot be one. */
+/* Read a state up to its pieces and kinks, before which the tape then stands; 0 if the numbers cannot be a state. */
 static inline int read_state(const Drilling *d, Count count, Tape *tape, Snapshot *snapshot) {
     if (count < state_size(1, 0)) return 0;
     pass_snapshot(tape, d->system.n, snapshot);
@@ -163,7 +164,7 @@ static inline int read_state(const Drilling *d, Count count, Tape *tape, Snapsho
     return is_consistent(d, snapshot) && is_hole(snapshot, *tape);
 }
 
-/* Capacity that a state needs. */
+/* The capacity that a state needs. */
 static inline Count snapshot_capacity(const Snapshot *snapshot) {
     Count most = snapshot->pieces > snapshot->kinks ? snapshot->pieces : snapshot->kinks, capacity = LEAST_CAPACITY;
     while (capacity < 2 * most + 2) capacity *= 2;
@@ -191,7 +192,7 @@ static inline void drilling_return(Drilling *d, const double *state) {
     become(d, &snapshot, tape);
 }
 
-/* Go to a state of a run with the same system, if it can be one; FULL if that needs the capacity `wanted`. */
+/* Go to a state of a run with the same system, if the numbers can be one; FULL if that needs the capacity `wanted`. */
 static inline Status drilling_restore(Drilling *d, const double *state, Count count, Count *wanted, Problem *problem) {
     Tape tape = {NULL, state, 0, 1};
     Snapshot snapshot = {0};

@@ -5,23 +5,23 @@
 #include "radau.h"
 #include "system.h"
 
-/* How many numbers evolve: first the angles of the bit, then as many lateral coordinates of the hole; in the plane θ and
-   Y. The integrator is compiled for one count. */
+/* How many numbers evolve: first the angles of the bit, then as many lateral coordinates of the hole; in the plane these
+   are θ and Y. The integrator is compiled for one such count. */
 #ifndef COMPONENTS
 #define COMPONENTS 2
 #endif
-enum { DIRECTIONS = COMPONENTS / 2, ANGLE = 0, LATERAL = DIRECTIONS }; /* the first of either kind */
+enum { DIRECTIONS = COMPONENTS / 2, ANGLE = 0, LATERAL = DIRECTIONS }; /* ANGLE, LATERAL: the first of either kind */
 
 enum { NONE = -1 }; /* no event */
 
-/* A stretch [xi, end] of the run: the state as polynomials in t = (ξ − xi)/h, and why it ends. */
+/* A stretch [xi, end] of the run: the state as polynomials in t = (ξ − xi)/h, and the event at its end, if any. */
 typedef struct {
     double xi, h, x[COMPONENTS][S + 1], end;
     int event, side; /* the part whose bound is met at the end, and on which side */
-    double next_h;
+    double next_h;   /* length planned for the next step */
 } Step;
 
-/* A step as the collocation gives it, before events cut it, with values at the points. */
+/* A step as the collocation gives it, before events cut it, with values at its points. */
 typedef struct {
     Step step;
     double delayed[MAX_STABILIZERS][DIRECTIONS][POINTS]; /* the hole's lateral coordinate at ξ − s_i */
@@ -38,7 +38,7 @@ static inline double polynomial_slope(const double c[S + 1], double t) {
     return c[1] + t * (2 * c[2] + t * (3 * c[3] + t * (4 * c[4] + t * 5 * c[5])));
 }
 
-/* A step of no length at `xi`, where a run starts or its inputs change. */
+/* A step of length zero at `xi`, so that a run can start or restart there. */
 static inline Step standstill(double xi, const double x[COMPONENTS]) {
     Step step = {xi, 1.0, {{0}}, xi, NONE, 0, INFINITY};
     for (int c = 0; c < COMPONENTS; c++) step.x[c][0] = x[c];

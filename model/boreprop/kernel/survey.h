@@ -1,4 +1,4 @@
-/* The survey of the existing hole, as it is given: see hole.h for what is made of it. */
+/* The survey of the existing hole as it is given; hole.h makes pieces of hole from it. */
 #ifndef BOREPROP_SURVEY_H
 #define BOREPROP_SURVEY_H
 
@@ -19,7 +19,7 @@ static inline int check_survey(const Survey *survey, Problem *problem) {
     return 1;
 }
 
-/* Whether the survey begins below the reach of the BHA; then one more station stands above it. */
+/* Whether the survey begins within the reach of the BHA; then a station is added above it. */
 static inline int starts_late(const Survey *survey, double length_scale, double reach) {
     return (survey->measured_depth[0] - survey->measured_depth[survey->count - 1]) / length_scale >= -reach;
 }
@@ -33,7 +33,7 @@ static inline double station(const Survey *survey, double length_scale, double r
     return late && k == 0 ? smaller(xi, -reach) - 1.0 : xi;
 }
 
-/* Number of the last station before the reach of the BHA, and of all. */
+/* Number of the last station above the reach of the BHA; `count` is the number of all stations. */
 static inline Count first_station(const Survey *survey, double length_scale, double reach, Count *count) {
     double inclination;
     Count first = 0;

@@ -19,11 +19,12 @@ typedef struct {
 /* How many values a quantity has for n stabilizers. */
 static inline int value_count(Size size, int n) { return size == ONE ? 1 : size == EACH_STABILIZER ? n : n - 1; }
 
-/* Whether stabilizers, in order, are far enough from each other and from the bit. */
+/* Whether stabilizers, in their order, are far enough from each other and from the bit. */
 static inline int check_spans(Name quantity, int count, const double *positions, Problem *problem) {
     for (int i = 0; i < count; i++) {
         double before = i ? positions[i - 1] : 0.0, after = positions[i];
-        if (!(after - before < LEAST_SPAN * (1 - 1e-9))) continue; /* 4.34 and 4.35 are, but for rounding */
+        if (!(after - before < LEAST_SPAN * (1 - 1e-9)))
+            continue; /* 4.34 and 4.35 are that far apart, but for rounding */
         wrong(problem, TOO_CLOSE, quantity, 0, after, LEAST_SPAN);
         problem->before = before;
         return 0;
@@ -31,13 +32,13 @@ static inline int check_spans(Name quantity, int count, const double *positions,
     return 1;
 }
 
-/* Whether a value, the one with this index where there are several, is in the range of the table of quantities. */
+/* Whether a value of a quantity, the one with this index if it has several, is in its range. */
 static inline int check_quantity(const Quantity *quantity, int index, double value, Problem *problem) {
     int shown = quantity->size == ONE ? 0 : index + 1;
     return check_number(quantity->name, shown, value, quantity->above, quantity->at_least, quantity->at_most, problem);
 }
 
-/* The system of n stabilizers with these parameters, one after the other in the order of the table; none are read for
+/* The system of n stabilizers with these parameters, one after the other in the order of the table. Nothing is read for
    an n that `check_system` refuses. */
 static inline System system_of(int n, const double *values) {
     System system = {0};
@@ -73,7 +74,7 @@ static inline double force_scale(const System *system) {
     return 3.0 * system->flexural_stiffness / (length_scale(system) * length_scale(system));
 }
 
-/* The inputs from where they were taken over: F_RSS, its slope over ξ, and ηΠ. */
+/* The inputs where they were taken over: F_RSS, its change per ξ, and ηΠ. */
 typedef struct {
     double F_rss, F_rss_slope, eta_pi;
 } ScaledInputs;

@@ -1,6 +1,6 @@
 /* What a library for Windows needs besides Windows' own C library, ucrtbase.dll, which does not export the standard's
-   functions that format. MinGW's start-up code and additions are left out: zig compiles all of them, for a minute or
-   two, when it first needs one. */
+   functions that format. MinGW's start-up code and additions are not linked: zig would take a minute or two to compile
+   them all. */
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -17,7 +17,7 @@ int snprintf(char *text, size_t size, const char *format, ...) {
     return length;
 }
 
-/* Nothing to start: no constructors, no variables of a thread. */
+/* There is nothing to start: no constructors, no variables of a thread. */
 int __stdcall _DllMainCRTStartup(void *library, unsigned long reason, void *reserved) {
     (void)library, (void)reason, (void)reserved;
     return 1;

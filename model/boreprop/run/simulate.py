@@ -1,6 +1,6 @@
 """Simulates a case: drills it under its force schedule and gives the trajectory."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,17 +83,14 @@ def simulate(
     table = np.full((int(length / sample_interval + ROUNDING) + 1, len(names)), np.nan)
     legs = _legs(case.schedule, len(table), sample_interval)
     lengths, forces, rows = _in_parts(*legs, LONGEST_LEG * case.bha.length_scale)
-    batch = len(lengths) // PARTS + 1 if progress else len(lengths)
     failure = None
-    for first in range(0, len(lengths), batch):
-        part = slice(first, first + batch)
-        try:
+    try:
+        for part in _parts(len(lengths), progress is not None):
             drilling.follow(lengths[part], forces[part], weight, rows[part], table)
-        except CannotContinue as error:
-            failure = error
-            break
-        if progress:
-            progress(drilling.drilled_length)
+            if progress:
+                progress(drilling.drilled_length)
+    except CannotContinue as error:
+        failure = error
     drilled = np.count_nonzero(~np.isnan(table[:, 0]))
     outputs = np.ascontiguousarray(table[:drilled].T)  # a run is read column by column
     columns = {"rss_force": forces[rows >= 0][:drilled], "active_weight_on_bit": np.full(drilled, weight)}
@@ -102,6 +99,12 @@ def simulate(
     if stopped:
         raise Stopped(stopped, trajectory) from failure
     return trajectory
+
+
+def _parts(legs: int, reported: bool) -> Iterator[slice]:
+    """The legs in `PARTS` parts, after each of which progress is reported; in one part if it is not."""
+    batch = legs // PARTS + 1 if reported else legs
+    return (slice(first, first + batch) for first in range(0, legs, batch))
 
 
 def _legs(schedule: Schedule, count: int, sample_interval: float) -> tuple[Floats, Floats, NDArray[np.intc]]:

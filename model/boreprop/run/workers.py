@@ -13,7 +13,7 @@ from multiprocessing import get_context, parent_process
 from queue import Empty, SimpleQueue
 from threading import Thread
 from time import perf_counter
-from typing import TypeVar
+from typing import Generic, TypeVar
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -22,6 +22,7 @@ CHUNK = 0.25  # s of work sent to a worker at once: more would delay progress, l
 TICK = 0.25  # s of waiting for a result after which control returns to the caller, who may save or report progress
 AHEAD = 2  # chunks submitted for each of our processes: one at work and one waiting, so that none stands idle
 SUBMITTED = 1000  # chunks submitted to an executor of the caller's, whose number of workers is not known
+CLOCK = 1e-6  # s, for a chunk that took no measurable time
 LIVES = 2  # an item is given up once this many workers have died while working on it alone
 
 
@@ -67,54 +68,81 @@ def work(
     if executor is None:
         pickle.dumps(function)  # raises here if it cannot be pickled, where our pool might wait for ever
     workers = _cores() if workers is None else workers
-    slots = SUBMITTED if executor else AHEAD * workers
     pool = _Pool(executor, workers)
-    serial = count()
-    waiting, suspects, deaths = deque(items), deque[int](), dict.fromkeys(items, 0)
-    running: dict[Future[tuple[list[R], float]], list[int]] = {}
-    done: SimpleQueue[Future[tuple[list[R], float]]] = SimpleQueue()
-    chunk, alone, fruitless = 1, False, True
-
-    def submit(keys: list[int]) -> None:
-        future = pool.submit(partial(_apply, function, [items[key] for key in keys], next(serial)))
-        running[future] = keys
-        future.add_done_callback(done.put)
-
+    tasks = _Work(function, items, pool, SUBMITTED if executor else AHEAD * workers)
     try:
-        while waiting or suspects or running:
-            if not running:
-                alone = bool(suspects)
-                if alone:
-                    submit([suspects.popleft()])
-            while waiting and not suspects and not alone and len(running) < slots:
-                submit([waiting.popleft() for _ in range(min(chunk, ceil(len(waiting) / slots)))])
+        while tasks.unfinished:
+            tasks.send()
             try:
-                future = done.get(timeout=TICK)
+                future = tasks.done.get(timeout=TICK)
             except Empty:
                 yield []
                 continue
-            keys = running.pop(future)
-            try:
-                results, seconds = future.result()
-            except Exception as error:
-                if not _lost(error):
-                    raise
-                if alone:
-                    deaths[keys[0]] += 1
-                if deaths[keys[0]] < LIVES:
-                    suspects.extend(keys)
-                elif fruitless:
-                    raise
-                else:
-                    yield [(keys[0], WorkerLost(str(error)))]
-            else:
-                fruitless = False
-                chunk = max(1, int(CHUNK * len(keys) / max(seconds, 1e-6)))
-                yield list(zip(keys, results, strict=True))
+            if results := tasks.take(future):
+                yield results
     finally:
-        for future in running:
+        for future in tasks.running:
             future.cancel()
         pool.close()
+
+
+class _Work(Generic[T, R]):
+    """Items on their way through a pool: waiting, running, or suspected of having killed a worker."""
+
+    def __init__(self, function: Callable[[T], R], items: Mapping[int, T], pool: "_Pool", slots: int) -> None:
+        self.function, self.items, self.pool, self.slots = function, items, pool, slots
+        self.waiting, self.suspects, self.deaths = deque(items), deque[int](), dict.fromkeys(items, 0)
+        self.running: dict[Future[tuple[list[R], float]], list[int]] = {}
+        self.done: SimpleQueue[Future[tuple[list[R], float]]] = SimpleQueue()
+        self.serial = count()
+        self.chunk = 1  # items that are sent at once
+        self.alone = False  # whether a suspect runs, and nothing beside it
+        self.fruitless = True  # until there is a first result
+
+    @property
+    def unfinished(self) -> bool:
+        """Whether there are items without a result."""
+        return bool(self.waiting or self.suspects or self.running)
+
+    def send(self) -> None:
+        """Send a suspect, alone, once nothing else runs; where there are none, as many chunks as there are slots."""
+        if not self.running:
+            self.alone = bool(self.suspects)
+            if self.alone:
+                self._submit([self.suspects.popleft()])
+        while self.waiting and not self.suspects and not self.alone and len(self.running) < self.slots:
+            size = min(self.chunk, ceil(len(self.waiting) / self.slots))
+            self._submit([self.waiting.popleft() for _ in range(size)])
+
+    def _submit(self, keys: list[int]) -> None:
+        items = [self.items[key] for key in keys]
+        future = self.pool.submit(partial(_apply, self.function, items, next(self.serial)))
+        self.running[future] = keys
+        future.add_done_callback(self.done.put)
+
+    def take(self, future: Future[tuple[list[R], float]]) -> list[tuple[int, R | WorkerLost]]:
+        """The results of a chunk that is done; if its worker has died, its items are suspects."""
+        keys = self.running.pop(future)
+        try:
+            results, seconds = future.result()
+        except Exception as error:
+            if not _lost(error):
+                raise
+            return self._suspect(keys, error)
+        self.fruitless = False
+        self.chunk = max(1, int(CHUNK * len(keys) / max(seconds, CLOCK)))
+        return list(zip(keys, results, strict=True))
+
+    def _suspect(self, keys: list[int], error: Exception) -> list[tuple[int, R | WorkerLost]]:
+        """Have items whose worker has died tried again, alone; give up one that was alone and has no lives left."""
+        if self.alone:
+            self.deaths[keys[0]] += 1
+        if self.deaths[keys[0]] < LIVES:
+            self.suspects.extend(keys)
+            return []
+        if self.fruitless:
+            raise error
+        return [(keys[0], WorkerLost(str(error)))]
 
 
 class _Pool:
@@ -140,10 +168,10 @@ class _Pool:
 
 
 def _cores() -> int:
-    """The number of cores that this process may use. On Windows at most 61 processes can be waited for."""
+    """The number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
-    return min(os.cpu_count() or 1, 61)
+    return min(os.cpu_count() or 1, 61)  # on Windows no more processes can be waited for
 
 
 def _processes(workers: int) -> ProcessPoolExecutor:

@@ -24,8 +24,11 @@ from .roots import SMALLEST_ETA_PI, Verdict, touching_stabilizers
 VERDICTS = tuple(Verdict)  # the index of a verdict is its code in a chart
 STABLE, DRIFT, OSCILLATORY = range(3)
 REAL_AXIS = np.concatenate([np.logspace(-7.0, -2.0, 16), np.arange(0.02, 3.0, 0.03), np.logspace(0.5, 4.0, 60)])
-"""The ν > 0 between which real roots are located: two roots between neighbours are not seen."""
-SMALLEST_LAMBDA2 = 0.05
+"""The ν > 0 between which real roots are located: two roots between neighbours are not seen. Dense where drifts are."""
+SMALLEST_LAMBDA2 = 0.05  # no stabilizers are closer: even their blades are longer than a twentieth of ℓ₁
+PAPERS_CRITICAL = 0.15  # ηΠ of the case study of the paper, rounded: a chart is drawn around it if no other is given
+FROM, TO = 0.4, 2.4  # λ₂ of a chart, at least: about that of the second stabilizer in usual BHAs
+COLUMNS, ROWS = 300, 200  # of a chart: its steps are finer than the pixels of its panels, and it takes seconds
 
 Integers = NDArray[np.int64]
 
@@ -85,13 +88,17 @@ class Chart:
     panels: tuple[Panel, ...]
 
 
-def usual_grid(bha: BottomHoleAssembly, eta_pi: float, critical: float = 0.15) -> tuple[Floats, Floats]:
-    """The ηΠ and λ₂ of a chart whose range includes the case, at `eta_pi`, and the `critical` ηΠ well inside."""
+def usual_grid(bha: BottomHoleAssembly, eta_pi: float, critical: float = PAPERS_CRITICAL) -> tuple[Floats, Floats]:
+    """The ηΠ and λ₂ of a chart with room around the case, which is at `eta_pi`, and around the `critical` ηΠ.
+
+    The largest values are at least four times the critical ηΠ, and one and a half times the ηΠ and λ₂ of the case.
+    """
     lambda2 = lambda_2(bha)
-    highest = max(4.0 * critical, 1.5 * eta_pi, 300 * SMALLEST_ETA_PI)
+    highest = max(4.0 * critical, 1.5 * eta_pi, COLUMNS * SMALLEST_ETA_PI)
+    lowest = max(min(FROM, lambda2 / 1.5), SMALLEST_LAMBDA2)
     return (
-        np.linspace(highest / 300, highest, 300),
-        np.linspace(max(min(0.4, lambda2 / 1.5), SMALLEST_LAMBDA2), max(2.4, 1.5 * lambda2), 200),
+        np.linspace(highest / COLUMNS, highest, COLUMNS),
+        np.linspace(lowest, max(TO, 1.5 * lambda2), ROWS),
     )
 
 

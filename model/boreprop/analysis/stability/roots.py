@@ -15,7 +15,6 @@ from ...case.case import Case
 from ...core.checks import check_number
 from ...core.errors import ParameterError
 from ...core.system import BitRock, BottomHoleAssembly, scale
-from ...core.system import eta_pi as scaled_weight
 from ...errors import InputError, RootsNotFound
 from .characteristic import Characteristic
 from .zeros import Strip, find_zeros
@@ -136,7 +135,7 @@ def find_roots(
     (<Verdict.OSCILLATORY: 'oscillatory'>, 18.174)
     """
     if eta_pi is None:
-        eta_pi = scaled_weight(case.bha, case.bit, case.active_weight_on_bit)
+        eta_pi = case.eta_pi
     if inclination is None:
         inclination = case.survey.inclination[-1]
     check_number("eta_pi", eta_pi, at_least=SMALLEST_ETA_PI)
@@ -218,7 +217,7 @@ def touching_stabilizers(bha: BottomHoleAssembly, numbers: Iterable[int]) -> tup
     wanted, last = set(numbers), len(bha.stabilizer_clearances)
     for number in wanted:
         if not 1 <= number <= last:
-            raise ParameterError("contact", f"must be numbers of non-ideal stabilizers, 1 to {last} here", number)
+            raise ParameterError("contact", f"must be the number of a non-ideal stabilizer; there are {last}", number)
     return tuple(int(i in wanted or not clearance) for i, clearance in enumerate(bha.stabilizer_clearances, 1))
 
 
@@ -263,7 +262,7 @@ def rightmost_roots(
     frequencies, rightmost = characteristic.outline(eta_pi, abscissa - MARGIN / reach)
     if frequencies[-1] * reach > 2 * pi * MOST_ROOTS:
         raise ParameterError(
-            "abscissa", f"must be nearer to 0, too many roots lie right of it at ηΠ = {eta_pi:g}", abscissa
+            "abscissa", f"must be nearer to 0: right of it lie too many roots at ηΠ = {eta_pi:g}", abscissa
         )
     try:
         roots = find_zeros(
@@ -276,7 +275,7 @@ def rightmost_roots(
             SMOOTH / reach,
         )
     except ArithmeticError as error:
-        raise RootsNotFound(f"the roots at ηΠ = {eta_pi:.6g}: {error}; use a slightly other --eta-pi") from error
+        raise RootsNotFound(f"the roots at ηΠ = {eta_pi:.6g}: {error}; use a slightly different --eta-pi") from error
     roots = roots[roots.real >= abscissa]
     if not len(roots):
         return rightmost_roots(characteristic, eta_pi, abscissa + usual_abscissa(characteristic))

@@ -87,13 +87,13 @@ def find_zeros(
         zeros = distinct(np.concatenate([newton(function, piece) for piece in starts]))
         for _ in range(SEARCHES):
             counted = strip._replace(left=clear_abscissa(zeros, wide.left, strip.left))
-            missing = count(function, counted, spacing) - number(zeros, counted.left)
-            if missing == 0:
+            found, expected = number(zeros, counted.left), count(function, counted, spacing)
+            if found == expected:
                 return zeros[zeros.real > counted.left]
-            if missing < 0:
+            if found > expected:
                 break
             zeros = np.concatenate([zeros, beside(function, zeros)])
-    raise ArithmeticError(f"{missing} more zeros lie in {counted} than were found")
+    raise ArithmeticError(f"{found} were found, but by the argument principle there are {expected}")
 
 
 def number(zeros: Complexes, left: float) -> int:
@@ -144,7 +144,7 @@ def turning(function: Function, at: Complexes) -> float:
         if not len(coarse):
             return float(np.angle(value[1:] / value[:-1]).sum())
         if length[coarse].min() < SAME**2:
-            raise ArithmeticError(f"a zero lies on the edge of the region, between {at[0]} and {at[-1]}")
+            raise ArithmeticError(f"one lies on the edge of the region searched, between {at[0]:.6g} and {at[-1]:.6g}")
         between = (at[coarse] + at[coarse + 1]) / 2
         new_value, new_slope = function(between)
         at = np.insert(at, coarse + 1, between)

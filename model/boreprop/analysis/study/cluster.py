@@ -25,7 +25,7 @@ def on_cluster(address: str | None) -> Generator[Executor | None]:
     try:
         from distributed import Client
     except ImportError as error:
-        raise InputError("--dask: must have Dask installed, got none: pip install distributed") from error
+        raise InputError("--dask: distributed must be installed for this: pip install distributed") from error
     logging.getLogger("distributed").setLevel(logging.CRITICAL)  # errors come as exceptions, too
     try:
         client = Client(address, timeout=PATIENCE)  # type: ignore[no-untyped-call]

@@ -13,7 +13,6 @@ from ...analysis.steering import (
     steady_response,
 )
 from ...case.case import Case
-from ...core.system import eta_pi
 from ...units import UNITS
 
 USUAL_FORCE = 30e3  # N: about the force of the pads of a large tool
@@ -88,7 +87,7 @@ def summarize(case: Case, inclination: float | None = None, force_limit: float |
     return SteeringSummary(
         inclination=inclination,
         active_weight_on_bit=case.active_weight_on_bit,
-        eta_pi=eta_pi(case.bha, case.bit, case.active_weight_on_bit),
+        eta_pi=case.eta_pi,
         curve=build_rate_curve(case, inclination, force_limit),
         without_gravity=build_rate_curve(case, inclination, force_limit, gravity=False),
         free=steady_response(case, 0.0, inclination),
