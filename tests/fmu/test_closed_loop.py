@@ -186,7 +186,7 @@ def test_libcosim_gives_the_same(ssp: Path, run: Run) -> None:
 def same_hole(theirs: Trajectory, ours: Trajectory) -> None:
     """Ecos passes outputs on before they can be read: what answers to the force at once is that of the next step."""
     names = [name for name in ours.columns if name not in ("time", *scalar_names(INPUTS, 0))]
-    names = [name for name in names if not quantity_of(name).follows]
+    names = [name for name in names if not {"rss_force", "active_weight_on_bit"} & set(quantity_of(name).follows)]
     assert {"bit_inclination", "average_inclination[1]", "displacement"} <= set(names)
     for name in names:
         np.testing.assert_allclose(theirs[name], ours[name], rtol=1e-10, atol=1e-10, err_msg=name)

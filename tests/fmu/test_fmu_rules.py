@@ -15,13 +15,19 @@ from places import HOSTS
 OK: tuple[str, list[Any]] = ("ok", [])
 
 
-@pytest.fixture(scope="module")
-def answers(fmu: Path) -> dict[str, Any]:
-    """What fmu_rules_host.py reports, all from one process; and what went to stderr."""
-    command = [sys.executable, str(HOSTS / "fmu_rules_host.py"), "fine_print", str(fmu)]
+def host(scenario: str, fmu: Path) -> tuple[Any, str]:
+    """What a scenario of fmu_rules_host.py gives, and what went to stderr."""
+    command = [sys.executable, str(HOSTS / "fmu_rules_host.py"), scenario, str(fmu)]
     done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", timeout=120)
     assert done.returncode == 0, done.stderr
-    return {**json.loads(done.stdout), "stderr": done.stderr}
+    return json.loads(done.stdout), done.stderr
+
+
+@pytest.fixture(scope="module")
+def answers(fmu: Path) -> dict[str, Any]:
+    """The answers to all that the standard has rules for, from one process."""
+    reports, stderr = host("fine_print", fmu)
+    return {**reports, "stderr": stderr}
 
 
 def assert_refused(answer: Any, status: str, message: str) -> None:
@@ -115,6 +121,12 @@ def test_what_keeps_an_fmu_from_starting_goes_to_stderr_once(answers: dict[str, 
 @both_flavours
 def test_instances_leave_the_hosts_path_of_modules_alone(answers: dict[str, Any]) -> None:
     assert answers["path"] == [0, False]
+
+
+def test_an_interpreter_without_ctypes_runs_it_all_the_same(fmu: Path) -> None:
+    (same, refused), _ = host("without_ctypes", fmu)
+    assert same
+    assert_refused(refused, "discard", "current_time: must be 0.7, where the last step ended, got 0.0")
 
 
 @both_flavours

@@ -144,6 +144,18 @@ def bounds(one: Instance) -> object:
     return [[name for name, _ in given], refused]
 
 
+def without_ctypes(fmu: str) -> object:
+    """Whether instances in an interpreter without ctypes give the same, and what is logged of a bad step."""
+    sys.modules["ctypes"] = None  # type: ignore[assignment]
+    with instance(fmu) as one:
+        rows = []
+        for _ in range(50):
+            one.slave.fmi2FreeInstance(one.slave.component)
+            one.slave.instantiate(callbacks=one.slave.callbacks, loggingOn=True)
+            rows.append(one.initialize().steps(1, 0.7))
+        return [rows == rows[:1] * 50, answer(one, one.slave.doStep, 0.0, 1.0)]
+
+
 def fine_print(fmu: str) -> object:
     """The answers of all that is above, by name."""
     scenarios = (wrong_order, fixed_parameter, stop_time, points, tolerance, signs, user, path, bounds, silent)

@@ -402,6 +402,7 @@ def endure(fmu: str, count: str) -> object:
         def wrong_state() -> str:
             statuses = f"{attempt(one.set_state, bad)}, {one.step(0.5)}"
             one.set_state(good)
+            one.time = 0.0
             return statuses
 
         def wrong_reference() -> str:

@@ -125,7 +125,10 @@ def uninterrupted() -> Iterator[None]:
 def _check_readable(directory: str) -> None:
     """Raise `InputError` if the name of a directory is not plain ASCII, since pythonfmu would crash on it."""
     if "%" in Path(directory).as_uri().replace("%20", " "):
-        raise InputError(f"TMPDIR: the temporary directory must have a plain ASCII name, got {directory}")
+        raise InputError(
+            "TMPDIR: the temporary directory must have a plain ASCII name, or the FMU be built with --runtime native, "
+            f"got {directory}"
+        )
 
 
 def _release_runtime(library: Any) -> None:

@@ -50,8 +50,10 @@ needed. On Linux, a host that is not Python itself must preload libpython. All t
 is completed; a discarded step does not use it up. After that step the input keeps the value that it has reached. Over
 the step the rate of penetration is linear in time, force and weight on bit are linear in the drilled length.""",
         "errors": f"""{DISCARDED} After bad parameters, fmi2ExitInitializationMode and every step give fmi2Error until
-the instance is reset (fmi2Reset). Outputs that cannot be computed are NaN, with fmi2Error. A state that is not a valid
-state of this FMU is refused with fmi2Error and changes nothing; a valid one may come from another process or platform.
+the instance is reset (fmi2Reset). A step that does not begin where the last one ended, by more than 1e-9 of its size,
+or that ends beyond the stop time gives fmi2Error and moves nothing. Outputs that cannot be computed are NaN, with
+fmi2Error. A state that is not a valid state of this FMU is refused with fmi2Error and changes nothing; a valid one may
+come from another process or platform.
 """,
         "hosts": """Any. The folder binaries/ shows for which platforms this FMU is compiled. For others compile
 sources/fmi2.c with a C99 compiler and the headers of FMI 2.0; it needs no library except libm:

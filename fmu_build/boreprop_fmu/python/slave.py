@@ -53,7 +53,8 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         forget(self.resources)
         packed = json.loads(Path(self.resources, "fmu.json").read_text(encoding="utf-8"))
         self.guid: str = packed["guid"]
-        self._log_switch = kwargs["logger"] + packed["log_switch"] if packed["log_switch"] else None
+        logger, place = kwargs.get("logger"), packed["log_switch"]
+        self._log_switch = logger + place if logger and place else None
         self._n: int = packed["stabilizers"]
         self._survey = Survey(**{name: tuple(values) for name, values in packed["survey"].items()})
         self._scalars = [(name, quantity) for quantity in VARIABLES for name in quantity.names(self._n)]
@@ -82,8 +83,10 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
 
     def exit_initialization_mode(self) -> None:
         """From here on parameters are fixed."""
-        left = self._call("fmi2ExitInitializationMode", (INITIALIZATION,), self._go_on_to, STEPPING)
-        if left and not self._safely(self._refresh):
+        if not self._call("fmi2ExitInitializationMode", (INITIALIZATION,), self._go_on_to, STEPPING):
+            return
+        self._stale = False  # whether it goes well or not: the log says it once
+        if not self._safely(self._refresh):
             self._tell_why_it_cannot_start()
 
     def do_step(self, current_time: float, step_size: float) -> bool:
@@ -274,22 +277,24 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
                 values[index] = self._given[name]
 
     def _set(self, references: list[int], values: list[Any], kind: str) -> None:
-        new = {}
+        given, new = self._given, {}
+        stepping = self._phase == STEPPING
         for reference, value in zip(references, values, strict=True):
             name, quantity = self._scalar(reference, kind)
             if quantity.role == "output":
                 raise ParameterError(name, "must not be set, it is an output", value)
             if value is None:
                 raise ParameterError(name, "must be text", value)
-            if quantity.role == "parameter" and self._phase == STEPPING and value != self._given[name]:
+            if stepping and quantity.role == "parameter" and value != given[name]:
                 raise ParameterError(name, "must not change after initialization", value)
             new[name] = value
-        self._chosen |= set(new)
-        if any(value != self._given[name] for name, value in new.items()):
-            self._given |= new
+        changed = [name for name, value in new.items() if value != given[name]]
+        if changed:
+            given.update(new)
             self._stale = True
-            if self._phase != STEPPING:
-                self._drilling = None
+        if not stepping:
+            self._chosen.update(new)
+            self._drilling = None if changed else self._drilling
 
     def _save(self) -> bytes:
         state = {
@@ -325,13 +330,11 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
 
     def _call(self, function: str, phases: tuple[str, ...], action: Callable[..., None], *arguments: Any) -> bool:
         """Do what a master asks for if it may ask for it in this phase. If not, the next step is discarded."""
-
-        def attempt() -> None:
-            if self._phase not in phases:
-                raise SlaveError(f"{function}: must be called in another phase, got {self._phase}")
-            action(*arguments)
-
-        done = self._safely(attempt)
+        done = self._phase in phases
+        if done:
+            done = self._safely(action, *arguments)
+        else:
+            self._log(f"{function}: must be called in another phase, got {self._phase}", Fmi2Status.error)
         if not done:
             self._refused = self._line
         return done
