@@ -174,7 +174,7 @@ def main(*others: str) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    checkouts = {"": ROOT, **{" there": Path(other).resolve() for other in others}}
+    checkouts = dict(zip(("", " there"), (ROOT, *map(Path, others)), strict=False))
     with TemporaryDirectory() as folder:
         fmus = {"empty": Path(folder, "empty.fmu")}
         pack_empty(fmus["empty"])

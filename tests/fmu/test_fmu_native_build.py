@@ -29,7 +29,7 @@ from boreprop_fmu.native.binaries import (
     is_current,
 )
 from boreprop_fmu.pack.build import build_fmu
-from conftest import Pack
+from conftest import Command, Pack
 from flavours import PYTHON
 from places import FMI_HEADERS
 
@@ -47,15 +47,16 @@ def stacked(n: int) -> BottomHoleAssembly:
 
 def test_both_flavours_describe_themselves_alike(case: Case, pack: Pack, borehole: Path) -> None:
     roots = [fromstring(contents(path)["modelDescription.xml"]) for path in (pack(case, PYTHON), borehole)]
-    interpolates = []
+    with_derivatives = []
     for root in roots:
         del root.attrib["guid"]
         simulation = root.find("CoSimulation")
         assert simulation is not None
-        interpolates.append(simulation.attrib.pop("canInterpolateInputs"))
+        names = ("canInterpolateInputs", "maxOutputDerivativeOrder", "providesDirectionalDerivative")
+        with_derivatives.append([simulation.attrib.pop(name, None) for name in names])
         for files in simulation.findall("SourceFiles"):
             simulation.remove(files)
-    assert interpolates == ["false", "true"]
+    assert with_derivatives == [["false", None, None], ["true", "1", "true"]]
     python, native = (canonicalize(tostring(root), strip_text=True) for root in roots)
     assert python == native
 
@@ -148,6 +149,28 @@ def test_a_binary_of_other_sources_is_refused(case: Case, binaries: Path, tmp_pa
     with pytest.raises(InputError, match=r"got one of others; compile it again: python -m boreprop_fmu\.native"):
         build_fmu(case, tmp_path / "a.fmu", binaries=tmp_path)
     assert not (tmp_path / "a.fmu").exists()
+
+
+def test_a_binary_that_is_asked_for_must_be_there(case: Case, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"got none; compile it: python -m boreprop_fmu\.native win64"):
+        build_fmu(case, tmp_path / "a.fmu", platforms=["win64"], binaries=tmp_path)
+    with pytest.raises(InputError, match=r"platform: must be one of linux64, .*, got 'win32'"):
+        build_fmu(case, tmp_path / "a.fmu", platforms=["win32"], binaries=tmp_path)
+    with pytest.raises(InputError, match="platforms: must be left out for the runtime python, got win64"):
+        build_fmu(case, tmp_path / "a.fmu", runtime="python", platforms=["win64"])
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_command_compiles_what_is_asked_for(command_here: Command, paper_case: Path, tmp_path: Path) -> None:
+    pytest.importorskip("ziglang")
+    done = command_here("boreprop-fmu", "build", paper_case, "--platforms", "win64", "--output", "a.fmu")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.endswith("MB, native: win64, C sources\n")
+    assert [path for path in contents(tmp_path / "a.fmu") if path.startswith("binaries")] == [
+        "binaries/win64/Borehole.dll"
+    ]
+    done = command_here("boreprop-fmu", "build", paper_case, "--platforms", "none", "--output", "b.fmu")
+    assert done.stdout.endswith("MB, native: C sources\n")
 
 
 def test_the_command_says_what_is_inside_and_what_is_not(binaries: Path, command: Any, paper_case: Path) -> None:

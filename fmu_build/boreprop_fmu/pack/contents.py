@@ -19,6 +19,7 @@ CAPABILITIES = {
     "canNotUseMemoryManagementFunctions": True,
     "canGetAndSetFMUstate": True,
     "canSerializeFMUstate": True,
+    "canInterpolateInputs": False,
 }
 NATIVE_CAPABILITIES = {
     "canInterpolateInputs": True,

@@ -68,10 +68,10 @@ def pack_binaries(identifier: str, folder: Path, platforms: Sequence[str] | None
         path = binary_path(platform, folder)
         content = path.read_bytes() if path.exists() else b""
         if not is_current(content):
-            got = "one of others" if content else "none"
+            got = "one of others; compile it again:" if content else "none; compile it:"
+            name = "" if content else f" {platform}"  # without a name this machine's own compiler will do
             raise InputError(
-                f"{path}: must be compiled from the sources as they are, got {got}; "
-                f"compile it: python -m boreprop_fmu.native {platform}"
+                f"{path}: must be compiled from the sources as they are, got {got} python -m boreprop_fmu.native{name}"
             )
         packed[f"binaries/{platform}/{identifier}{path.suffix}"] = content
     return packed

@@ -230,10 +230,9 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         # from the anchor, so that rounding does not add up from step to step
         drilled_length = max(anchor[1] + rate * (current_time + step_size - anchor[0]), drilling.drilled_length)
         if weight != 0.0:  # else off bottom, as while a pipe is connected: nothing moves
-            if drilled_length > drilling.drilled_length:
-                self._weight = weight
+            drills = drilled_length > drilling.drilled_length
             drilling.advance(drilled_length, given["rss_force"], weight)
-            self._stale = True
+            self._weight, self._stale = weight if drills else self._weight, True
         self._time, self._anchor = current_time + step_size, anchor
 
     def _refresh(self) -> None:
