@@ -24,8 +24,8 @@ app = new_app("Pack the controller and the borehole as an SSP.")
 def make_ssp(
     output: Annotated[Path, typer.Argument(metavar="SYSTEM.ssp", help="The SSP.")],
     runtime: Annotated[
-        str, typer.Option(metavar="python|native", help="What computes in the borehole's FMU.")
-    ] = "python",
+        str, typer.Option(metavar="auto|native|python", help="What computes in the borehole's FMU.")
+    ] = "auto",
 ) -> None:
     """Build both FMUs and pack them."""
     console.check_output(output, (".ssp",))

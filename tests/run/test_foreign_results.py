@@ -89,9 +89,11 @@ def test_a_run_of_our_fmu_in_libcosim_is_read(case: Case, fmu: Path, tmp_path: P
 
 FMPY_SSP = """
 import sys
+from types import SimpleNamespace
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.util import write_csv
-write_csv(sys.argv[2], simulate_ssp(sys.argv[1], stop_time=3.0, step_size=0.5))
+plan = SimpleNamespace(parameters=[SimpleNamespace(name="controller.build_length", value=1.0)])  # it reads none itself
+write_csv(sys.argv[2], simulate_ssp(sys.argv[1], stop_time=3.0, step_size=0.5, parameter_set=plan))
 """
 
 
