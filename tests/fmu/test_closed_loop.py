@@ -199,6 +199,7 @@ def test_ecos_drills_the_same_hole(ssp: Path, run: Run) -> None:
 
 
 @ecos
+@pytest.mark.usefixtures("binaries")
 def test_so_does_the_native_fmu_in_ecos(ssp: Path, run: Run) -> None:
     native = make_ssp(ssp.with_name("native.ssp"), "--runtime", "native")
     same_hole(drill(native, "ecos", 200.0), run(200.0))
