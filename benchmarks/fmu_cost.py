@@ -8,6 +8,7 @@ import os
 import resource
 import subprocess
 import sys
+import tomllib
 from collections.abc import Callable
 from pathlib import Path
 from statistics import median
@@ -50,7 +51,9 @@ LABELS = {
 def pack(checkout: Path, runtime: str, fmu: Path) -> float:
     """Pack an FMU by the command of a checkout; ms."""
     path = os.pathsep.join(str(checkout / folder) for folder in ("model", "fmu_build", "viz"))
-    program = "from boreprop_fmu.cli import main; main()"
+    scripts = tomllib.loads((checkout / "pyproject.toml").read_text(encoding="utf-8"))["project"]["scripts"]
+    module, _, function = scripts["boreprop-fmu"].partition(":")
+    program = f"from {module} import {function} as main; main()"
     arguments = ["build", str(ROOT / "examples" / "paper_case.toml"), "--runtime", runtime, "--output", str(fmu)]
     begin = perf_counter()
     subprocess.run(
@@ -115,7 +118,7 @@ def growth(slave: Any, fewer: int) -> dict[str, float]:
 
     return {
         "steps": grown(lambda: per_step(slave, STEPS // 10, STEP / 10, nothing), 10),
-        "resets": grown(lambda: (slave.reset(), initialize(slave)), RESETS // fewer),
+        "resets": grown(lambda: start_again(slave), RESETS // fewer),
         "instances": grown(lambda: be_born_again(slave), INSTANCES // max(fewer // 10, 1)),
     }
 
@@ -125,6 +128,12 @@ def initialize(slave: Any) -> None:
     slave.setupExperiment(startTime=0.0)
     slave.enterInitializationMode()
     slave.exitInitializationMode()
+
+
+def start_again(slave: Any) -> None:
+    """Reset the instance."""
+    slave.reset()
+    initialize(slave)
 
 
 def be_born_again(slave: Any) -> None:
@@ -144,8 +153,7 @@ def repeated(action: Callable[[], object], count: int) -> float:
 
 def per_step(slave: Any, count: int, step: float, before_each: Callable[[int], None]) -> float:
     """Mean cost of a step from a new start on, µs."""
-    slave.reset()
-    initialize(slave)
+    start_again(slave)
     begin = perf_counter()
     for k in range(count):
         before_each(k)
