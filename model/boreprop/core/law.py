@@ -97,17 +97,17 @@ class Law:
     def __init__(self, modes: Modes, regime: Regime, F_rss: float, eta_pi: float) -> None:
         scaled, mode = modes.scaled, modes[regime.contact]
         self.s = scaled.s  # the delays
-        psi = Linear.of(mode.F_0, self.s, F_rss, 1 / eta_pi)
+        self.bounds = [
+            Bound(bound.part, Linear.of(bound.row, self.s, F_rss, bound.scale), bound.lower, bound.upper)
+            for bound in regime.bounds(modes, eta_pi)
+        ]
+        psi = self.bounds[0].value  # without saturation
         self.theta_rate = Linear.of(mode.M, self.s, F_rss, ratio(1, scaled.epsilon * eta_pi))
         if regime.saturation:
             self.Theta = Linear(1.0, 0.0, (0.0,) * len(self.s), 0.0, -regime.saturation * scaled.psi_star)
         else:
             self.Theta = Linear(1.0 - psi.theta, -psi.Y, tuple(-c for c in psi.delayed), -psi.g, -psi.constant)
         self.relaxation = ratio(1, abs(self.theta_rate.theta + self.Theta.Y))  # length over which θ forgets
-        self.bounds = [
-            Bound(bound.part, Linear.of(bound.row, self.s, F_rss, bound.scale), bound.lower, bound.upper)
-            for bound in regime.bounds(modes, eta_pi)
-        ]
         # per change of Y(ξ−s_i) the change of Θ, once θ has followed, or that of a bounded value if it is larger
         self.gains = [
             max(abs(ratio(a, self.theta_rate.theta)) + abs(b), *(abs(bound.value.delayed[i]) for bound in self.bounds))
