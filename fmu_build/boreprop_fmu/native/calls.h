@@ -64,4 +64,13 @@ static int settable(const Component *c, fmi2ValueReference reference, const char
     return 0;
 }
 
+/* The answer to a question for a status that this FMU does not have. */
+static fmi2Status unanswered(fmi2Component instance, const char *function, fmi2StatusKind kind) {
+    Component *c = called(instance, function, ANY);
+    char why[LINE];
+    if (!c) return fmi2Error;
+    explain(why, "%s: must be asked for a status that this FMU has, got fmi2StatusKind %d", function, (int)kind);
+    return fail(c, fmi2Discard, why);
+}
+
 #endif

@@ -291,14 +291,6 @@ fmi2Status fmi2CancelStep(fmi2Component instance) {
 /* What may be asked of a step that is over: where the last good one ended, and whether the simulation ends here, as it
    does for a host that has no better step than one that was discarded. */
 
-static fmi2Status unanswered(fmi2Component instance, const char *function, fmi2StatusKind kind) {
-    Component *c = called(instance, function, ANY);
-    char why[LINE];
-    if (!c) return fmi2Error;
-    explain(why, "%s: must be asked for a status that this FMU has, got fmi2StatusKind %d", function, (int)kind);
-    return fail(c, fmi2Discard, why);
-}
-
 fmi2Status fmi2GetStatus(fmi2Component instance, const fmi2StatusKind kind, fmi2Status *value) {
     (void)value;
     return unanswered(instance, "fmi2GetStatus", kind);
