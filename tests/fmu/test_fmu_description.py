@@ -273,6 +273,13 @@ def test_the_documentation_lists_every_variable_with_its_symbol_meaning_and_star
 
 
 @both_flavours
+def test_the_documentation_allows_what_the_description_allows(page: Page, description: Element) -> None:
+    [weight] = description.iterfind(".//ScalarVariable[@name='active_weight_on_bit']/Real")
+    assert weight.attrib["min"] == "0.0"
+    assert page.cells[page.cells.index("active_weight_on_bit") + 4] == "> 0, or 0 off bottom"
+
+
+@both_flavours
 def test_the_documentation_says_where_the_flavour_falls_short_of_the_standard(
     flavour: Flavour, archive: dict[str, bytes]
 ) -> None:

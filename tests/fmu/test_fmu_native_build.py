@@ -114,6 +114,11 @@ def test_the_name_is_that_of_the_model_and_of_its_binaries(case: Case, binaries:
     description = read_description(fmu)
     assert description.coSimulation.modelIdentifier == "Well_7"
     assert drive(fmu, step=10.0, stop=20.0)["drilled_length"][-1] == 20.0
+    with zipfile.ZipFile(fmu) as archive:
+        page = archive.read("documentation/index.html").decode()
+    assert "Well_7.so" in page
+    assert "Well_7_fmi2DoStep" in page
+    assert "Borehole." not in page
 
 
 @pytest.mark.parametrize(

@@ -60,10 +60,10 @@ def describe(
     return {"modelDescription.xml": description, CASE_FILE: dump_case(case).encode()}
 
 
-def pack_manual(case: Case, runtime: str) -> dict[str, bytes]:
+def pack_manual(case: Case, identifier: str, runtime: str) -> dict[str, bytes]:
     """The icon (made by docs/make_icon.py) and the documentation."""
     icon = files("boreprop_fmu.pack").joinpath("icon.png").read_bytes()
-    return {"model.png": icon, **documents(case, runtime, start_values(case))}
+    return {"model.png": icon, **documents(case, identifier, runtime, start_values(case))}
 
 
 def start_values(case: Case) -> dict[str, float | str]:

@@ -48,10 +48,10 @@ needed. On Linux, a host that is not Python itself must preload libpython. All t
     "native": {
         "inputs": """ A derivative of an input (fmi2SetRealInputDerivatives, first order) acts over the next step that
 is completed; a discarded step does not use it up. After that step the input keeps the value that it has reached. Over
-the step the rate of penetration is linear in time, force and weight on bit are linear in the drilled length. fmi2GetDirectionalDerivative gives the change of
-any Real output with any input, as long as contacts and tilt saturation stay as they are. fmi2GetRealOutputDerivatives,
-first order, gives the change in time of the outputs that cannot jump: drilled_length, bit_inclination,
-average_inclination, displacement and true_vertical_depth.""",
+the step the rate of penetration is linear in time, force and weight on bit are linear in the drilled length.
+fmi2GetDirectionalDerivative gives the change of any Real output with any input, as long as contacts and tilt saturation
+stay as they are. fmi2GetRealOutputDerivatives, first order, gives the change in time of the outputs that cannot jump:
+drilled_length, bit_inclination, average_inclination, displacement and true_vertical_depth.""",
         "errors": f"""{DISCARDED} After bad parameters, fmi2ExitInitializationMode and every step give fmi2Error until
 the instance is reset (fmi2Reset). A step that does not begin where the last one ended, by more than 1e-9 of its size,
 or that ends beyond the stop time gives fmi2Error and moves nothing. Outputs that cannot be computed are NaN, with
@@ -61,10 +61,12 @@ come from another process or platform.
         "hosts": """Any. The folder binaries/ shows for which platforms this FMU is compiled. For others compile
 sources/fmi2.c with a C99 compiler and the headers of FMI 2.0; it needs no library except libm:
 <code>cc -shared -fPIC -O2 -ffp-contract=off -DFMI2_FUNCTION_PREFIX= -I FMI_HEADERS sources/fmi2.c -lm -o
-Borehole.so</code>. Linked into a program, the functions are called after the modelIdentifier, Borehole_fmi2DoStep.""",
+$identifier.so</code>. Linked into a program, the functions are called after the modelIdentifier,
+${identifier}_fmi2DoStep.""",
         "limits": "",
     },
 }
+RANGES = {"active_weight_on_bit": "> 0, or 0 off bottom"}  # where the FMU takes more than the model
 EXTERNAL = """\
 What a host must have to run this FMU, besides what is in it
 
@@ -86,13 +88,15 @@ The native flavour of this FMU (boreprop-fmu build --runtime native) needs none 
 """
 
 
-def documents(case: Case, runtime: str, start: Mapping[str, float | str]) -> dict[str, bytes]:
+def documents(case: Case, identifier: str, runtime: str, start: Mapping[str, float | str]) -> dict[str, bytes]:
     """The files of the folder documentation/.
 
     Parameters
     ----------
     case
         The case from which the FMU starts.
+    identifier
+        The FMU's modelIdentifier.
     runtime
         "python" or "native".
     start
@@ -107,13 +111,13 @@ def documents(case: Case, runtime: str, start: Mapping[str, float | str]) -> dic
     InputError
         If a package is installed without its license.
     """
-    written = {"index.html": page(case, runtime, start), "licenses/license.txt": license_text("boreprop")}
+    written = {"index.html": page(case, identifier, runtime, start), "licenses/license.txt": license_text("boreprop")}
     if runtime == "python":
         written |= {"externalDependencies.txt": EXTERNAL, "licenses/pythonfmu.txt": license_text("pythonfmu")}
     return {f"documentation/{name}": text.encode() for name, text in written.items()}
 
 
-def page(case: Case, runtime: str, start: Mapping[str, float | str]) -> str:
+def page(case: Case, identifier: str, runtime: str, start: Mapping[str, float | str]) -> str:
     """The page of an FMU, of which documentation.html is the frame; parameters as of `documents`."""
     frame = Template(files("boreprop_fmu.pack").joinpath("documentation.html").read_text(encoding="utf-8"))
     n = len(case.bha.stabilizer_positions)
@@ -122,7 +126,9 @@ def page(case: Case, runtime: str, start: Mapping[str, float | str]) -> str:
         f"the existing hole ends at {degrees(case.survey.inclination[-1]):.3g}°"
     )
     lines = [_line(quantity, quantity.names(n), start) for quantity in VARIABLES if quantity.names(n)]
-    return frame.substitute(case=facts, variables="\n".join(lines), **TEXTS[runtime])
+    own = {"case": facts, "identifier": identifier, "variables": "\n".join(lines)}
+    texts = {name: Template(text).substitute(own) for name, text in TEXTS[runtime].items()}
+    return frame.substitute(own, **texts)
 
 
 def _line(quantity: Quantity, names: list[str], start: Mapping[str, float | str]) -> str:
@@ -132,7 +138,7 @@ def _line(quantity: Quantity, names: list[str], start: Mapping[str, float | str]
         quantity.symbol,
         quantity.equation,
         quantity.unit,
-        quantity.range.replace(">=", "≥").replace("<=", "≤"),
+        RANGES.get(quantity.name, quantity.range).replace(">=", "≥").replace("<=", "≤"),
         ", ".join(f"{start[name]}" for name in names if name in start),
         f"{quantity.role}: {quantity.meaning}",
     ]

@@ -36,7 +36,12 @@ def pack_native(case: Case, identifier: str, binaries: Path, platforms: Sequence
         return {**description, CASE_TEXT: case_text(case, guid)}
 
     guid = identify({**code, **numbers(guid="")})
-    return {**numbers(guid), **code, **pack_binaries(identifier, binaries, platforms), **pack_manual(case, "native")}
+    return {
+        **numbers(guid),
+        **code,
+        **pack_binaries(identifier, binaries, platforms),
+        **pack_manual(case, identifier, "native"),
+    }
 
 
 def pack_sources(identifier: str) -> dict[str, bytes]:

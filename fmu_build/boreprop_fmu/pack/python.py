@@ -57,7 +57,7 @@ def pack_python(case: Case, identifier: str) -> dict[str, bytes]:
         return {**describe(case, identifier, guid), "resources/fmu.json": json.dumps(packed, indent=1).encode()}
 
     guid = identify({**code, **numbers(guid="")})
-    return {**numbers(guid), **code, **pack_runtime(identifier), **pack_manual(case, "python")}
+    return {**numbers(guid), **code, **pack_runtime(identifier), **pack_manual(case, identifier, "python")}
 
 
 def pack_code() -> dict[str, bytes]:
