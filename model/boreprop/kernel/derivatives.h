@@ -4,11 +4,10 @@
 
 #include "drilling.h"
 
-/* Slope Θ of the hole at stabilizer `i`, counted from 1; at the bit for 0. */
-static inline double inclination_at(const Drilling *d, const Present *at, int i) {
-    if (i == 0) return at->Theta;
+/* Slope Θ of the hole at stabilizer `i`, counted from 0. */
+static inline double inclination_at(const Drilling *d, int i) {
     const State *now = &d->integrator.now;
-    double xi = now->xi - d->integrator.scaled.s[i - 1];
+    double xi = now->xi - d->integrator.scaled.s[i];
     const Piece *own = piece(&now->hole, find(&now->hole, xi));
     return polynomial_slope(own->x[LATERAL], (xi - own->start) * own->rate) * own->rate;
 }
@@ -22,7 +21,7 @@ static inline double output_slope(const Drilling *d, const Present *at, Output w
         case OUT_BIT_INCLINATION: /* εηΠ θ' = M */
             return row_value(&at->mode->M, &at->loads, scaled->n) / (scaled->epsilon * eta_pi * at->l1);
         case OUT_AVERAGE_INCLINATION: /* λ_i ⟨Θ⟩_i' = Θ(ξ − s_{i−1}) − Θ(ξ − s_i) */
-            return (inclination_at(d, at, i) - inclination_at(d, at, i + 1)) / (lambda_(scaled, i) * at->l1);
+            return ((i ? inclination_at(d, i - 1) : at->Theta) - inclination_at(d, i)) / (lambda_(scaled, i) * at->l1);
         case OUT_DISPLACEMENT: return sin(at->Theta);
         case OUT_TRUE_VERTICAL_DEPTH: return cos(at->Theta);
         default: return NAN;
