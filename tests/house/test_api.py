@@ -3,8 +3,9 @@
 import ast
 import subprocess
 import sys
+from collections.abc import Callable
 from inspect import Signature, getdoc, isclass, isfunction, signature
-from typing import get_args
+from typing import Any, get_args
 
 import pytest
 
@@ -12,6 +13,7 @@ import boreprop
 from places import ROOT
 from public_names import ANALYSES, EXPLAINED, OTHERS, PUBLIC
 
+API: Any = boreprop  # for calls that types forbid
 SOURCE = ast.parse((ROOT / "model/boreprop/__init__.py").read_text(encoding="utf-8"))
 
 
@@ -60,10 +62,36 @@ def test_the_package_alone_loads_nothing_slow() -> None:
 def test_what_goes_wrong_is_one_kind_of_error() -> None:
     from boreprop import errors
     from boreprop.kernel.binding import KernelError
+    from boreprop.kernel.compiler import CompilerError
+    from boreprop.run.workers import WorkerLost
 
-    own = [kind for kind in (*vars(errors).values(), KernelError) if isclass(kind) and issubclass(kind, Exception)]
+    others = (KernelError, CompilerError, WorkerLost)
+    own = [kind for kind in (*vars(errors).values(), *others) if isclass(kind) and issubclass(kind, Exception)]
     assert len(own) > 5
     assert all(issubclass(kind, boreprop.BorepropError) for kind in own)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (
+            lambda case: API.stability_chart(case, [], [1.0]),
+            r"eta_pi: must be a list of at least one value, got \[\]",
+        ),
+        (lambda case: API.stability_chart(case, [0.1], [[1.0]]), "lambda2: must be a list of at least one value"),
+        (lambda case: API.hysteresis(case, "eta_pi", [], 0.01), "values: must be at least one value of eta_pi"),
+        (lambda case: API.critical_dogleg(case, side=0), "side: must be 1 or -1, got 0"),
+        (lambda _: API.find_rippling([0.0, 1.0], [0.0]), r"inclination: .* got the shapes \(1,\) for \(2,\)"),
+        (
+            lambda case: API.study(API.grid(case, {"eta_pi": [0.1]}), workers=0),
+            "workers: must be >= 1, got 0",
+        ),
+        (lambda case: API.simulate(case, length=1.0).stack("depth"), "the run must have a column 'depth', got "),
+    ],
+)
+def test_an_argument_that_cannot_be_is_named(call: Callable[[boreprop.Case], object], message: str) -> None:
+    with pytest.raises(boreprop.BorepropError, match=message):
+        call(boreprop.paper_case())
 
 
 def test_another_name_is_no_attribute() -> None:

@@ -22,7 +22,7 @@ from pythonfmu.fmi2slave import Fmi2Slave
 from boreprop.core.checks import check_number, check_quantity
 from boreprop.core.columns import read_columns
 from boreprop.core.drilling import Drilling
-from boreprop.core.errors import CannotContinue, ParameterError, TableError
+from boreprop.core.errors import BorepropError, ParameterError, TableError
 from boreprop.core.options import Options
 from boreprop.core.quantities import VARIABLES, Quantity, columns_of, fields_of
 from boreprop.core.survey import Survey
@@ -36,7 +36,7 @@ TIGHTEST, LOOSEST = 1e-12, 1e-5  # tolerance that a host may choose: some choose
 NOTHING: dict[str, Any] = {"Real": nan, "Integer": 0, "Boolean": False, "String": ""}  # the value of what has none
 
 
-class SlaveError(ValueError):
+class SlaveError(BorepropError):
     """The slave cannot do what it was asked. One line that says why."""
 
 
@@ -342,7 +342,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         """Do it; log why not."""
         try:
             action(*arguments)
-        except (ParameterError, CannotContinue, SlaveError) as error:
+        except BorepropError as error:
             self._log(str(error), status)
             return False
         except Exception as error:  # nobody foresaw it, so nobody knows what has moved

@@ -9,6 +9,7 @@ import numpy as np
 from ..case.case import Case
 from ..core.options import RELATIVE_TOLERANCE
 from ..core.survey import Survey
+from ..errors import InputError
 from ..run.trajectory import Stopped, Trajectory
 from .rippling import Rippling
 from .study.design import vary
@@ -102,6 +103,8 @@ def hysteresis(
     >>> [wave.ripples for wave in found.up], [wave.ripples for wave in found.down]
     ([True], [False])
     """
+    if not len(values):
+        raise InputError(f"values: must be at least one value of {name}, got none")
     ramp = _Ramp(case, name, dogleg, relative_tolerance)
     for value in values:
         ramp.at(value)  # raises if the value is out of range, before any work is done

@@ -206,7 +206,7 @@ def find_rippling(
     Raises
     ------
     InputError
-        If the run lacks a column of inclination, position, contact or saturation.
+        If the run lacks a column of inclination, position, contact or saturation, or two arrays do not fit together.
 
     Examples
     --------
@@ -219,6 +219,9 @@ def find_rippling(
         return _with_details(run, _wave_of(run, longest))
     if inclination is None:
         raise InputError("inclination: must be given with the drilled length, got None")
+    if np.shape(run) != np.shape(inclination):
+        shapes = f"{np.shape(inclination)} for {np.shape(run)}"
+        raise InputError(f"inclination: must have a value for each drilled length, got the shapes {shapes}")
     found = _find(run, inclination, inf if longest is None else longest, modes, inputs)
     return _with_course(found)
 

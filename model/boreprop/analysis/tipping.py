@@ -24,7 +24,7 @@ from ..core.checks import check_number
 from ..core.options import RELATIVE_TOLERANCE, Options
 from ..core.quantities import OUTPUTS, scalar_names
 from ..core.survey import Survey
-from ..errors import CannotContinue
+from ..errors import CannotContinue, ParameterError
 from ..run.engines import Engine, engine, start
 from ..run.trajectory import Stopped, Trajectory
 from ..run.workers import WorkerLost, work
@@ -208,7 +208,7 @@ def critical_dogleg(
     Raises
     ------
     ParameterError
-        If the limit or the tolerance is out of range.
+        If the side, the limit or the tolerance is out of range.
     Stopped
         If the integrator cannot go on.
 
@@ -220,7 +220,7 @@ def critical_dogleg(
     >>> round(degrees(found.angle), 2), found.monotonic
     (0.42, True)
     """
-    check_limits(limit, tolerance)
+    check_limits(side, limit, tolerance)
     tried: dict[float, bool] = {}
 
     def tips(turn: float) -> bool:
@@ -243,8 +243,10 @@ def critical_dogleg(
     return CriticalDogleg(angle, angle / case.bha.half_length, monotonic, ordered)
 
 
-def check_limits(limit: float, tolerance: float) -> None:
-    """Raise `ParameterError` unless the largest turn and the tolerance of a critical dogleg are in range."""
+def check_limits(side: int, limit: float, tolerance: float) -> None:
+    """Raise `ParameterError` unless the side, the largest turn and the tolerance of a critical dogleg are in range."""
+    if side not in (1, -1):
+        raise ParameterError("side", "must be 1 or -1", side)
     check_number("limit", limit, above=0.0, at_most=pi / 2)
     check_number("tolerance", tolerance, above=0.0, at_most=1.0)
 
@@ -333,7 +335,7 @@ def dogleg_map(
     InputError, ParameterError
         If the case has no stabilizer with clearance, or a value is out of range.
     """
-    check_limits(limit, tolerance)
+    check_limits(side, limit, tolerance)
     axes = clearance.tolist(), eta_pi.tolist()
     stabilizer = first_that_touches(case)
     cases = [vary(case, {"eta_pi": x, f"stabilizer_clearance[{stabilizer}]": y}) for y, x in product(*axes)]

@@ -2,7 +2,7 @@
 
 What ziglang compiles is the same byte for byte wherever, whenever and by whomever it is compiled.
 
-Needs the standard library only and imports nothing of the package: the build hook loads this file by its path.
+Needs the standard library only, for the build hook runs it before anything is installed.
 """
 
 import os
@@ -19,6 +19,8 @@ from pathlib import Path
 from platform import libc_ver, machine
 from tempfile import TemporaryDirectory
 
+from ..core.errors import BorepropError
+
 FOLDER = Path(__file__).resolve().parent  # of the kernel's sources
 
 # Results must not depend on the processor: no fused multiply-add, no -march. -O3 vectorizes the loops over the points
@@ -31,7 +33,7 @@ CACHES = {"HOME", "LOCALAPPDATA", "XDG_CACHE_HOME", "ZIG_GLOBAL_CACHE_DIR"}
 ENVIRONMENT = CACHES | {"PATH", "SYSTEMROOT", "TEMP", "TMP", "TMPDIR", "USERPROFILE"}
 
 
-class CompilerError(RuntimeError):
+class CompilerError(BorepropError, RuntimeError):
     """Nothing was compiled. The message is one line and says what is missing or wrong, and what helps."""
 
 

@@ -15,6 +15,8 @@ from threading import Thread
 from time import perf_counter
 from typing import Generic, TypeVar
 
+from ..errors import BorepropError, InputError
+
 T = TypeVar("T")
 R = TypeVar("R")
 
@@ -26,7 +28,7 @@ CLOCK = 1e-6  # s, for a chunk that took no measurable time
 LIVES = 2  # an item is given up once this many workers have died while working on it alone
 
 
-class WorkerLost(Exception):
+class WorkerLost(BorepropError):
     """An item whose worker died every time it was tried. The message is that of the last death."""
 
 
@@ -60,6 +62,8 @@ def work(
 
     Raises
     ------
+    InputError
+        If there are to be no workers.
     Exception
         Any that the function raises.
     BrokenExecutor
@@ -68,6 +72,8 @@ def work(
     if executor is None:
         pickle.dumps(function)  # raises here if it cannot be pickled, where our pool might wait for ever
     workers = _cores() if workers is None else workers
+    if workers < 1:
+        raise InputError(f"workers: must be >= 1, got {workers!r}")
     pool = _Pool(executor, workers)
     tasks = _Work(function, items, pool, SUBMITTED if executor else AHEAD * workers)
     try:

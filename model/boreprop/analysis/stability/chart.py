@@ -10,7 +10,7 @@ from math import log
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ...arrays import Floats
 from ...case.case import Case
@@ -116,10 +116,20 @@ def lambda_2(bha: BottomHoleAssembly) -> float:
     return (others[0] - first) / first
 
 
+def _axis(name: str, values: ArrayLike, smallest: float) -> Floats:
+    """The values along an axis of the chart, which increase from the smallest on."""
+    axis = np.asarray(values, dtype=float)
+    if axis.ndim != 1 or not axis.size:
+        raise ParameterError(name, "must be a list of at least one value", values)
+    check_increasing(name, tuple(axis.tolist()))
+    check_number(name, float(axis[0]), at_least=smallest)
+    return axis
+
+
 def stability_chart(
     case: Case,
-    eta_pi: Floats,
-    lambda2: Floats,
+    eta_pi: ArrayLike,
+    lambda2: ArrayLike,
     *,
     inclination: float | None = None,
     contacts: Sequence[Contact] | None = None,
@@ -165,10 +175,7 @@ def stability_chart(
     if inclination is None:
         inclination = case.survey.inclination[-1]
     lambda_2(bha)
-    check_increasing("eta_pi", tuple(eta_pi.tolist()))
-    check_number("eta_pi", float(eta_pi[0]), at_least=SMALLEST_ETA_PI)
-    check_increasing("lambda2", tuple(lambda2.tolist()))
-    check_number("lambda2", float(lambda2[0]), at_least=SMALLEST_LAMBDA2)
+    eta_pi, lambda2 = _axis("eta_pi", eta_pi, SMALLEST_ETA_PI), _axis("lambda2", lambda2, SMALLEST_LAMBDA2)
     check_number("inclination", inclination)
     scaled = scale(bha, bit)
     modes = [
