@@ -146,6 +146,18 @@ def test_errors_are_logged_always_and_discards_where_they_are_wanted(one: Instan
         one.slave.setDebugLogging(True, ["logEvents"])
 
 
+def test_a_discard_that_no_log_shows_goes_to_stderr_once(one: Instance, capfd: pytest.CaptureFixture[str]) -> None:
+    def said(on: bool) -> str:
+        one.slave.reset()
+        one.initialize(active_weight_on_bit=0.0)
+        one.slave.setDebugLogging(on, [])
+        assert [one.step(1.0), one.step(1.0)] == ["discard", "discard"]
+        return capfd.readouterr().err.partition(": ")[2]
+
+    assert said(False) == "active_weight_on_bit: must be > 0 where rate_of_penetration is > 0, got 0.0\n"
+    assert said(True) == ""
+
+
 def test_setting_texts_is_all_or_nothing(one: Instance) -> None:
     [survey, other] = [one.variables[name].valueReference for name in ("survey_file", "rss_force")]
     with refused(one, "rss_force: must be used as Real, got 'String'"):

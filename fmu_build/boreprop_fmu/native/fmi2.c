@@ -1,7 +1,8 @@
 /* The borehole as an FMI 2.0 co-simulation FMU: the kernel behind the functions of fmi2Functions.h.
 
    A call that cannot do what it was asked logs one line and gives one of two statuses. The instance goes on after both.
-   An error is logged whether the host wants debug logging or not, a discard only if it does.
+   An error is logged whether the host wants debug logging or not, a discard only if it does; else the first goes to
+   stderr.
    - fmi2Discard, from fmi2DoStep: an input or the step is bad, or the integrator fails. Nothing has moved, and the next
      step with good values works.
    - fmi2Error: the call itself is wrong; the parameters make no drilling system (then every step gives this, until
@@ -233,6 +234,7 @@ fmi2Status fmi2DoStep(fmi2Component instance, fmi2Real time, fmi2Real size, fmi2
     if (!c) return fmi2Error;
     fmi2Status status = step(c, time, size, why);
     c->discarded = status == fmi2Discard;
+    if (c->discarded && !c->logs_discards) warn(c, why);
     if (status != fmi2OK) return fail(c, status, why);
     if (c->callbacks.stepFinished) c->callbacks.stepFinished(c->callbacks.componentEnvironment, fmi2OK);
     return fmi2OK;

@@ -19,7 +19,7 @@ typedef struct {
     fmi2CallbackFunctions callbacks;
     char *name;
     int logs_discards, logs_warnings; /* errors it logs always */
-    int has_warned;                   /* on stderr, that there is no drilling system */
+    int has_warned;                   /* on stderr, of what stopped it */
     int has_tolerance;                /* the parameter for it has been set */
     Phase phase;
     PackedCase packed;
@@ -134,16 +134,19 @@ static int begin_drilling(Component *c, char why[LINE]) {
     return c->run != NULL;
 }
 
-/* Whether there is a drilling system. That there is none once the initialization is over is also said on stderr, since
-   many hosts show no log. */
-static int ready(Component *c, char why[LINE]) {
+/* Say on stderr what stops the instance, once, since many hosts show no log. */
+static void warn(Component *c, const char *why) {
     char line[2 * LINE];
+    if (c->has_warned) return;
+    snprintf(line, sizeof line, "%s: %s\n", c->name, why);
+    fputs(line, stderr);
+    c->has_warned = 1;
+}
+
+/* Whether there is a drilling system. That there is none once the initialization is over is also said on stderr. */
+static int ready(Component *c, char why[LINE]) {
     if (c->run || begin_drilling(c, why)) return 1;
-    if (c->phase == STEPPING && !c->has_warned) {
-        snprintf(line, sizeof line, "%s: %s\n", c->name, why);
-        fputs(line, stderr);
-        c->has_warned = 1;
-    }
+    if (c->phase == STEPPING) warn(c, why);
     return 0;
 }
 

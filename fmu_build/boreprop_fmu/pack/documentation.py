@@ -13,7 +13,8 @@ from .licenses import license_text
 
 DISCARDED = """A bad input is logged with its variable, its constraint and its value, and the step is discarded
 (fmi2Discard): the state is unchanged, and the next step with good values works. Errors are logged whatever the host's
-loggingOn says, and what keeps the FMU from starting is also written to stderr."""
+loggingOn says, and what keeps the FMU from starting is also written to stderr, as is the reason of the first discard
+that is not logged."""
 LIMITS = """
 <h2>Where this flavour falls short of FMI 2.0</h2>
 <p>It runs on the library of pythonfmu, which leaves some points of the standard out of its reach (sections of FMI 2.0.4
