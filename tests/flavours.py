@@ -26,8 +26,6 @@ class Flavour:
         Status of a step that cannot be right: out of order, not from where the last one ended, beyond the stop time.
     after_bad_call
         Status of the step after a call that cannot be right.
-    under_bad_input
-        What has become of the outputs while they cannot be computed from an input, see `fmu_host.outputs`.
     without_system
         With parameters that make no drilling system: statuses of the end of the initialization and of a step.
     after_bad_state
@@ -48,7 +46,6 @@ class Flavour:
     wrong_call: str
     wrong_step: str
     after_bad_call: str
-    under_bad_input: str
     without_system: tuple[str, str]
     after_bad_state: tuple[str, str]
     modules: str
@@ -67,7 +64,6 @@ PYTHON = Flavour(
     wrong_call="ok",  # pythonfmu would make fmi2Fatal of any other answer: the log says it, and the next step
     wrong_step="discard",
     after_bad_call="discard",
-    under_bad_input="kept",
     without_system=("ok", "discard"),
     after_bad_state=("discard", "unknown"),
     modules="own",
@@ -82,7 +78,6 @@ NATIVE = Flavour(
     wrong_call="error",
     wrong_step="error",
     after_bad_call="ok",
-    under_bad_input="unknown",
     without_system=("error", "error"),
     after_bad_state=("ok", "kept"),
     modules="none",

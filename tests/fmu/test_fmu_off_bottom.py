@@ -67,6 +67,13 @@ def test_progress_without_weight_is_discarded_with_its_reason(fmu: Path) -> None
 
 
 @both_flavours
+def test_pads_at_no_number_are_discarded_there_too_and_no_output_is_shown(fmu: Path) -> None:
+    status, shown, next_row = host("bad_pads", fmu)
+    assert (status, shown) == ("discard", None)
+    assert next_row["drilled_length"] == pytest.approx(4.1)
+
+
+@both_flavours
 def test_a_state_saved_off_bottom_goes_on_alike(fmu: Path) -> None:
     there, here = host("through_a_state", fmu)
     assert there == here

@@ -2,6 +2,10 @@
 
 import json
 import sys
+from contextlib import suppress
+from math import isnan, nan
+
+from fmpy.fmi1 import FMICallException
 
 from fmu_host import Instance, instance
 
@@ -43,6 +47,18 @@ def progress_without_weight(fmu: str) -> object:
         one.set(active_weight_on_bit=0.0)
         status, log = one.step(10.0), list(one.log)
         return [status, log[-1], drill(one)[0]]
+
+
+def bad_pads(fmu: str) -> object:
+    """Status of a step off bottom with pads at no number, what the outputs show then, and a good step after it."""
+    with instance(fmu) as one:
+        one.initialize()
+        drill(one)
+        one.set_names({**OFF_BOTTOM, "rss_force": nan})
+        status, shown = one.step(10.0), nan
+        with suppress(FMICallException):
+            shown = float(one.get("drilled_length"))
+        return [status, None if isnan(shown) else shown, drill(one)[0]]
 
 
 def through_a_state(fmu: str) -> object:

@@ -39,8 +39,9 @@ for the whole process (2.1). Ctrl-C is given back to the host.</li>
 TEXTS = {  # the passages in which the flavours differ
     "python": {
         "inputs": "",
-        "errors": f"""{DISCARDED} After a bad parameter the instance must be reset (fmi2Reset). After a state that is
-not a valid state of this FMU, every step is discarded until a valid one is set or the instance is reset.""",
+        "errors": f"""{DISCARDED} Outputs that cannot be computed are NaN. After a bad parameter the instance must be
+reset (fmi2Reset). After a state that is not a valid state of this FMU, every step is discarded until a valid one is set
+or the instance is reset.""",
         "hosts": """64-bit Linux and Windows, with CPython 3.10 to 3.13 and its standard library; no other package is
 needed. On Linux, a host that is not Python itself must preload libpython. All that the host must have is listed in
 <a href="externalDependencies.txt">externalDependencies.txt</a>.""",

@@ -229,7 +229,9 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
             anchor = (current_time, drilling.drilled_length, rate)
         # from the anchor, so that rounding does not add up from step to step
         drilled_length = max(anchor[1] + rate * (current_time + step_size - anchor[0]), drilling.drilled_length)
-        if weight != 0.0:  # else off bottom, as while a pipe is connected: nothing moves
+        if weight == 0.0:  # off bottom, as while a pipe is connected: nothing moves
+            check_quantity("rss_force", given["rss_force"])
+        else:
             drills = drilled_length > drilling.drilled_length
             drilling.advance(drilled_length, given["rss_force"], weight)
             self._weight, self._stale = weight if drills else self._weight, True
@@ -270,7 +272,8 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
             if quantity.role == "output":
                 if self._stale:
                     self._stale = False  # whether it goes well or not: the log says it once
-                    self._safely(self._refresh)
+                    if not self._safely(self._refresh):
+                        self._outputs = self._nothing()
                 values[index] = self._outputs[name]
             else:
                 values[index] = self._given[name]
