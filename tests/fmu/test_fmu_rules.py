@@ -91,12 +91,12 @@ def test_a_step_begins_where_the_last_one_ended(flavour: Flavour, answers: dict[
 
 @both_flavours
 def test_the_hosts_tolerance_is_taken_unless_it_is_loose_or_the_parameter_is_set(answers: dict[str, Any]) -> None:
-    taken, loose, kept, own, matters = answers["tolerance"]
+    taken, loose, kept, own, restored, matters = answers["tolerance"]
     assert taken == [1e-9, 1e-5, 1e-7]
     [(level, category, line)] = loose[1]
     assert (loose[0], level, category) == ("ok", *LOGGED["warning"])
     assert line == "tolerance: must be 1e-12 to 1e-05, got 0.001; relative_tolerance stays 1e-07"
-    assert (kept, own) == (1e-7, 1e-8)
+    assert (kept, own, restored) == (1e-7, 1e-8, 1e-8)
     assert matters
 
 

@@ -79,9 +79,13 @@ def tolerance(one: Instance) -> object:
     one.slave.reset()
     one.set(relative_tolerance=1e-8)
     one.slave.setupExperiment(tolerance=1e-9)
-    own = one.get("relative_tolerance")
+    chosen, own = one.state(), one.get("relative_tolerance")
+    one.slave.reset()
+    one.set_state(chosen)
+    one.slave.setupExperiment(tolerance=1e-9)
+    restored = one.get("relative_tolerance")
     rows = [start(one, {"rss_force": 5e3}, tolerance=given).steps(3, 20.0)[-1] for given in (1e-5, 1e-11)]
-    return [taken, loose, kept, own, rows[0] != rows[1]]
+    return [taken, loose, kept, own, restored, rows[0] != rows[1]]
 
 
 def silent(one: Instance) -> object:

@@ -5,7 +5,7 @@
 #include "instance.h"
 #include "serialized.h"
 
-enum { FIXED = 11 }; /* numbers of a state before the values of the variables */
+enum { FIXED = 12 }; /* numbers of a state before the values of the variables */
 
 static fmi2Status save(Component *c, Saved *saved) {
     Count count = c->run ? drilling_state_size(&c->run->drilling) : 0;
@@ -15,7 +15,7 @@ static fmi2Status save(Component *c, Saved *saved) {
     double *numbers = malloc((size_t)(count + 1) * sizeof *numbers);
     double fixed[FIXED] = {c->phase,         c->time,           c->since,         c->from,
                            c->rate,          c->run_has_inputs, c->derivative[0], c->derivative[1],
-                           c->derivative[2], c->weight,         (double)text};
+                           c->derivative[2], c->weight,         c->has_tolerance, (double)text};
     if (bytes && numbers) {
         for (int i = 0; i < FIXED; i++) to = put_double(to, fixed[i]);
         for (int i = 0; i < all->count; i++) to = put_double(to, all->at[i].role == OUTPUT ? 0.0 : c->value[i]);
@@ -76,7 +76,7 @@ static int restore(Component *c, const Saved *saved, char why[LINE]) {
     c->time = fixed[1], c->since = fixed[2], c->from = fixed[3], c->rate = fixed[4],
     c->run_has_inputs = fixed[5] != 0.0;
     memcpy(c->derivative, fixed + 6, sizeof c->derivative);
-    c->weight = fixed[9];
+    c->weight = fixed[9], c->has_tolerance = fixed[10] != 0.0;
     memcpy(c->value, value, sizeof value);
     return 1;
 }

@@ -29,7 +29,7 @@ from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop_fmu.python.process import forget, give_ctrl_c_back, open_log, write_to_user
 
-STATE_FORMAT = "boreprop-fmu-state-3"
+STATE_FORMAT = "boreprop-fmu-state-4"
 INSTANTIATED, INITIALIZATION, STEPPING, TERMINATED = "instantiated", "initialization", "stepping", "terminated"
 BEFORE_THE_END = (INSTANTIATED, INITIALIZATION, STEPPING)
 TIGHTEST, LOOSEST = 1e-12, 1e-5  # tolerance that a host may choose: some choose 1e-3 always, too coarse for a hole
@@ -303,6 +303,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
     def _save(self) -> bytes:
         state = {
             "given": self._given,
+            "chosen": sorted(self._chosen),
             "weight": self._weight,
             "phase": self._phase,
             "fault": self._fault,
@@ -321,7 +322,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         if sealed != self._seal(state_bytes):
             raise SlaveError(f"state: must be one of this FMU, {STATE_FORMAT} {self.guid}, got {sealed[:80]!r}")
         state = json.loads(state_bytes)
-        self._given, self._weight = state["given"], state["weight"]
+        self._given, self._chosen, self._weight = state["given"], set(state["chosen"]), state["weight"]
         self._phase, self._fault, self._refused = state["phase"], state["fault"], state["refused"]
         self._outputs, self._stale = self._nothing(), True
         self._time, self._anchor = state["time"], tuple(state["anchor"])
