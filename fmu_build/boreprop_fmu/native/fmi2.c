@@ -364,32 +364,15 @@ fmi2Status fmi2SerializedFMUstateSize(fmi2Component instance, fmi2FMUstate kept,
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component instance, fmi2FMUstate kept, fmi2Byte bytes[], size_t size) {
     Component *c = called(instance, "fmi2SerializeFMUstate", ANY);
-    const Saved *state = kept;
-    char why[LINE], line[SEAL + 1];
     if (!c || !has(c, "fmi2SerializeFMUstate", 1, kept, bytes)) return fmi2Error;
-    if (size < SEAL + state->size) {
-        explain(why, "size: must be at least %lu, got %lu", (unsigned long)(SEAL + state->size), (unsigned long)size);
-        return fail(c, fmi2Error, why);
-    }
-    seal(c->packed.guid, state->bytes, state->size, line);
-    memcpy(bytes, line, SEAL);
-    memcpy(bytes + SEAL, state->bytes, state->size);
-    return fmi2OK;
+    return serialize(c, kept, bytes, size);
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component instance, const fmi2Byte bytes[], size_t size, fmi2FMUstate *kept) {
     Component *c = called(instance, "fmi2DeSerializeFMUstate", ANY);
     char why[LINE];
     if (!c || !has(c, "fmi2DeSerializeFMUstate", 1, kept, bytes)) return fmi2Error;
-    *kept = NULL;
-    if (!is_sealed((const unsigned char *)bytes, size, c->packed.guid, why)) return fail(c, fmi2Error, why);
-    Saved *state = malloc(sizeof *state);
-    if (state) state->size = size - SEAL, state->bytes = malloc(size);
-    if (state && state->bytes) {
-        memcpy(state->bytes, bytes + SEAL, state->size);
-        *kept = state;
-        return fmi2OK;
-    }
-    free(state);
-    return fail(c, fmi2Error, "state: must fit into the memory");
+    Saved *state = deserialize(c, bytes, size, why);
+    *kept = state;
+    return state ? fmi2OK : fail(c, fmi2Error, why);
 }

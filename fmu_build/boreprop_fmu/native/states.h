@@ -81,4 +81,31 @@ static int restore(Component *c, const Saved *saved, char why[LINE]) {
     return 1;
 }
 
+/* Write a state, sealed, into memory of the host. */
+static fmi2Status serialize(const Component *c, const Saved *state, fmi2Byte bytes[], size_t size) {
+    char why[LINE], line[SEAL + 1];
+    if (size < SEAL + state->size) {
+        explain(why, "size: must be at least %lu, got %lu", (unsigned long)(SEAL + state->size), (unsigned long)size);
+        return fail(c, fmi2Error, why);
+    }
+    seal(c->packed.guid, state->bytes, state->size, line);
+    memcpy(bytes, line, SEAL);
+    memcpy(bytes + SEAL, state->bytes, state->size);
+    return fmi2OK;
+}
+
+/* A state that was written so; NULL with `why` if it is not one of this FMU. */
+static Saved *deserialize(const Component *c, const fmi2Byte bytes[], size_t size, char why[LINE]) {
+    if (!is_sealed((const unsigned char *)bytes, size, c->packed.guid, why)) return NULL;
+    Saved *state = malloc(sizeof *state);
+    if (state) state->size = size - SEAL, state->bytes = malloc(size);
+    if (state && state->bytes) {
+        memcpy(state->bytes, bytes + SEAL, state->size);
+        return state;
+    }
+    free(state);
+    explain(why, "state: must fit into the memory");
+    return NULL;
+}
+
 #endif
