@@ -60,7 +60,7 @@ def stop_time(one: Instance) -> object:
     up_to_it = [one.step(0.1) for _ in range(10)]
     beyond = answer(one, one.slave.doStep, one.time, 0.1)
     start(one, stop=1.0)
-    return [too_far, up_to_it, beyond, answer(one, one.slave.doStep, 0.0, 1.0 + 5e-4)[0]]
+    return [too_far, up_to_it, beyond, answer(one, one.slave.doStep, 0.0, 1.0 + 5e-10)[0]]
 
 
 def points(one: Instance) -> object:

@@ -41,7 +41,7 @@ static int drill_on(Component *c, double to, const double end[INPUT_COUNT], char
 static fmi2Status check_step(
     const Component *c, double time, double size, const double end[INPUT_COUNT], char why[LINE]
 ) {
-    double late = c->stop + larger(1e-12 * fabs(c->stop), 1e-3 * size); /* a host may add up rounding errors */
+    double late = c->stop + 1e-9 * larger(fabs(c->stop), size); /* a host may add up rounding errors */
     Problem problem;
     if (!check_finite(Q_CURRENT_TIME, 0, time, &problem) || !check_positive(Q_STEP_SIZE, size, &problem)) {
         tell(&problem, why);

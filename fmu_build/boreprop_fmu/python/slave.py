@@ -215,7 +215,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
             if not isclose(current_time, self._time, rel_tol=1e-14, abs_tol=1e-9 * step_size):  # hosts add up
                 raise ParameterError("current_time", f"must be {self._time!r}, where the last step ended", current_time)
         end = current_time + step_size
-        if end > self._stop and end > self._stop + max(1e-12 * abs(self._stop), 1e-3 * step_size):  # in a very long run
+        if end > self._stop and end > self._stop + 1e-9 * max(abs(self._stop), step_size):  # hosts add up
             check_number("current_time + step_size", end, at_most=self._stop)
 
     def _step(self, current_time: float, step_size: float) -> None:

@@ -106,8 +106,9 @@ class Integrator:
         self.kinks = Kinks(self.scaled.s)
         for kink, jump in self.hole.kinks:
             self.kinks.add_images(kink, 2, jump)
-        self.present = Step.standstill(0.0, self.hole.final_inclination, 0.0)  # the step that the bit is in
-        self._restart(F_rss, eta_pi, self.hole.final_inclination)
+        theta = self.hole.final_inclination
+        self.present = Step.standstill(0.0, theta, 0.0)  # the step that the bit is in
+        self._restart(self._loads(0.0, theta, 0.0, F_rss), eta_pi, theta)
 
     # moving
 
@@ -163,10 +164,11 @@ class Integrator:
             self._take_step()
 
     def _steer(self, F_rss: float, eta_pi: float) -> None:
-        before = self.inclination()
+        loads, (theta, Y) = self.loads(), self.present.state(self.xi)
+        before = self._inclination(theta, loads, self.eta_pi)
         self._move_path(self.xi)
-        self.present = Step.standstill(self.xi, *self.present.state(self.xi))
-        self._restart(F_rss, eta_pi, before)
+        self.present = Step.standstill(self.xi, theta, Y)
+        self._restart(loads._replace(F_rss=F_rss), eta_pi, before)
 
     # looking
 
@@ -252,10 +254,9 @@ class Integrator:
         self.F_rss, self.eta_pi = F_rss, eta_pi
         self._laws = Laws(self.modes, F_rss, eta_pi)
 
-    def _restart(self, F_rss: float, eta_pi: float, Theta: float) -> None:
+    def _restart(self, loads: Loads, eta_pi: float, Theta: float) -> None:
         """Take over inputs, find the regime under them, and mark the jump of the inclination, which was Θ so far."""
-        self._take_over(F_rss, eta_pi)
-        loads = self.loads()
+        self._take_over(loads.F_rss, eta_pi)
         mode, psi_star = self.settled(loads), self.scaled.psi_star
         F_0 = mode.F_0(loads)
         jump = abs(self.present.theta[0] - bit_tilt(F_0, self.eta_pi, psi_star) - Theta)

@@ -35,14 +35,6 @@ static inline double inclination_under(Integrator *p, double theta, const Loads 
     return theta - bit_tilt(row_value(&mode->F_0, loads, p->scaled.n), eta_pi, p->scaled.psi_star);
 }
 
-/* Θ at the bit. */
-static inline double inclination(Integrator *p) {
-    double x[COMPONENTS];
-    Loads loads = present_loads(p);
-    step_state(&p->now.step, p->now.xi, x);
-    return inclination_under(p, x[ANGLE], &loads, p->now.inputs.eta_pi);
-}
-
 /* Θ as it was when the bit was at `xi`, at most LOOK_BACK behind; where Θ jumped, its value after the jump. */
 static inline double earlier_inclination(Integrator *p, double xi) {
     const Hole *hole = &p->now.hole;
@@ -68,14 +60,13 @@ static inline void position(const State *now, double *x, double *z) {
 /* Take over inputs where the bit is, in the state `x`: find the regime under them, and mark the jump of the inclination,
    which was Θ so far. */
 static inline Status restart(
-    Integrator *p, ScaledInputs inputs, const double x[COMPONENTS], double Theta, Problem *problem
+    Integrator *p, ScaledInputs inputs, const double x[COMPONENTS], const Loads *loads, double Theta, Problem *problem
 ) {
     State *now = &p->now;
     now->inputs = inputs, now->inputs_xi = now->xi;
     now->step = standstill(now->xi, x);
-    Loads loads = present_loads(p);
-    const Mode *mode = settle(&p->modes, &loads, now->regime.contact);
-    double F_0 = row_value(&mode->F_0, &loads, p->scaled.n), psi_star = p->scaled.psi_star;
+    const Mode *mode = settle(&p->modes, loads, now->regime.contact);
+    double F_0 = row_value(&mode->F_0, loads, p->scaled.n), psi_star = p->scaled.psi_star;
     double jump = fabs(x[ANGLE] - bit_tilt(F_0, inputs.eta_pi, psi_star) - Theta);
     if (!isfinite(jump) || !isfinite(F_0)) return failed(p, NOT_FINITE, now->xi, problem);
     Regime regime = {mode->contact, side_beyond(F_0 / inputs.eta_pi, -psi_star, psi_star, ROUNDING)};
@@ -87,10 +78,13 @@ static inline Status restart(
 /* Take over inputs on the way: the path up to the bit, and the jump of curvature where a slope changes, count too. */
 static inline Status steer(Integrator *p, ScaledInputs inputs, Problem *problem) {
     State *now = &p->now;
-    double Theta = inclination(p), bend = inputs.F_rss_slope - now->inputs.F_rss_slope, x[COMPONENTS];
-    move_path(now, now->xi);
+    double bend = inputs.F_rss_slope - now->inputs.F_rss_slope, x[COMPONENTS];
+    Loads loads = present_loads(p);
     step_state(&now->step, now->xi, x);
-    Status status = restart(p, inputs, x, Theta, problem);
+    double Theta = inclination_under(p, x[ANGLE], &loads, now->inputs.eta_pi);
+    move_path(now, now->xi);
+    loads.F_rss = inputs.F_rss;
+    Status status = restart(p, inputs, x, &loads, Theta, problem);
     if (status != DONE || bend == 0 || now->regime.saturation) return status;
     const Mode *mode = mode_of(&p->modes, now->regime.contact);
     add_kink(&now->kinks, p->scaled.n, now->xi, 2, fabs(bend * mode->F_0.rss / inputs.eta_pi));
@@ -142,7 +136,8 @@ static inline Status begin(Integrator *p, const Survey *survey, ScaledInputs inp
     take_kinks(&now->hole, &now->kinks, survey, p->length_scale, reach);
     for (Count k = 0; k < now->hole.end; k++)
         if (!check_finite(Q_STATION_RATE, 0, piece(&now->hole, k)->rate, problem)) return FAILED;
-    if (restart(p, inputs, x, x[ANGLE], problem) == DONE) return DONE;
+    Loads loads = loads_at(p, now->xi, x, inputs.F_rss);
+    if (restart(p, inputs, x, &loads, x[ANGLE], problem) == DONE) return DONE;
     wrong(problem, NO_START, Q_PARAMETERS, 0, NAN, NAN);
     return FAILED;
 }
