@@ -1,6 +1,7 @@
 """A drilling run in SI units: the shell around the integrator that `simulate` and the FMU share."""
 
 from collections.abc import Iterable
+from math import nan
 from typing import Any
 
 from .checks import check_number, check_quantity
@@ -53,6 +54,7 @@ class Drilling:
         self._bha, self._bit = bha, bit
         self._length, self._force = bha.length_scale, bha.force_scale
         self.drilled_length = 0.0
+        self._given = self._inputs = (nan, nan)  # the inputs that were given last, in N and in the paper's numbers
         scaled, inputs = scale(bha, bit), self._scaled_inputs(rss_force, active_weight_on_bit)
         try:
             self.integrator = Integrator(Modes(scaled), survey, self._length, *inputs, options)
@@ -63,13 +65,16 @@ class Drilling:
 
     def _scaled_inputs(self, rss_force: float, active_weight_on_bit: float) -> tuple[float, float]:
         """F_RSS and ηΠ; `ParameterError` if these numbers, or the inputs, are out of range."""
+        if (rss_force, active_weight_on_bit) == self._given:
+            return self._inputs
         check_quantity("rss_force", rss_force)
         check_quantity("active_weight_on_bit", active_weight_on_bit)
         F_rss, own_eta_pi = rss_force / self._force, eta_pi(self._bha, self._bit, active_weight_on_bit)
         check_number(DERIVED["scaled_force"], F_rss)
         check_number("eta_pi", own_eta_pi, above=0.0)
         check_number(DERIVED["inverse_eta_pi"], 1 / own_eta_pi)
-        return F_rss, own_eta_pi
+        self._given, self._inputs = (rss_force, active_weight_on_bit), (F_rss, own_eta_pi)
+        return self._inputs
 
     def advance(self, drilled_length: float, rss_force: float, active_weight_on_bit: float) -> None:
         """Drill on under inputs held from here.
