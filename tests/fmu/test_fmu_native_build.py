@@ -124,7 +124,7 @@ def test_the_name_is_that_of_the_model_and_of_its_binaries(case: Case, binaries:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"runtime": "java"}, "runtime: must be auto or native or python, got 'java'"),
+        ({"runtime": "java"}, "runtime: must be auto, native or python, got 'java'"),
         ({"name": "Well 7"}, "name: must be a letter, then letters, digits and _, at most 100, got 'Well 7'"),
         ({"name": "7"}, "name: must be a letter, "),
         ({"name": ""}, "name: must be a letter, "),

@@ -8,12 +8,12 @@ import typer
 
 from boreprop.case.file import load_case
 from boreprop.cli import console
-from boreprop.cli.options import CaseFile
+from boreprop.cli.options import CaseFile, one_of
 from boreprop.errors import InputError
 from boreprop.kernel.compiler import CompilerError
 
 from ..native.binaries import PLATFORMS, build_binaries, check_platform, is_compiled
-from ..pack.build import IDENTIFIER, build_fmu
+from ..pack.build import IDENTIFIER, RUNTIMES, build_fmu
 from ..pack.python import ADVICE
 
 
@@ -23,6 +23,7 @@ def build_command(
     runtime: Annotated[
         str,
         typer.Option(
+            parser=one_of(*RUNTIMES),
             metavar="auto|native|python",
             help="What computes in the FMU: native, compiled code, or python, for which the host needs Python; "
             "auto: native if there is a binary for this machine.",

@@ -57,7 +57,7 @@ def build_fmu(
         If the file cannot be written; it is unchanged then.
     """
     if runtime not in RUNTIMES:
-        raise InputError(f"runtime: must be {' or '.join(RUNTIMES)}, got {runtime!r}")
+        raise InputError(f"runtime: must be {', '.join(RUNTIMES[:-1])} or {RUNTIMES[-1]}, got {runtime!r}")
     if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]{0,99}", name):
         raise InputError(f"name: must be a letter, then letters, digits and _, at most 100, got {name!r}")
     if runtime == "python" and platforms is not None:

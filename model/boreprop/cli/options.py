@@ -1,5 +1,6 @@
 """Options that several commands share, and the parsers of their values."""
 
+from collections.abc import Callable
 from math import inf, nan
 from pathlib import Path
 from typing import Annotated
@@ -27,6 +28,17 @@ def tolerance(text: str) -> float:
     if not allowed.at_least <= value <= allowed.at_most:
         raise typer.BadParameter(f"must be {allowed.at_least:g} to {allowed.at_most:g}, got {text!r}")
     return value
+
+
+def one_of(*choices: str) -> Callable[[str], str]:
+    """A parser of an option that takes one of these words."""
+
+    def choice(text: str) -> str:
+        if text not in choices:
+            raise typer.BadParameter(f"must be {', '.join(choices[:-1])} or {choices[-1]}, got {text!r}")
+        return text
+
+    return choice
 
 
 CaseFile = Annotated[Path, typer.Argument(metavar="CASE.toml", help="The case file.")]

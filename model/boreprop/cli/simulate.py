@@ -10,10 +10,11 @@ from ..case.file import load_case
 from ..core.checks import check_number
 from ..core.options import RELATIVE_TOLERANCE
 from ..errors import InputError
+from ..run.engines import ENGINES
 from ..run.results import SUFFIXES, case_path, keeping_rows, write_trajectory
 from ..run.simulate import SAMPLE_INTERVAL, simulate
 from . import console
-from .options import CaseFile, Tolerance, positive
+from .options import CaseFile, Tolerance, one_of, positive
 
 MAX_ROWS = 10_000_000  # more would be a file of many gigabytes
 
@@ -30,6 +31,7 @@ def simulate_command(
     engine: Annotated[
         str,
         typer.Option(
+            parser=one_of(*ENGINES),
             metavar="auto|native|python",
             help="The engine: native (compiled code), python (the same model in Python, many times slower), or auto "
             "(native if it is installed, else python).",
