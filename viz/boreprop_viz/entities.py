@@ -10,9 +10,9 @@ import rerun as rr
 from boreprop.analysis.axis import AXIS_REACH, axis_ripple
 from boreprop.core.quantities import BY_NAME
 from boreprop.run.trajectory import Trajectory
-from boreprop.units import UNITS
+from boreprop.units import SMALL_LENGTH, UNITS
 
-from .scene import AHEAD, REACH_ABOVE_BHA, HoleAxis, Shapes, bit_positions
+from .scene import AHEAD, Array, Shapes
 from .source import Stretch
 from .style import LANES, PLOTS
 from .track import Track, arrivals, moments, points, send, send_arrows, send_curve, send_strips
@@ -21,39 +21,6 @@ RIPPLE = "plots/ripple/ripple"
 BIT_LENGTH = 0.04  # length of the drawn bit over that of the BHA
 LABEL, LABELS_APART = 1.1, 0.2  # places of the labels of ψ over the length of the drawn directions: the first one just
 # ahead of these, those of further runs nearer to the bit, each clear of the one before
-
-# The vertical section
-
-
-def log_existing_hole(track: Track, hole: HoleAxis, start: float) -> None:
-    """The existing hole, up from where drilling starts, for at least the length of the BHA."""
-    bha = track.case.bha.stabilizer_positions[-1]
-    surveyed = track.case.survey.measured_depth[-1] - track.case.survey.measured_depth[0]
-    behind = hole.since(start - max(REACH_ABOVE_BHA * bha, surveyed))
-    there = behind.position[behind.length <= start]
-    track.rec.log(
-        track.entity("vertical_section/existing_hole"), rr.LineStrips2D.from_fields(strips=[there]), static=True
-    )
-
-
-def log_drilled_hole(track: Track, stretch: Stretch, drilled: float) -> None:
-    """The hole drilled beyond the length `drilled`, m, in one piece for each row.
-
-    The view shows the pieces up to its cursor.
-    """
-    hole = stretch.hole.since(drilled)
-    new = (hole.length > drilled) & (hole.length <= stretch.rows["drilled_length"][-1])
-    ends = np.flatnonzero(new)
-    segments = np.stack((hole.position[ends - 1], hole.position[ends]), axis=1)
-    send_strips(track, "vertical_section/drilled_hole", arrivals(stretch.rows, hole.length[ends]), segments[:, None])
-
-
-def log_bha_in_section(track: Track, shapes: Shapes) -> None:
-    """The BHA and the bit at true scale."""
-    at = moments(shapes.rows)
-    send_strips(track, "vertical_section/bha", at, shapes.bha_in_section[:, None])
-    send(track, "vertical_section/bit", at, rr.Points2D.columns(positions=bit_positions(shapes.rows)))
-
 
 # The bit frame
 
@@ -66,7 +33,8 @@ def log_walls(track: Track, shapes: Shapes) -> None:
 
 def log_bha(track: Track, shapes: Shapes) -> None:
     """The axis of the BHA, bent as in the model."""
-    strips = points(track.scales.lateral * shapes.bha_axis, -shapes.frame.s)[:, None]
+    drawn = shapes.frame.along_bha
+    strips = points(track.scales.lateral * shapes.bha_axis[:, drawn], -shapes.frame.s[drawn])[:, None]
     send_strips(track, "bit_frame/bha", moments(shapes.rows), strips)
 
 
@@ -150,18 +118,20 @@ def log_tilt_limits(track: Track, shapes: Shapes) -> None:
         send_curve(track, f"plots/bit_tilt/{side}_limit", ends, np.full(2, sign * limit))
 
 
-def log_ripple(track: Track, stretch: Stretch, recent: Trajectory, rippled: float) -> float:
-    """The ripple of the drilled hole, mm, from the length `rippled`, m, as far as its trend is determined.
+def find_ripple(track: Track, stretch: Stretch, rippled: float) -> tuple[Array, Array]:
+    """Drilled lengths and the ripple of the hole there, m, as far as its trend is determined.
 
-    `recent` are the last rows of the run, back to where the trend is determined only now.
-    Returns the length up to which it is logged now.
+    They begin at most half a width of the trend before the drilled length `rippled`, m, if the run does.
     """
     width = track.scales.trend
     hole = stretch.hole.since(max(rippled, 0.0) - (AXIS_REACH + 1.0) * width)
-    length, ripple = axis_ripple(hole.length, hole.position, width)
+    return axis_ripple(hole.length, hole.position, width)
+
+
+def log_ripple(track: Track, recent: Trajectory, length: Array, ripple: Array, rippled: float) -> None:
+    """The ripple at the lengths beyond `rippled`, mm; `recent` are the last rows of the run, back to these lengths."""
     new = (length > rippled) & (length >= 0.0)
-    send_curve(track, RIPPLE, arrivals(recent, length[new]), 1000 * ripple[new])
-    return float(length[-1]) if len(length) else rippled
+    send_curve(track, RIPPLE, arrivals(recent, length[new]), SMALL_LENGTH.factor * ripple[new])
 
 
 # The modes

@@ -36,10 +36,9 @@ LINE = 0.045  # height of a line of text over that of its view, which is some 20
 
 
 def log_furniture(rec: rr.RecordingStream, scales: Scales, cases: Sequence[Case]) -> None:
-    """What is common to all runs: the grid of the vertical section, the marks and the scales of the bit frame."""
+    """What is common to all runs and does not change: strokes, and the marks and the scales of the bit frame."""
     for thing, stroke in FURNITURE.items():
         log_stroke(rec, thing, stroke)
-    log_grid(rec, scales)
     log_places(rec, scales, cases)
     log_scale(rec, scales)
 
@@ -50,6 +49,8 @@ def log_styles(track: Track) -> None:
     for thing, stroke in STROKES.items():
         log_stroke(rec, track.entity(thing), stroke if track.colour is None else stroke.of(track.colour))
     rec.log(track.entity("vertical_section/bit"), _dots(WHITE, 4.0), static=True)
+    contacts = rr.Points2D.from_fields(radii=rr.Radius.ui_points(3.0), draw_order=5.0)
+    rec.log(track.entity("vertical_section/contacts"), contacts, static=True)
     for i, colour in enumerate(track.shades(BY_STABILIZER[: n - 1]), 1):
         rec.log(track.entity(f"bit_frame/contact_point/{i}"), _dots(colour, 5.0), static=True)
         rec.log(track.entity(f"bit_frame/contact_force/{i}"), _arrows(colour), static=True)

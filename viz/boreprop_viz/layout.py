@@ -9,15 +9,18 @@ from .card import CARD
 from .scales import Scales
 from .scene import Bounds
 from .style import GROUND, PLOTS, TABS
-from .track import TIMELINE, Track
+from .track import DEPTH_TIMELINE, TIME_TIMELINE, TIMELINE, Track
 
 INFINITE = rr.TimeRangeBoundary.infinite()
 MOST_LANES = 5  # lanes for which the view has room; with more, one scrolls
 HERE = rr.TimeRangeBoundary.cursor_relative(seq=0)
+SO_FAR = rrb.VisibleTimeRanges(
+    [rr.VisibleTimeRange(timeline, start=INFINITE, end=HERE) for timeline in (TIMELINE, DEPTH_TIMELINE, TIME_TIMELINE)]
+)
 
 
 def blueprint(scales: Scales, tracks: Sequence[Track]) -> rrb.Blueprint:
-    """Three columns: the vertical section above the case; the bit frame; the plots above the ripple and the modes.
+    """Four columns: vertical section above the case; strip; bit frame; plots above the ripple and the modes.
 
     Parameters
     ----------
@@ -34,6 +37,7 @@ def blueprint(scales: Scales, tracks: Sequence[Track]) -> rrb.Blueprint:
     return rrb.Blueprint(
         rrb.Horizontal(
             rrb.Vertical(vertical_section(scales, tracks), card(), row_shares=[0.6, 0.4]),
+            strip(scales, tracks),
             bit_frame(scales),
             rrb.Vertical(
                 rrb.Tabs(*(rrb.Vertical(*plots, name=name) for name, plots in tabs.items() if plots), active_tab=0),
@@ -41,7 +45,7 @@ def blueprint(scales: Scales, tracks: Sequence[Track]) -> rrb.Blueprint:
                 modes(scales),
                 row_shares=[500, 170, 55 + 40 * lanes],
             ),
-            column_shares=[0.24, 0.36, 0.4],
+            column_shares=[0.21, 0.105, 0.325, 0.36],
         ),
         rrb.TimePanel(state="collapsed", timeline=TIMELINE, play_state="following"),
         rrb.BlueprintPanel(state="hidden"),
@@ -57,13 +61,23 @@ def _bounds(bounds: Bounds) -> rrb.VisualBounds2D:
 
 def vertical_section(scales: Scales, tracks: Sequence[Track]) -> rrb.Spatial2DView:
     """Existing, planned and drilled hole, BHA and bit at true scale; the hole only as far as the cursor."""
-    so_far = rrb.VisibleTimeRanges(timeline=TIMELINE, start=INFINITE, end=HERE)
     return rrb.Spatial2DView(
         origin="vertical_section",
         name="Vertical section, true scale (m)",
         background=GROUND,
         visual_bounds=_bounds(scales.section),
-        overrides={track.entity("vertical_section/drilled_hole"): so_far for track in tracks},
+        overrides={track.entity("vertical_section/drilled_hole"): SO_FAR for track in tracks},
+    )
+
+
+def strip(scales: Scales, tracks: Sequence[Track]) -> rrb.Spatial2DView:
+    """The whole hole straightened, with its ripple, as far as the cursor."""
+    return rrb.Spatial2DView(
+        origin="strip",
+        name=f"Ripple × {scales.strip.lateral:g}",
+        background=GROUND,
+        visual_bounds=_bounds(scales.strip.bounds),
+        overrides={track.entity("strip/hole"): SO_FAR for track in tracks},
     )
 
 

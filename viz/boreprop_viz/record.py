@@ -20,11 +20,13 @@ from .card import log_card
 from .furniture import log_furniture, log_grid, log_names, log_plan
 from .layout import blueprint
 from .scales import Scales, choose_scales
-from .scene import HoleAxis, bit_positions, planned_hole
+from .scene import HoleAxis, planned_hole
+from .section import log_key
 from .sinks import flush, open_recording
 from .source import LiveRun, Source, live, stored
 from .stream import RunStream
-from .track import make_tracks
+from .strip import log_strip_grid
+from .track import Track, make_tracks
 
 Runs = Trajectory | Mapping[str, Trajectory | LiveRun]
 
@@ -149,8 +151,7 @@ class Drawing:
         if self.planned is not None:
             log_plan(rec, self.planned)
         tracks = make_tracks(rec, scales, sources)
-        if len(tracks) > 1:
-            log_names(rec, scales, tracks)
+        log_frames(rec, scales, tracks)
         rec.send_blueprint(blueprint(scales, tracks))
         findings = ["drilling" if source.live else "" for source in sources]
         log_card(rec, sources, findings)
@@ -158,9 +159,9 @@ class Drawing:
         for i, (source, track) in enumerate(zip(sources, tracks, strict=True)):
             stream = RunStream(track)
             for stretch in source.stretches:
-                if not scales.section.hold(bit_positions(stretch.rows)):
-                    scales = scales.widened(bit_positions(stretch.rows))
-                    log_grid(rec, scales)
+                if not scales.hold(stretch.rows):
+                    scales = scales.widened(stretch.rows)
+                    log_frames(rec, scales, tracks)
                     rec.send_blueprint(blueprint(scales, tracks))
                 flush(rec)  # the stretch before this one, which would else pile up in memory if the disk is slow
                 stream.send(stretch)
@@ -168,6 +169,16 @@ class Drawing:
                 progress(done)
             findings[i] = stream.finding()
             log_card(rec, sources, findings)
+
+
+def log_frames(rec: rr.RecordingStream, scales: Scales, tracks: Sequence[Track]) -> None:
+    """What is at fixed places of the section and the strip: their grids, the names of the runs, the key."""
+    log_grid(rec, scales)
+    log_strip_grid(rec, scales)
+    if len(tracks) > 1:
+        log_names(rec, scales, tracks)
+    else:
+        log_key(rec, scales)
 
 
 def log_cases(rec: rr.RecordingStream, sources: Sequence[Source]) -> None:

@@ -24,10 +24,12 @@ from boreprop.run.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
-POINTS_ALONG_BHA = 48  # of the drawn BHA and hole: a smooth curve with little data
+POINTS_ALONG_BHA = 36  # of the drawn hole, and twice those of the BHA: smooth curves with little data
 POINTS_OF_PLAN = 1000  # of the drawn plan: at most a pixel apart
 REACH_ABOVE_BHA = 1.15  # lengths of the BHA up to which the bit frame shows the hole, so that its top can be seen
 AHEAD = 0.2  # lengths of the BHA ahead of the bit over which the bit frame shows the directions of bit and hole
+SECTION_SHAPE = 0.65  # width of the vertical section over its height
+SECTION_LEFT, SECTION_RIGHT = 0.22, 0.9  # parts of its width between which holes are shown
 FRAME_WIDTH = 0.9  # lengths of the BHA: room for the walls, and for arrows and names beside them
 
 
@@ -52,6 +54,11 @@ class HoleAxis:
         x, z = (self.at(length) - self.at(length - chord)).T
         inclination: Array = np.arctan2(x, z)
         return inclination
+
+    def until(self, length: float) -> "HoleAxis":
+        """The part of this hole up to the last point at or before `length`."""
+        end = int(np.searchsorted(self.length, length, side="right"))
+        return HoleAxis(self.length[:end], self.position[:end])
 
     def since(self, length: float) -> "HoleAxis":
         """The part of this hole from the last point at or before `length` on."""
@@ -112,6 +119,8 @@ class BitFrame:
         Distances from the bit at which the BHA, (k,), and the hole, (k',), are computed; the first k are the same.
     at_stabilizer, at_rss
         Indices of the stabilizers, (n,), and of the pads in `s` and `s_hole`.
+    along_bha
+        Indices of the points in `s` through which the BHA, which bends less than the hole, is drawn.
     """
 
     def __init__(self, case: Case) -> None:
@@ -126,6 +135,7 @@ class BitFrame:
         self.s_hole = np.append(self.s, np.arange(reach, REACH_ABOVE_BHA * reach, even[1])[1:])
         self.at_stabilizer = np.searchsorted(self.s, self.stabilizer)
         self.at_rss = int(np.searchsorted(self.s, self.rss))
+        self.along_bha = np.union1d(np.arange(0, self.s.size, 2), np.append(self.at_stabilizer, self.at_rss))
 
         # The shape is linear in the loads e_n, F_1 … F_{n−1}, F_RSS, sin⟨Θ⟩_1; these are the shapes under unit loads.
         beam = Beam(scaled)
@@ -207,10 +217,25 @@ class Shapes:
     def bha_in_section(self) -> Array:
         """Positions of the BHA's axis at the bit and the stabilizers in the vertical plane, (m, n+1, 2)."""
         at = np.append(0, self.frame.at_stabilizer)
-        lateral, s = self.bha_axis[:, at], self.frame.s[at]
-        sin, cos = np.sin(self.mean_inclination)[:, None], np.cos(self.mean_inclination)[:, None]
-        away: Array = np.stack((lateral * cos - s * sin, -lateral * sin - s * cos), axis=-1)
-        return bit_positions(self.rows)[:, None] + away
+        return self._in_section(self.bha_axis[:, at], self.frame.s[at])
+
+    @property
+    def blades_in_section(self) -> Array:
+        """Both ends of the blades of each stabilizer in the vertical plane, (m, n, 2, 2)."""
+        return self._in_section(self.blades, self.frame.stabilizer[:, None])
+
+    @property
+    def contacts_in_section(self) -> Array:
+        """The wall where it pushes on each non-ideal stabilizer, in the vertical plane, (m, n−1, 2); or nan."""
+        return self._in_section(self.contact_points, self.frame.stabilizer[:-1])
+
+    def _in_section(self, lateral: Array, s: Array) -> Array:
+        """Positions in the vertical plane, (m, …, 2), of points of the bit frame; `s` is for each row."""
+        along = self.mean_inclination.reshape(-1, *np.ones(lateral.ndim - 1, dtype=int))
+        bit = bit_positions(self.rows).reshape(*along.shape, 2)
+        away = (lateral * np.cos(along) - s * np.sin(along), -lateral * np.sin(along) - s * np.cos(along))
+        position: Array = bit + np.stack(away, axis=-1)
+        return position
 
 
 @dataclass(frozen=True)
@@ -227,11 +252,19 @@ class Bounds:
 
 
 def section_bounds(position: Array, around: float) -> Bounds:
-    """The range of the vertical section: positions (N, 2) with a margin of `around` metres, or of a tenth if more."""
+    """The range of the vertical section: positions (N, 2) in a rectangle of about the shape of the view.
+
+    Around them is a margin of about `around` metres, or of a tenth if that is more. To their left is room for the
+    numbers of metres, and the shape leaves room for the key to the right of a hole that goes straight down.
+    """
     low, high = position.min(axis=0), position.max(axis=0)
     around = max(around, 0.1 * float((high - low).max()))
-    (left, top), (right, bottom) = low - around, high + around
-    return Bounds((float(left), float(right)), (float(top), float(bottom)))
+    width, height = high - low + 2 * around
+    width = max(width, (high - low)[0] / (SECTION_RIGHT - SECTION_LEFT), SECTION_SHAPE * height)
+    height = width / SECTION_SHAPE
+    x, y = (low + high) / 2
+    left, top = x - (SECTION_LEFT + SECTION_RIGHT) / 2 * width, y - height / 2
+    return Bounds((float(left), float(left + width)), (float(top), float(top + height)))
 
 
 def frame_bounds(reach: float) -> Bounds:

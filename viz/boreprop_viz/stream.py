@@ -7,12 +7,10 @@ from boreprop.run.trajectory import Trajectory
 
 from .card import in_words
 from .entities import (
+    find_ripple,
     log_bha,
-    log_bha_in_section,
     log_bit,
     log_contacts,
-    log_drilled_hole,
-    log_existing_hole,
     log_forces,
     log_modes,
     log_plots,
@@ -24,7 +22,9 @@ from .entities import (
 )
 from .furniture import log_styles
 from .scene import BitFrame
+from .section import DrilledHole, log_bha_in_section, log_existing_hole
 from .source import Stretch
+from .strip import log_strip
 from .track import Track
 
 RECENT = 32.0  # half lengths of the BHA up to the bit that decide whether the hole ripples: five of the longest waves
@@ -36,7 +36,7 @@ class RunStream:
     def __init__(self, track: Track) -> None:
         self.track = track
         self.frame = BitFrame(track.case)
-        self.drilled: float | None = None  # drilled length up to which the hole is drawn, m
+        self.hole: DrilledHole | None = None  # from the first rows on
         self.rippled = -np.inf  # drilled length up to which its ripple is drawn, m
         self.modes: dict[str, float] = {}  # the last value of each lane
         self.recent: Trajectory | None = None  # the last rows, which decide whether the hole ripples
@@ -44,13 +44,13 @@ class RunStream:
 
     def send(self, stretch: Stretch) -> None:
         """Log the next rows of the run."""
-        if self.drilled is None:
-            self.drilled = float(stretch.rows["drilled_length"][0])
-            log_existing_hole(self.track, stretch.hole, self.drilled)
-        log_drilled_hole(self.track, stretch, self.drilled)
-        self.drilled = float(stretch.rows["drilled_length"][-1])
+        if self.hole is None:
+            start = float(stretch.rows["drilled_length"][0])
+            log_existing_hole(self.track, stretch.hole, start)
+            self.hole = DrilledHole(self.track, start)
         rows = stretch.rows if self.recent is None else _joined(self.recent, stretch.rows)
         self.recent = _last(rows, RECENT * self.track.case.bha.half_length)
+        self.hole.log(stretch, rows)
         shapes = self.frame.shapes(stretch.rows, stretch.hole)
         for log in (
             log_bha_in_section,
@@ -65,7 +65,10 @@ class RunStream:
             log_tilt_limits,
         ):
             log(self.track, shapes)
-        self.rippled = log_ripple(self.track, stretch, rows, self.rippled)
+        length, ripple = find_ripple(self.track, stretch, self.rippled)
+        for log_along in (log_ripple, log_strip):
+            log_along(self.track, rows, length, ripple, self.rippled)
+        self.rippled = max([self.rippled, *length[-1:]])
         self.modes = log_modes(self.track, stretch, self.modes)
 
     def finding(self) -> str:

@@ -16,6 +16,8 @@ ORANGE, SKY_BLUE, GREEN, YELLOW = (230, 159, 0), (86, 180, 233), (0, 158, 115), 
 VERMILION, PURPLE = (213, 94, 0), (204, 121, 167)
 WHITE, GREY, FAINT, GROUND = (240, 240, 240), (150, 155, 160), (52, 58, 66), (20, 23, 28)
 BY_STABILIZER = (VERMILION, PURPLE, YELLOW, SKY_BLUE, ORANGE)
+# from the smallest to the largest dogleg severity, lighter and lighter, so that they can be told apart with any vision
+BY_SEVERITY = ((134, 88, 8), (172, 112, 0), (206, 138, 8), (234, 168, 30), (250, 204, 90), (255, 240, 180))
 BY_RUN = (ORANGE, SKY_BLUE, GREEN, PURPLE, YELLOW, VERMILION)
 
 
@@ -29,7 +31,7 @@ def shade(colour: Colour, lightness: float) -> Colour:
 class Stroke:
     """How lines are drawn. If there are several runs, each has its own colour, which replaces that of the stroke."""
 
-    colour: Colour
+    colour: Colour | None  # None: each line has its own
     width: float  # in points of the screen
     layer: float  # higher layers are drawn over lower ones
     lightness: float = 0.0  # to which the run's own colour is lightened
@@ -42,13 +44,17 @@ class Stroke:
 FURNITURE = {  # lines that are common to all runs
     "vertical_section/grid": Stroke(FAINT, 1.0, 0.0),
     "vertical_section/plan": Stroke(WHITE, 1.5, 1.5),
+    "strip/grid": Stroke(FAINT, 1.0, 0.0),
     "bit_frame/places": Stroke(FAINT, 1.0, 0.0),
     "bit_frame/scale": Stroke(GREY, 2.0, 0.0),
 }
 STROKES = {
     "vertical_section/existing_hole": Stroke(GREY, 3.0, 1.0, lightness=0.6),
-    "vertical_section/drilled_hole": Stroke(ORANGE, 3.0, 2.0),
+    "vertical_section/drilled_hole": Stroke(None, 3.0, 2.0),
+    "vertical_section/newly_drilled": Stroke(None, 3.0, 2.0),
     "vertical_section/bha": Stroke(SKY_BLUE, 4.0, 3.0, lightness=0.4),
+    "vertical_section/stabilizers": Stroke(SKY_BLUE, 6.0, 4.0, lightness=0.4),
+    "strip/hole": Stroke(ORANGE, 1.0, 1.0),
     "bit_frame/walls": Stroke(ORANGE, 3.0, 2.0),
     "bit_frame/bha": Stroke(SKY_BLUE, 4.0, 3.0, lightness=0.4),
     "bit_frame/stabilizers": Stroke(SKY_BLUE, 6.0, 4.0, lightness=0.4),

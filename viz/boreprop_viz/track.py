@@ -9,8 +9,11 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
+import pyarrow as pa
 import rerun as rr
 from numpy.typing import NDArray
+from rerun.components import LineStrip2DBatch
+from rerun.encodings import Vec2DBatch
 
 from boreprop.case.case import Case
 from boreprop.run.trajectory import Trajectory
@@ -24,6 +27,7 @@ from .style import BY_RUN, Colour, shade
 TIMELINE = "drilled_length_mm"  # the one that a viewer shows first
 DEPTH_TIMELINE = "measured_depth_mm"
 TIME_TIMELINE = "simulation_time"
+STRIPS = LineStrip2DBatch([]).as_arrow_array().type
 
 
 @dataclass(frozen=True)
@@ -129,6 +133,16 @@ def send_strips(track: Track, thing: str, at: Moments, strips: Array) -> None:
     rows, per_row = strips.shape[:2]
     columns = rr.LineStrips2D.columns(strips=strips.reshape(-1, *strips.shape[2:]).astype(np.float32))
     send(track, thing, at, columns.partition([per_row] * rows))
+
+
+def send_paths(track: Track, thing: str, at: Moments, paths: list[Array], colours: NDArray[np.uint8] | None) -> None:
+    """Send one line strip of any number of points (k, 2) at each moment, in colours (rows, 3) or as the thing is."""
+    if not paths:
+        return
+    offsets = np.cumsum([0] + [len(path) for path in paths], dtype=np.int32)
+    through = Vec2DBatch(np.concatenate(paths).astype(np.float32)).as_arrow_array()
+    strips = pa.ListArray.from_arrays(offsets, through, type=STRIPS)
+    send(track, thing, at, rr.LineStrips2D.columns(strips=strips, colors=colours))
 
 
 def send_arrows(track: Track, thing: str, at: Moments, tip: Array, force: Array) -> None:

@@ -1,0 +1,115 @@
+"""Logs the vertical section: the hole, coloured by its dogleg severity, and the BHA in it, at true scale.
+
+The view is in metres with y down the screen.
+"""
+
+from itertools import pairwise
+
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from boreprop.run.trajectory import Trajectory
+from boreprop.units import UNITS
+
+from .furniture import log_labels
+from .scales import Scales
+from .scene import REACH_ABOVE_BHA, Array, HoleAxis, Shapes, bit_positions
+from .source import Stretch
+from .style import BY_SEVERITY, BY_STABILIZER
+from .track import Track, arrivals, moments, points, send, send_paths, send_strips
+
+POINTS_IN_HALF = 40  # of the drawn hole over half the length of the BHA, at most: a wave of it shows no corners
+POINTS_IN_PIECE = 20  # of it: the fewer pieces, the sooner the view is drawn, see benchmarks/viewer_seek.py
+SWATCH = 0.055  # height of a colour of the key over that of the view, which is a line of text with some room
+
+
+def log_existing_hole(track: Track, hole: HoleAxis, start: float) -> None:
+    """The existing hole, up from where drilling starts, for at least the length of the BHA."""
+    bha = track.case.bha.stabilizer_positions[-1]
+    surveyed = track.case.survey.measured_depth[-1] - track.case.survey.measured_depth[0]
+    behind = hole.since(start - max(REACH_ABOVE_BHA * bha, surveyed))
+    there = behind.position[behind.length <= start]
+    track.rec.log(
+        track.entity("vertical_section/existing_hole"), rr.LineStrips2D.from_fields(strips=[there]), static=True
+    )
+
+
+class DrilledHole:
+    """Logs the drilled hole of a run in pieces, of which the view shows those up to its cursor.
+
+    Each piece is logged where it ends, and up to there what is drilled of it, for each row.
+    """
+
+    def __init__(self, track: Track, start: float) -> None:
+        self.track = track
+        self.apart = track.case.bha.half_length / POINTS_IN_HALF
+        self.start = start  # drilled length at the first row, m
+        self.begun = start  # drilled length at which the current piece begins, m
+        self.drilled = start  # drilled length up to which the hole is logged, m
+
+    def log(self, stretch: Stretch, recent: Trajectory) -> None:
+        """Log the hole that some rows drill; `recent` are these and those over half the length of the BHA before."""
+        hole = stretch.hole.since(self.begun).until(stretch.rows["drilled_length"][-1])
+        interval = ((hole.length - self.start) // self.apart).astype(np.int64)
+        drawn = np.flatnonzero(np.diff(interval, prepend=-1))  # the first points in each interval
+        ends = np.flatnonzero(np.diff(interval // POINTS_IN_PIECE, prepend=-1))
+        at_ends = np.searchsorted(drawn, ends)
+        pieces = [drawn[first : last + 1] for first, last in pairwise(at_ends)]
+        self._send("drilled_hole", hole, pieces, recent)
+
+        new = np.flatnonzero(hole.length > self.drilled)
+        first = at_ends[np.searchsorted(ends, new, side="right") - 1]
+        last = np.searchsorted(drawn, new)
+        parts = [np.append(drawn[i:j], end) for i, j, end in zip(first, last, new, strict=True)]
+        self._send("newly_drilled", hole, parts, recent)
+        self.begun, self.drilled = hole.length[ends[-1]], hole.length[-1]
+
+    def _send(self, thing: str, hole: HoleAxis, paths: list[NDArray[np.int64]], recent: Trajectory) -> None:
+        """Send strips through points of the hole, where the last of them is drilled."""
+        ends = hole.length[[path[-1] for path in paths]]
+        colours = None if self.track.colour else severity_colours(self.track, recent, ends)
+        at = arrivals(recent, ends)
+        send_paths(self.track, f"vertical_section/{thing}", at, [hole.position[path] for path in paths], colours)
+
+
+def severity_colours(track: Track, rows: Trajectory, ends: Array) -> NDArray[np.uint8]:
+    """The colours for the largest dogleg severity over half the length of the BHA up to each drilled length, (k, 3).
+
+    The severity where the hole ends would go up and down with every wave of a ripple.
+    """
+    length, severity = rows["drilled_length"], np.append(rows["dogleg_severity"], 0.0)
+    last = np.searchsorted(length, ends, side="right")
+    first = np.minimum(np.searchsorted(length, ends - track.case.bha.half_length), last - 1)
+    largest = np.maximum.reduceat(severity, np.column_stack((first, last)).ravel())[::2]
+    of_key = np.searchsorted(track.scales.severities, UNITS["rad/m"].factor * largest, side="right")
+    return np.array(BY_SEVERITY, dtype=np.uint8)[of_key]
+
+
+def log_key(rec: rr.RecordingStream, scales: Scales) -> None:
+    """The colours of the dogleg severity at the top right, and the values between them."""
+    (left, right), (top, bottom) = scales.section.x, scales.section.y
+    width, height = right - left, bottom - top
+    down = top + height * SWATCH * (1.8 + np.arange(len(BY_SEVERITY) + 1))
+    ends = np.stack((down[:-1], down[1:]), axis=1)
+    swatches = rr.LineStrips2D(
+        list(points(right - 0.17 * width, ends)), colors=BY_SEVERITY, radii=rr.Radius.ui_points(4.0), draw_order=1.0
+    )
+    rec.log("vertical_section/key", swatches, static=True)
+    labels = [f"dogleg {UNITS['rad/m'].shown}"] + [f"{severity:g}" for severity in scales.severities]
+    above = height * SWATCH * np.array([1.3] + [0.5] * len(scales.severities))
+    aside = width * np.array([0.22] + [0.07] * len(scales.severities))  # the heading is wider than the numbers
+    log_labels(rec, "vertical_section/key/labels", points(right - aside, down[:-1] - above), labels)
+
+
+def log_bha_in_section(track: Track, shapes: Shapes) -> None:
+    """The BHA with its stabilizers, where the wall pushes on them, and the bit."""
+    at = moments(shapes.rows)
+    send_strips(track, "vertical_section/bha", at, shapes.bha_in_section[:, None])
+    send_strips(track, "vertical_section/stabilizers", at, shapes.blades_in_section)
+    contacts = shapes.contacts_in_section
+    there = np.isfinite(contacts[..., 0])
+    colours = np.array(track.shades(BY_STABILIZER[: there.shape[1]]), dtype=np.uint8)
+    dots = rr.Points2D.columns(positions=contacts[there], colors=colours[np.nonzero(there)[1]])
+    send(track, "vertical_section/contacts", at, dots.partition(there.sum(axis=1)))
+    send(track, "vertical_section/bit", at, rr.Points2D.columns(positions=bit_positions(shapes.rows)))

@@ -1,0 +1,52 @@
+"""Logs the strip: the whole hole down the screen, straightened, with its ripple to the side.
+
+The view is in metres with y, the measured depth or the drilled length, down the screen. The high side is to the right,
+and the lateral axis is multiplied by the factor that the view's name gives. Several runs are side by side.
+"""
+
+import numpy as np
+import rerun as rr
+
+from boreprop.analysis.axis import AXIS_POINTS
+from boreprop.run.trajectory import Trajectory
+from boreprop.units import SMALL_LENGTH
+
+from .furniture import log_labels
+from .scales import STRIP_TOP, Scales, round_down
+from .scene import Array
+from .track import Track, arrivals, points, send_strips
+
+PIECE = AXIS_POINTS // 2  # points of the ripple in one piece of the hole: half a width of the trend
+TEXT = 0.03  # height of a line of text over that of the view
+
+
+def log_strip(track: Track, recent: Trajectory, length: Array, ripple: Array, rippled: float) -> None:
+    """The ripple, m, at whole multiples of an even spacing of drilled length, in pieces that end beyond `rippled`, m.
+
+    The view shows the pieces up to its cursor. `recent` are the last rows of the run, back to these lengths.
+    """
+    if len(length) <= PIECE:
+        return
+    number = np.rint(length / (length[1] - length[0])).astype(np.int64)
+    ends = np.flatnonzero((number % PIECE == 0) & (length > rippled))
+    ends = ends[(ends >= PIECE) & (number[ends] >= PIECE)]
+    of_piece = ends[:, None] + np.arange(-PIECE, 1)
+    strip = track.scales.strip
+    pieces = points(strip.lanes[track.place] + strip.lateral * ripple[of_piece], strip.start + length[of_piece])
+    send_strips(track, "strip/hole", arrivals(recent, length[ends]), pieces[:, None])
+
+
+def log_strip_grid(rec: rr.RecordingStream, scales: Scales) -> None:
+    """Lines at round numbers of metres down the hole, and to both sides of it at round numbers of millimetres."""
+    (left, right), (top, bottom) = scales.strip.bounds.x, scales.strip.bounds.y
+    step = round_down((bottom - top) / 6)
+    depth = step * np.arange(np.ceil(scales.strip.start / step), (bottom - TEXT * (bottom - top)) / step)
+    aside = round_down(scales.ripple) / SMALL_LENGTH.factor
+    across = np.array(scales.strip.lanes)[:, None] + scales.strip.lateral * aside * np.array([-1.0, 0.0, 1.0])
+    down = points(across.ravel()[:, None], np.array([top + STRIP_TOP * (bottom - top), bottom]))
+    lines = [*points(np.array([0.0, right]), depth[:, None]), *down]
+    rec.log("strip/grid", rr.LineStrips2D.from_fields(strips=lines), static=True)
+    above = TEXT * (bottom - top)
+    log_labels(rec, "strip/grid/depth", points(left / 2, depth - above / 2), [f"{round(value)} m" for value in depth])
+    places = points(right / 2, top + above * np.array([0.2, 1.3]))
+    log_labels(rec, "strip/grid/ripple", places, [f"× {scales.strip.lateral:g}", f"±{SMALL_LENGTH.text(aside)}"])
