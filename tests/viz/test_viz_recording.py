@@ -105,13 +105,6 @@ def test_recordings_that_look_alike_share_an_application_and_others_do_not(run: 
     assert len({application(run), application(wider), application(run, wider), application(run, plan=plan)}) == 4
 
 
-def test_the_drilled_hole_is_the_path_of_the_bit(recorded: Path, run: Trajectory) -> None:
-    pieces = stacked(recorded, "vertical_section/drilled_hole", "LineStrips2D:strips")[:, 0]
-    bit = np.column_stack((run["displacement"], run["true_vertical_depth"]))
-    np.testing.assert_allclose(pieces[:, 0], bit[:-1], atol=1e-5)
-    np.testing.assert_allclose(pieces[:, 1], bit[1:], atol=1e-5)
-
-
 def test_the_walls_are_a_hole_radius_from_the_axis_times_the_factor(
     recorded: Path, run: Trajectory, scales: Scales, case: Case
 ) -> None:
@@ -318,9 +311,12 @@ def test_several_runs_are_drawn_over_each_other_each_under_its_name(
 def test_what_is_drawn_does_not_depend_on_the_batches(recorded: Path, run: Trajectory, tmp_path: Path) -> None:
     with open_recording(save=tmp_path / "other.rrd") as rec:
         Drawing.of([stored("run", run, batch=37)]).draw(rec)
-    for entity in ("vertical_section/drilled_hole", "vertical_section/bha", "bit_frame/walls", "bit_frame/bha"):
+    for entity in ("vertical_section/bha", "strip/hole", "bit_frame/walls", "bit_frame/bha"):
         other = stacked(tmp_path / "other.rrd", entity, "LineStrips2D:strips")
         np.testing.assert_allclose(other, stacked(recorded, entity, "LineStrips2D:strips"), atol=1e-5)
+    for entity in ("vertical_section/drilled_hole", "vertical_section/newly_drilled"):
+        for component in ("LineStrips2D:strips", "LineStrips2D:colors"):
+            assert read(tmp_path / "other.rrd", entity, component) == read(recorded, entity, component)
 
 
 def test_rerun_finds_the_file_whole(recorded: Path) -> None:
@@ -328,13 +324,6 @@ def test_rerun_finds_the_file_whole(recorded: Path) -> None:
         [sys.executable, "-m", "rerun", "rrd", "verify", recorded], capture_output=True, text=True, timeout=60
     )
     assert verified.returncode == 0, verified.stderr
-
-
-def test_a_run_that_stands_still_is_drawn(run: Trajectory, tmp_path: Path) -> None:
-    twice = Trajectory({name: np.repeat(column, 2) for name, column in run.columns.items()}, run.case)
-    record(twice, save=tmp_path / "twice.rrd")
-    pieces = stacked(tmp_path / "twice.rrd", "vertical_section/drilled_hole", "LineStrips2D:strips")
-    assert len(pieces) == run.row_count - 1
 
 
 @pytest.mark.parametrize(

@@ -14,9 +14,6 @@ from .track import DEPTH_TIMELINE, TIME_TIMELINE, TIMELINE, Track
 INFINITE = rr.TimeRangeBoundary.infinite()
 MOST_LANES = 5  # lanes for which the view has room; with more, one scrolls
 HERE = rr.TimeRangeBoundary.cursor_relative(seq=0)
-SO_FAR = rrb.VisibleTimeRanges(
-    [rr.VisibleTimeRange(timeline, start=INFINITE, end=HERE) for timeline in (TIMELINE, DEPTH_TIMELINE, TIME_TIMELINE)]
-)
 
 
 def blueprint(scales: Scales, tracks: Sequence[Track]) -> rrb.Blueprint:
@@ -59,6 +56,12 @@ def _bounds(bounds: Bounds) -> rrb.VisualBounds2D:
     return rrb.VisualBounds2D(x_range=bounds.x, y_range=bounds.y)
 
 
+def _so_far() -> rrb.VisibleTimeRanges:
+    """All that was logged up to the cursor, on any timeline."""
+    timelines = (TIMELINE, DEPTH_TIMELINE, TIME_TIMELINE)
+    return rrb.VisibleTimeRanges([rr.VisibleTimeRange(name, start=INFINITE, end=HERE) for name in timelines])
+
+
 def vertical_section(scales: Scales, tracks: Sequence[Track]) -> rrb.Spatial2DView:
     """Existing, planned and drilled hole, BHA and bit at true scale; the hole only as far as the cursor."""
     return rrb.Spatial2DView(
@@ -66,7 +69,7 @@ def vertical_section(scales: Scales, tracks: Sequence[Track]) -> rrb.Spatial2DVi
         name="Vertical section, true scale (m)",
         background=GROUND,
         visual_bounds=_bounds(scales.section),
-        overrides={track.entity("vertical_section/drilled_hole"): SO_FAR for track in tracks},
+        overrides={track.entity("vertical_section/drilled_hole"): _so_far() for track in tracks},
     )
 
 
@@ -77,7 +80,7 @@ def strip(scales: Scales, tracks: Sequence[Track]) -> rrb.Spatial2DView:
         name=f"Ripple × {scales.strip.lateral:g}",
         background=GROUND,
         visual_bounds=_bounds(scales.strip.bounds),
-        overrides={track.entity("strip/hole"): SO_FAR for track in tracks},
+        overrides={track.entity("strip/hole"): _so_far() for track in tracks},
     )
 
 

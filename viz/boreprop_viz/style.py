@@ -17,7 +17,7 @@ VERMILION, PURPLE = (213, 94, 0), (204, 121, 167)
 WHITE, GREY, FAINT, GROUND = (240, 240, 240), (150, 155, 160), (52, 58, 66), (20, 23, 28)
 BY_STABILIZER = (VERMILION, PURPLE, YELLOW, SKY_BLUE, ORANGE)
 # from the smallest to the largest dogleg severity, lighter and lighter, so that they can be told apart with any vision
-BY_SEVERITY = ((134, 88, 8), (172, 112, 0), (206, 138, 8), (234, 168, 30), (250, 204, 90), (255, 240, 180))
+BY_SEVERITY = ((140, 92, 10), (176, 116, 0), (208, 142, 8), (234, 170, 34), (250, 204, 90), (255, 240, 180))
 BY_RUN = (ORANGE, SKY_BLUE, GREEN, PURPLE, YELLOW, VERMILION)
 
 

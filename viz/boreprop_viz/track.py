@@ -27,7 +27,6 @@ from .style import BY_RUN, Colour, shade
 TIMELINE = "drilled_length_mm"  # the one that a viewer shows first
 DEPTH_TIMELINE = "measured_depth_mm"
 TIME_TIMELINE = "simulation_time"
-STRIPS = LineStrip2DBatch([]).as_arrow_array().type
 
 
 @dataclass(frozen=True)
@@ -141,7 +140,7 @@ def send_paths(track: Track, thing: str, at: Moments, paths: list[Array], colour
         return
     offsets = np.cumsum([0] + [len(path) for path in paths], dtype=np.int32)
     through = Vec2DBatch(np.concatenate(paths).astype(np.float32)).as_arrow_array()
-    strips = pa.ListArray.from_arrays(offsets, through, type=STRIPS)
+    strips = pa.ListArray.from_arrays(offsets, through, type=LineStrip2DBatch([]).as_arrow_array().type)
     send(track, thing, at, rr.LineStrips2D.columns(strips=strips, colors=colours))
 
 
