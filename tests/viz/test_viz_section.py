@@ -18,7 +18,7 @@ from boreprop_viz.style import BY_RUN, BY_SEVERITY, GROUND
 from places import EXAMPLES
 from rrd import read, stacked, static
 
-LENGTH, INTERVAL = 40.0, 0.125  # m: a row in every interval of which a point of the hole is drawn
+LENGTH, INTERVAL = 40.0, 0.25  # m: a row in every interval of which a point of the hole is drawn
 STRIPS, COLOURS, POINTS = "LineStrips2D:strips", "LineStrips2D:colors", "Points2D:positions"
 SECTION = "vertical_section"
 
@@ -153,12 +153,13 @@ def test_the_stabilizers_are_across_the_bha(recorded: Path, case: Case) -> None:
 def test_contacts_are_on_the_wall_of_the_hole(recorded: Path, run: Trajectory, case: Case) -> None:
     contacts = read(recorded, f"{SECTION}/contacts", POINTS)
     assert [len(shown) for shown in contacts.values()] == (run["stabilizer_force[1]"] != 0.0).astype(int).tolist()
-    hole = bit_positions(run)
+    fine = np.arange(0.0, LENGTH, 0.01)
+    hole = np.column_stack([np.interp(fine, run["drilled_length"], axis) for axis in bit_positions(run).T])
     deep = 1000 * (case.bha.stabilizer_positions[0] + 1.0)  # where the first stabilizer is in the drilled hole
     for tick, shown in contacts.items():
         for contact in shown if tick > deep else []:
             distance = np.linalg.norm(hole - contact, axis=1).min()
-            assert distance == pytest.approx(case.bit_diameter / 2, abs=0.02)
+            assert distance == pytest.approx(case.bit_diameter / 2, abs=0.003)
             assert np.sign(contact[0] - np.interp(contact[1], hole[:, 1], hole[:, 0])) == -np.sign(
                 run["stabilizer_force[1]"][ticks(run).index(tick)]
             )
@@ -176,24 +177,29 @@ def test_the_section_shows_a_straight_hole_beside_the_key() -> None:
 
 def test_the_strip_is_the_ripple_over_the_measured_depth(recorded: Path, scales: Scales, case: Case) -> None:
     ripple = {tick: value for tick, [value] in read(recorded, "plots/ripple/ripple", "Scalars:scalars").items()}
-    pieces = stacked(recorded, "strip/hole", STRIPS)[:, 0]
-    np.testing.assert_array_equal(pieces[1:, 0], pieces[:-1, -1])
-    path = np.concatenate([pieces[0], *pieces[1:, 1:]])
+    pieces = read(recorded, "strip/hole", STRIPS)
+    path = np.concatenate([np.array(piece) for [piece] in pieces.values()])
     drilled = path[:, 1] - case.survey.measured_depth[-1]
     [lane] = scales.strip.lanes
-    expected = np.interp(1000 * drilled, list(ripple), list(ripple.values())) / 1000
-    np.testing.assert_allclose(path[:, 0] - lane, scales.strip.lateral * expected, atol=0.01)
-    assert max(ripple) / 1000 - drilled[-1] < scales.trend
+    tick, height = np.array(list(ripple)), np.array(list(ripple.values())) / 1000
+    shown = (path[:, 0] - lane) / scales.strip.lateral
+    np.testing.assert_allclose(shown, np.interp(1000 * drilled, tick, height), atol=1e-4)
+    at_all = np.interp(tick[tick <= 1000 * drilled[-1]] / 1000, drilled, shown)
+    np.testing.assert_allclose(at_all, height[: len(at_all)], atol=3e-3)  # of waves of ±40 mm, whose crests are shown
+    assert at_all.max() == pytest.approx(height[: len(at_all)].max(), abs=1e-5)
     assert drilled[0] == pytest.approx(0.0, abs=1e-5)
-    np.testing.assert_allclose(list(read(recorded, "strip/hole", STRIPS)), 1000 * drilled[20::20], atol=0.6)
+    assert max(ripple) / 1000 - drilled[-1] < scales.trend
+    for end, [piece] in pieces.items():
+        assert piece[-1][1] - case.survey.measured_depth[-1] == pytest.approx(end / 1000, abs=1e-3)
     assert scales.strip.bounds.hold(path)
 
 
 def test_the_strips_of_several_runs_are_side_by_side(case: Case, run: Trajectory, tmp_path: Path) -> None:
     heavy = simulate(replace(case, active_weight_on_bit=2 * case.active_weight_on_bit), sample_interval=0.5)
     record({"a": run, "b": heavy}, save=tmp_path / "two.rrd")
-    left, right = (stacked(tmp_path / "two.rrd", f"strip/{name}/hole", STRIPS)[..., 0] for name in "ab")
-    assert left.max() < right.min()
+    shown = [read(tmp_path / "two.rrd", f"strip/{name}/hole", STRIPS).values() for name in "ab"]
+    left, right = ([x for [piece] in pieces for x, _ in piece] for pieces in shown)
+    assert max(left) < min(right)
 
 
 def test_what_is_drilled_beyond_the_end_widens_section_and_strip(scales: Scales, run: Trajectory) -> None:

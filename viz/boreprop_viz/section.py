@@ -19,7 +19,7 @@ from .source import Stretch
 from .style import BY_SEVERITY, BY_STABILIZER
 from .track import Track, arrivals, moments, points, send, send_paths, send_strips
 
-POINTS_IN_HALF = 40  # of the drawn hole over half the length of the BHA, at most: a wave of it shows no corners
+POINTS_IN_HALF = 20  # of the drawn hole over half the length of the BHA, at most: a wave shows no corners
 POINTS_IN_PIECE = 20  # of it: the fewer pieces, the sooner the view is drawn, see benchmarks/viewer_seek.py
 SWATCH = 0.055  # height of a colour of the key over that of the view, which is a line of text with some room
 

@@ -14,9 +14,10 @@ from boreprop.units import SMALL_LENGTH
 from .furniture import log_labels
 from .scales import STRIP_TOP, Scales, round_down
 from .scene import Array
-from .track import Track, arrivals, points, send_strips
+from .track import Track, arrivals, points, send_paths
 
 PIECE = AXIS_POINTS // 2  # points of the ripple in one piece of the hole: half a width of the trend
+DRAWN = PIECE // 4  # of these every so manieth is drawn, and the crests of the waves
 TEXT = 0.03  # height of a line of text over that of the view
 
 
@@ -28,12 +29,16 @@ def log_strip(track: Track, recent: Trajectory, length: Array, ripple: Array, ri
     if len(length) <= PIECE:
         return
     number = np.rint(length / (length[1] - length[0])).astype(np.int64)
-    ends = np.flatnonzero((number % PIECE == 0) & (length > rippled))
-    ends = ends[(ends >= PIECE) & (number[ends] >= PIECE)]
-    of_piece = ends[:, None] + np.arange(-PIECE, 1)
+    steps = np.diff(ripple)
+    crest = np.concatenate(([False], steps[:-1] * steps[1:] < 0.0, [False]))
+    drawn = np.flatnonzero(crest | (number % DRAWN == 0))
+    ends = np.flatnonzero((number % PIECE == 0) & (length > rippled) & (number >= PIECE))
+    ends = ends[ends >= PIECE]
+    first, last = np.searchsorted(drawn, [ends - PIECE, ends])
     strip = track.scales.strip
-    pieces = points(strip.lanes[track.place] + strip.lateral * ripple[of_piece], strip.start + length[of_piece])
-    send_strips(track, "strip/hole", arrivals(recent, length[ends]), pieces[:, None])
+    path = points(strip.lanes[track.place] + strip.lateral * ripple, strip.start + length)
+    pieces = [path[drawn[i : j + 1]] for i, j in zip(first, last, strict=True)]
+    send_paths(track, "strip/hole", arrivals(recent, length[ends]), pieces)
 
 
 def log_strip_grid(rec: rr.RecordingStream, scales: Scales) -> None:

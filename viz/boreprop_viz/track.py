@@ -134,7 +134,9 @@ def send_strips(track: Track, thing: str, at: Moments, strips: Array) -> None:
     send(track, thing, at, columns.partition([per_row] * rows))
 
 
-def send_paths(track: Track, thing: str, at: Moments, paths: list[Array], colours: NDArray[np.uint8] | None) -> None:
+def send_paths(
+    track: Track, thing: str, at: Moments, paths: list[Array], colours: NDArray[np.uint8] | None = None
+) -> None:
     """Send one line strip of any number of points (k, 2) at each moment, in colours (rows, 3) or as the thing is."""
     if not paths:
         return
