@@ -1,7 +1,7 @@
 """What the viewer draws, without a screen: a picture of every view."""
 
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,8 +18,9 @@ from boreprop.run.simulate import simulate
 from boreprop_viz import picture
 from boreprop_viz.picture import SOFTWARE_DRIVERS, Viewer, viewer
 from boreprop_viz.record import record
+from boreprop_viz.scene import Array
 from boreprop_viz.sinks import PROGRAM
-from boreprop_viz.style import ORANGE
+from boreprop_viz.style import BY_SEVERITY, ORANGE, Colour
 from boreprop_viz.track import TIMELINE
 
 LENGTH = 60.0
@@ -102,14 +103,31 @@ def test_a_view_without_its_data_is_blank(recorded: Path, tmp_path: Path) -> Non
             assert drawn(view, shown.picture(view)) < BLANK, view.name
 
 
-def test_half_way_there_is_half_of_the_hole(shown: Viewer) -> None:
-    [section] = [view for view in shown.views() if view.name.startswith("Vertical section")]
-    orange = []
-    for length in (LENGTH / 2, LENGTH):
+def coloured(pixels: Array, colours: Sequence[Colour]) -> int:
+    """How many pixels have about one of some colours."""
+    return np.count_nonzero([np.abs(pixels - colour).max(axis=-1) < 12 for colour in colours])
+
+
+@pytest.mark.parametrize(("name", "colours"), [("Vertical section", BY_SEVERITY[:4]), ("Ripple ×", [ORANGE])])
+def test_half_way_there_is_half_of_the_hole(shown: Viewer, name: str, colours: Sequence[Colour]) -> None:
+    [view] = [view for view in shown.views() if view.name.startswith(name)]
+    counts = []
+    for length in (0.0, LENGTH / 2, LENGTH):
         shown.seek(round(1000 * length))
-        pixels = np.asarray(shown.picture(section), dtype=int)
-        orange.append(np.count_nonzero(np.abs(pixels - ORANGE).max(axis=-1) < 40))
-    assert 0.3 < orange[0] / orange[1] < 0.6  # the BHA covers some of both
+        counts.append(coloured(np.asarray(shown.picture(view), dtype=int), colours))
+    key, half, whole = counts
+    assert 0.3 < (half - key) / (whole - key) < 0.7  # the BHA covers some of the section, and a ripple has to grow
+
+
+def test_the_section_shows_where_rippling_sets_in(shown: Viewer) -> None:
+    """The key has all colours, in the same width each; the hole is darker above than below."""
+    [section] = [view for view in shown.views() if view.name.startswith("Vertical section")]
+    shown.seek(round(1000 * LENGTH))
+    pixels = np.asarray(shown.picture(section), dtype=int)
+    hole = pixels[:, : round(0.7 * pixels.shape[1])]
+    rows = [np.argwhere(np.abs(hole - BY_SEVERITY[band]).max(axis=-1) < 12)[:, 0] for band in (1, 3)]
+    assert np.median(rows[0]) < np.median(rows[1])
+    assert all(coloured(pixels[:, hole.shape[1] :], [colour]) for colour in BY_SEVERITY)
 
 
 def test_without_a_driver_the_viewer_says_what_it_needs(monkeypatch: pytest.MonkeyPatch, recorded: Path) -> None:

@@ -186,7 +186,7 @@ def test_the_strip_is_the_ripple_over_the_measured_depth(recorded: Path, scales:
     np.testing.assert_allclose(shown, np.interp(1000 * drilled, tick, height), atol=1e-4)
     at_all = np.interp(tick[tick <= 1000 * drilled[-1]] / 1000, drilled, shown)
     np.testing.assert_allclose(at_all, height[: len(at_all)], atol=3e-3)  # of waves of ±40 mm, whose crests are shown
-    assert at_all.max() == pytest.approx(height[: len(at_all)].max(), abs=1e-5)
+    assert at_all.max() == pytest.approx(height[: len(at_all)].max(), abs=1e-4)
     assert drilled[0] == pytest.approx(0.0, abs=1e-5)
     assert max(ripple) / 1000 - drilled[-1] < scales.trend
     for end, [piece] in pieces.items():
