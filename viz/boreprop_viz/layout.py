@@ -9,10 +9,11 @@ from .card import CARD
 from .scales import Scales
 from .scene import Bounds
 from .style import GROUND, PLOTS, TABS
-from .track import TIMELINE, Track
+from .track import DEPTH_TIMELINE, TIME_TIMELINE, TIMELINE, Track
 
 INFINITE = rr.TimeRangeBoundary.infinite()
 MOST_LANES = 5  # lanes for which the view has room; with more, one scrolls
+PLAYED_IN = 30.0  # s that a run takes when it is played
 HERE = rr.TimeRangeBoundary.cursor_relative(seq=0)
 
 
@@ -43,11 +44,23 @@ def blueprint(scales: Scales, tracks: Sequence[Track]) -> rrb.Blueprint:
             ),
             column_shares=[0.24, 0.36, 0.4],
         ),
-        rrb.TimePanel(state="collapsed", timeline=TIMELINE, play_state="following"),
+        time_panel(scales),
         rrb.BlueprintPanel(state="hidden"),
         rrb.SelectionPanel(state="hidden"),
         auto_views=False,
         auto_layout=False,
+    )
+
+
+def time_panel(scales: Scales) -> rrb.TimePanel:
+    """The time panel, which plays a run in half a minute on any timeline.
+
+    Rerun plays `playback_speed` seconds of time, and `playback_speed` × `fps` ticks of a length, per second.
+    """
+    speed = (scales.duration or PLAYED_IN) / PLAYED_IN
+    ticks = max(1000 * scales.length, 1.0) / PLAYED_IN
+    return rrb.TimePanel(
+        state="collapsed", timeline=TIMELINE, playback_speed=speed, fps=ticks / speed, play_state="following"
     )
 
 
@@ -57,7 +70,8 @@ def _bounds(bounds: Bounds) -> rrb.VisualBounds2D:
 
 def vertical_section(scales: Scales, tracks: Sequence[Track]) -> rrb.Spatial2DView:
     """Existing, planned and drilled hole, BHA and bit at true scale; the hole only as far as the cursor."""
-    so_far = rrb.VisibleTimeRanges(timeline=TIMELINE, start=INFINITE, end=HERE)
+    timelines = (TIMELINE, DEPTH_TIMELINE, TIME_TIMELINE)
+    so_far = rrb.VisibleTimeRanges([rrb.VisibleTimeRange(name, start=INFINITE, end=HERE) for name in timelines])
     return rrb.Spatial2DView(
         origin="vertical_section",
         name="Vertical section, true scale (m)",
