@@ -187,7 +187,7 @@ class LiveView:
         for name, before in self._before.items():
             if row[name] < before:
                 raise InputError(f"{name}: must not decrease, got {row[name]:.9g} after {before:.9g}")
-            self._before[name] = row[name]
+        self._before = {name: row[name] for name in ALONG}
         if self._failure is None:
             rows.waiting.append([row[name] for name in rows.columns])
 
