@@ -145,16 +145,16 @@ def test_what_each_row_determines_may_be_left_out(run: Trajectory, rows: list[Ro
     assert next(iter(words.values())) == [{1: "low", -1: "high", 0: "free"}[int(run["stabilizer_contact[1]"][0])]]
 
 
-@pytest.mark.parametrize("kind", [Case, ".toml", ".fmu"])
+@pytest.mark.parametrize(("kind", "name"), [("case", "run"), ("file", "drilled"), ("fmu", "Borehole")])
 def test_the_case_comes_as_such_or_in_a_file(
-    run: Trajectory, rows: list[Row], saved: Path, fmu: Path, kind: object
+    run: Trajectory, rows: list[Row], saved: Path, fmu: Path, kind: str, name: str
 ) -> None:
     assert run.case
-    (saved.parent / "drilled.toml").write_text(dump_case(run.case))
-    given = {Case: run.case, ".toml": saved.parent / "drilled.toml", ".fmu": str(fmu)}[kind]  # type: ignore[index]
+    file = saved.with_name("drilled.toml")
+    file.write_text(dump_case(run.case))
+    given = {"case": run.case, "file": file, "fmu": str(fmu)}[kind]
     with live(given, save=saved) as view:
         view.send(**rows[0])
-    name = {Case: "run", ".toml": "drilled", ".fmu": "Borehole"}[kind]  # type: ignore[index]
     [store] = RrdReader(saved).recordings()
     assert store.application_id.startswith(f"boreprop: {name} ")
 
@@ -248,7 +248,8 @@ def test_an_argument_that_cannot_be_used_is_named(
     case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: Row, message: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(InputError, match=message), live(**{"case_or_fmu": case} | arguments):
+    given: Row = {"case_or_fmu": case} | arguments
+    with pytest.raises(InputError, match=message), live(**given):
         raise AssertionError
     assert not list(tmp_path.iterdir())
 
