@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import ArrayLike
 from rerun.chunk import RrdReader
 
 from boreprop.case.case import Case, Schedule
@@ -114,7 +113,7 @@ def test_values_of_all_stabilizers_may_come_together(run: Trajectory, rows: list
     assert run.case
     with live(run.case, save=saved) as view:
         for row in rows:
-            together: dict[str, ArrayLike] = {
+            together: Row = {
                 quantity: row[quantity]
                 if quantity in row
                 else [v for n, v in row.items() if n.startswith(f"{quantity}[")]
@@ -152,8 +151,8 @@ def test_the_case_comes_as_such_or_in_a_file(
     assert run.case
     file = saved.with_name("drilled.toml")
     file.write_text(dump_case(run.case))
-    given = {"case": run.case, "file": file, "fmu": str(fmu)}[kind]
-    with live(given, save=saved) as view:
+    given: dict[str, Case | str | Path] = {"case": run.case, "file": file, "fmu": str(fmu)}
+    with live(given[kind], save=saved) as view:
         view.send(**rows[0])
     [store] = RrdReader(saved).recordings()
     assert store.application_id.startswith(f"boreprop: {name} ")
