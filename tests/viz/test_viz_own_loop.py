@@ -5,8 +5,10 @@ import os
 import signal
 import subprocess
 import sys
+import warnings
 import zipfile
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
@@ -26,7 +28,7 @@ from boreprop_viz import live
 from boreprop_viz.source import gather
 from boreprop_viz.stream import RunStream
 from rrd import read, stacked, static
-from viewers import signals, sound
+from viewers import rerun, signals, sound, until
 
 Row = dict[str, Any]
 
@@ -339,8 +341,12 @@ def test_who_cannot_wait_for_the_rest_gets_what_is_drawn(
         join = view._thread.join
 
         def interrupted() -> None:
-            monkeypatch.setattr(view._thread, "join", lambda: (held.go_on.set(), join()))
+            monkeypatch.setattr(view._thread, "join", go_on)
             raise KeyboardInterrupt
+
+        def go_on() -> None:
+            held.go_on.set()
+            join()
 
         monkeypatch.setattr(view._thread, "join", interrupted)
     assert sound(saved)
@@ -389,6 +395,40 @@ def test_it_does_not_hide_an_exception_of_the_loop(
     assert caught.value is error
     assert capsys.readouterr().err == "warning: the disk is full\n"
     assert old.read_text() == "old"
+
+
+@signals
+def test_a_viewer_that_is_there_gets_all_rows(run: Trajectory, rows: list[Row], tmp_path: Path) -> None:
+    seen = tmp_path / "seen.rrd"
+
+    def all_there() -> bool:
+        with warnings.catch_warnings(), suppress(ValueError, RuntimeError):  # no recording yet, half a chunk
+            warnings.filterwarnings("ignore", message="RRD file has no footer")
+            return drilled(seen) == ticks(rows)
+        return False
+
+    assert run.case
+    with rerun("--save", seen) as (_, address):
+        with live(run.case, connect=address) as view:
+            for row in rows:
+                view.send(**row)
+        assert until(all_there)
+
+
+@signals
+def test_the_loop_goes_on_when_the_viewer_is_gone(
+    run: Trajectory, rows: list[Row], saved: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert run.case
+    with rerun("--serve-grpc") as (viewer, address), live(run.case, connect=address, save=saved) as view:
+        for row in rows:
+            view.send(**row)
+            if row is rows[50]:
+                viewer.kill()
+                viewer.wait()
+    assert drilled(saved) == ticks(rows)
+    [warning] = [line for line in capfd.readouterr().err.splitlines() if line.startswith("warning: ")]
+    assert "may not have received all data" in warning
 
 
 @signals
