@@ -18,6 +18,7 @@ from boreprop.run.trajectory import Trajectory
 
 from .card import log_card
 from .furniture import log_furniture, log_grid, log_names, log_plan
+from .key import entries, log_key
 from .layout import blueprint
 from .scales import Scales, choose_scales
 from .scene import HoleAxis, bit_positions, planned_hole
@@ -149,9 +150,11 @@ class Drawing:
         if self.planned is not None:
             log_plan(rec, self.planned)
         tracks = make_tracks(rec, scales, sources)
+        key = entries(tracks, planned=self.planned is not None)
+        log_key(rec, key)
         if len(tracks) > 1:
             log_names(rec, scales, tracks)
-        rec.send_blueprint(blueprint(scales, tracks))
+        rec.send_blueprint(blueprint(scales, tracks, key))
         findings = ["drilling" if source.live else "" for source in sources]
         log_card(rec, sources, findings)
         done = 0
@@ -161,7 +164,7 @@ class Drawing:
                 if not scales.section.hold(bit_positions(stretch.rows)):
                     scales = scales.widened(bit_positions(stretch.rows))
                     log_grid(rec, scales)
-                    rec.send_blueprint(blueprint(scales, tracks))
+                    rec.send_blueprint(blueprint(scales, tracks, key))
                 flush(rec)  # the stretch before this one, which would else pile up in memory if the disk is slow
                 stream.send(stretch)
                 done += stretch.rows.row_count
