@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from boreprop.analysis.axis import axis_ripple
+from boreprop.analysis.hole import bit_positions
 from boreprop.case.case import Case, Schedule
 from boreprop.case.file import load_case
 from boreprop.core.survey import Survey
@@ -19,7 +20,7 @@ from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
 from boreprop_viz.record import draw, record
 from boreprop_viz.scales import Scales, choose_scales
-from boreprop_viz.scene import Array, BitFrame, bit_positions
+from boreprop_viz.scene import Array, BitFrame
 from boreprop_viz.sinks import open_recording
 from boreprop_viz.source import stored
 from conftest import Command

@@ -6,6 +6,8 @@ from pathlib import Path
 import numpy as np
 import rerun as rr
 
+from boreprop.analysis.hole import bit_positions
+from boreprop.analysis.plan import planned_hole
 from boreprop.core.survey import Survey
 from boreprop.run.trajectory import Trajectory
 
@@ -13,7 +15,7 @@ from .card import log_card
 from .furniture import log_furniture, log_grid, log_names, log_plan
 from .layout import blueprint
 from .scales import choose_scales
-from .scene import bit_positions, planned_hole
+from .scene import plan_to_draw
 from .sinks import flush, open_recording
 from .source import LiveRun, Source, live, stored
 from .stream import RunStream
@@ -93,8 +95,10 @@ def draw(
     OSError
         If the recording's file cannot be written.
     """
-    planned = None if plan is None else planned_hole(plan, sources[0].case.survey.measured_depth[-1])
-    ahead = [source.likely_positions() for source in sources] + ([] if planned is None else [planned.position])
+    planned = None
+    if plan is not None:
+        planned = plan_to_draw(planned_hole(plan, sources[0].case.survey.measured_depth[-1]))
+    ahead = [source.likely_positions() for source in sources] + ([] if planned is None else [planned])
     scales = choose_scales(
         [source.beginning for source in sources],
         whole=not any(source.live for source in sources),

@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from boreprop.analysis.axis import AXIS_REACH
+from boreprop.analysis.hole import HoleAxis, bit_positions, existing_hole, turning
 from boreprop.case.case import Case
 from boreprop.core.survey import Survey
 from boreprop.errors import InputError
@@ -16,7 +17,7 @@ from boreprop.run.completion import case_of, complete
 from boreprop.run.trajectory import Trajectory
 from boreprop.units import BUILD_LENGTH
 
-from .scene import REACH_ABOVE_BHA, Array, HoleAxis, bit_positions, existing_hole, turning
+from .scene import REACH_ABOVE_BHA, Array
 
 BATCH = 1000  # rows drawn at once, which limits memory
 POINTS_IN_HALF = 25  # points of the existing hole over half the length of the BHA: its curve looks smooth
