@@ -15,6 +15,7 @@ from ..run.completion import axis_of
 from ..run.trajectory import Trajectory
 
 NEAREST = 1e-9  # m: steps of the search for the nearest point end when they are shorter
+POINTS_BEHIND = 200  # of the existing hole behind a run: close enough to miss no more than mm
 MOST_STEPS = 50  # three or four are usual
 LEAST_SLOPE = 0.2  # keeps the steps short where a point is nearly as far away as the centre of the hole's curvature
 
@@ -127,6 +128,12 @@ def existing_hole(survey: Survey, reach: float, spacing: float) -> HoleAxis:
     top = min(float(hole.length[0]), -reach)
     length = np.union1d(hole.length, np.linspace(top, 0.0, int(np.ceil(-top / spacing)) + 1))
     return HoleAxis(length, hole.at(length))
+
+
+def hole_of(run: Trajectory, survey: Survey, reach: float) -> HoleAxis:
+    """The hole of a run that starts at the end of a survey, with at least `reach` metres of the existing hole."""
+    existing = existing_hole(survey, reach, reach / POINTS_BEHIND)
+    return existing.followed_by(run["drilled_length"], bit_positions(run))
 
 
 def bit_positions(rows: Trajectory) -> Floats:

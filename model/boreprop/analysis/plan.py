@@ -11,7 +11,9 @@ import numpy as np
 from ..arrays import Floats
 from ..core.survey import Survey
 from ..errors import InputError
-from .hole import HoleAxis, SurveyedHole, chord_inclination
+from ..run.completion import case_of
+from ..run.trajectory import Trajectory
+from .hole import HoleAxis, SurveyedHole, chord_inclination, hole_of
 
 ROUNDING = 1e-6  # m of measured depth: a hole that ends this little below its plan ends with it
 
@@ -71,3 +73,8 @@ def deviation_from(plan: SurveyedHole, hole: HoleAxis, length: Floats, over: flo
     planned = chord_inclination(plan, length, over)
     beyond = np.where(length > plan.length[-1] + ROUNDING, np.nan, 0.0)
     return Deviation(distance + beyond, chord_inclination(hole, length, over) - planned + beyond, planned + beyond)
+
+
+def deviation_of(run: Trajectory, plan: SurveyedHole, over: float) -> Deviation:
+    """How far each row of a run is off its plan, see `deviation_from`; `InputError` if the run lacks its case."""
+    return deviation_from(plan, hole_of(run, case_of(run).survey, over), run["drilled_length"], over)

@@ -12,11 +12,10 @@ from ..core.system import BottomHoleAssembly
 from ..run.completion import case_of
 from ..run.trajectory import Trajectory
 from ..units import BUILD_LENGTH
-from .hole import HoleAxis, bit_positions, chord_inclination, existing_hole
+from .hole import chord_inclination, hole_of
 from .rippling import Rippling, State, find_rippling, visible_waves
 
 SHORT_WAVE, LONG_WAVE = 0.25, 1.8  # half lengths of the BHA: the usual wavelengths of ripples lie in between
-CHORD_POINTS = 200  # of the existing hole below a chord: close enough to miss no more than mm
 
 
 @dataclass(frozen=True)
@@ -152,9 +151,3 @@ def mean_inclination(run: Trajectory, survey: Survey, over: float) -> Floats:
     inclination = chord_inclination(hole_of(run, survey, over), run["drilled_length"], over)
     turns = np.abs(inclination[1:] - inclination[:-1])
     return np.unwrap(inclination) if turns.max(initial=0.0) > pi else inclination  # unwrap only a hole past vertical
-
-
-def hole_of(run: Trajectory, survey: Survey, reach: float) -> HoleAxis:
-    """The hole of a run, and as much of the existing hole as reaches at least `reach` metres up from its start."""
-    existing = existing_hole(survey, reach, reach / CHORD_POINTS)
-    return existing.followed_by(run["drilled_length"], bit_positions(run))
