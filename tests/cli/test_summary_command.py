@@ -37,7 +37,7 @@ def cells(printed: str) -> list[list[str]]:
 def test_stations_follow_the_summary_with_their_units(command_here: Command, built: Trajectory) -> None:
     result = command_here("boreprop", "summary", "run.csv", "--stations", "30")
     assert (result.returncode, result.stderr) == (0, "")
-    for heading in ("MD", "inclin.", "TVD", "displ.", "DLS", "(m)", "(°)", "(°/30 m)"):
+    for heading in ("MD", "incl.", "TVD", "displ.", "DLS", "(m)", "(°)", "(°/30 m)"):
         assert heading in result.stdout
     assert "off" not in result.stdout
     listed = [line for line in cells(result.stdout) if len(line) == 5]

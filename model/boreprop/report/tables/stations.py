@@ -17,7 +17,7 @@ NONE = "–"  # below the end of the plan
 
 def headings(stations: Stations) -> tuple[str, ...]:
     """The headings of the columns of `lines`, with their units; `caption` says what they mean."""
-    named = [("MD", "m"), ("inclin.", "rad"), ("TVD", "m"), ("displ.", "m"), ("DLS", "rad/m")]
+    named = [("MD", "m"), ("incl.", "rad"), ("TVD", "m"), ("displ.", "m"), ("DLS", "rad/m")]
     if stations.deviation is not None:
         named += [("planned", "rad"), ("off plan", "rad"), ("off plan", "m")]
     return tuple(f"{name}\n({UNITS[unit].shown})" for name, unit in named)
