@@ -8,18 +8,14 @@ from numpy.typing import NDArray
 from rerun.chunk import RrdReader
 
 
-def read(path: Path, entity: str, component: str) -> dict[int, list[Any]]:
-    """What an entity's component holds at each tick of the timeline."""
-    chunks = (
-        RrdReader(path).stream().filter(content=f"/{entity}", components=component, has_timeline="drilled_length_mm")
-    )
+def read(path: Path, entity: str, component: str, timeline: str = "drilled_length_mm") -> dict[Any, list[Any]]:
+    """What an entity's component holds at each tick of a timeline."""
+    chunks = RrdReader(path).stream().filter(content=f"/{entity}", components=component, has_timeline=timeline)
     batches = [chunk.to_record_batch() for chunk in chunks]
     return {
         tick: value
         for batch in batches
-        for tick, value in zip(
-            batch.column("drilled_length_mm").to_pylist(), batch.column(component).to_pylist(), strict=True
-        )
+        for tick, value in zip(batch.column(timeline).to_pylist(), batch.column(component).to_pylist(), strict=True)
     }
 
 

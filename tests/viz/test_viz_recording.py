@@ -4,6 +4,7 @@ import re
 import subprocess
 import sys
 from dataclasses import replace
+from datetime import timedelta
 from pathlib import Path
 
 import numpy as np
@@ -12,13 +13,13 @@ import pytest
 from boreprop.analysis.axis import axis_ripple
 from boreprop.analysis.hole import bit_positions
 from boreprop.case.case import Case, Schedule
-from boreprop.case.file import load_case
+from boreprop.case.file import load_case, parse_case
 from boreprop.core.survey import Survey
 from boreprop.errors import InputError
 from boreprop.run.results import write_trajectory
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
-from boreprop_viz.record import draw, record
+from boreprop_viz.record import Drawing, record
 from boreprop_viz.scales import Scales, choose_scales
 from boreprop_viz.scene import Array, BitFrame
 from boreprop_viz.sinks import open_recording
@@ -56,6 +57,53 @@ def test_the_timeline_is_the_drilled_length_in_millimetres(recorded: Path, run: 
     ticks = list(read(recorded, "bit_frame/bha", "LineStrips2D:strips"))
     assert ticks == np.rint(1000 * run["drilled_length"]).astype(int).tolist()
     assert ticks[-1] == 1000 * LENGTH
+
+
+def test_measured_depth_is_a_timeline_where_the_runs_share_a_start(
+    recorded: Path, run: Trajectory, case: Case, tmp_path: Path
+) -> None:
+    start = case.survey.measured_depth[-1]
+    depth = read(recorded, "plots/ripple/ripple", "Scalars:scalars", "measured_depth_mm")
+    assert list(depth) == [
+        tick + round(1000 * start) for tick in read(recorded, "plots/ripple/ripple", "Scalars:scalars")
+    ]
+    deeper = replace(case, survey=Survey((0.0, start + 1.0), (0.0, 0.0)))
+    record({"a": run, "b": simulate(deeper, length=1.0)}, save=tmp_path / "two.rrd")
+    assert read(tmp_path / "two.rrd", "bit_frame/a/bha", "LineStrips2D:strips")
+    assert not read(tmp_path / "two.rrd", "bit_frame/a/bha", "LineStrips2D:strips", "measured_depth_mm")
+
+
+def test_a_run_that_stands_still_goes_on_in_simulation_time(run: Trajectory, tmp_path: Path) -> None:
+    still = {name: np.append(column, np.full(9, column[-1])) for name, column in run.columns.items()}
+    seconds = np.arange(run.row_count + 9) / 2
+    still |= {"time": seconds, "rss_force": np.append(run["rss_force"], 1000.0 * np.arange(9))}
+    record(Trajectory(still, run.case), save=tmp_path / "still.rrd")
+    forces = read(tmp_path / "still.rrd", "plots/rss_force/rss_force", "Scalars:scalars", "simulation_time")
+    assert list(forces) == [timedelta(seconds=second) for second in seconds.tolist()]
+    np.testing.assert_allclose(list(forces.values())[-9:], np.arange(9.0)[:, None])
+    # what was drilled earlier and is drawn only now has the time at which it was drilled
+    ripple, at = "plots/ripple/ripple", "simulation_time"
+    drilled = read(tmp_path / "still.rrd", ripple, "Scalars:scalars")
+    expected = np.interp(list(drilled), 1000 * run["drilled_length"], seconds[: run.row_count])
+    shown = [moment.total_seconds() for moment in read(tmp_path / "still.rrd", ripple, "Scalars:scalars", at)]
+    np.testing.assert_allclose(shown, expected, atol=0.01)
+
+
+def test_the_case_is_a_property_of_the_recording(recorded: Path, case: Case) -> None:
+    [[text]] = static(recorded, "__properties/case", "case_file")
+    assert parse_case(text, "case") == case
+    [[weight]] = static(recorded, "__properties/case", "active_weight_on_bit")
+    assert weight == case.active_weight_on_bit
+
+
+def test_recordings_that_look_alike_share_an_application_and_others_do_not(run: Trajectory, case: Case) -> None:
+    def application(*runs: Trajectory, plan: Survey | None = None) -> str:
+        return Drawing.of([stored(f"run {k}", run) for k, run in enumerate(runs)], plan).application
+
+    wider = simulate(replace(case, bit_diameter=0.3), sample_interval=0.5)
+    plan = Survey((0.0, 100.0), (0.0, 0.1))
+    assert application(run) == application(run)
+    assert len({application(run), application(wider), application(run, wider), application(run, plan=plan)}) == 4
 
 
 def test_the_drilled_hole_is_the_path_of_the_bit(recorded: Path, run: Trajectory) -> None:
@@ -270,7 +318,7 @@ def test_several_runs_are_drawn_over_each_other_each_under_its_name(
 
 def test_what_is_drawn_does_not_depend_on_the_batches(recorded: Path, run: Trajectory, tmp_path: Path) -> None:
     with open_recording(save=tmp_path / "other.rrd") as rec:
-        draw(rec, [stored("run", run, batch=37)])
+        Drawing.of([stored("run", run, batch=37)]).draw(rec)
     for entity in ("vertical_section/drilled_hole", "vertical_section/bha", "bit_frame/walls", "bit_frame/bha"):
         other = stacked(tmp_path / "other.rrd", entity, "LineStrips2D:strips")
         np.testing.assert_allclose(other, stacked(recorded, entity, "LineStrips2D:strips"), atol=1e-5)

@@ -24,15 +24,15 @@ from rrd import read, stacked, static
 LIVE = """
 import sys
 from boreprop_fmu.host.drive import FmuRun
-from boreprop_viz.record import draw
+from boreprop_viz.record import Drawing
 from boreprop_viz.sinks import open_recording
 from boreprop_viz.source import live, stored
 
 fmu, now, then = sys.argv[1:]
 with open_recording(save=now) as rec:
-    draw(rec, [live("live", FmuRun(fmu, step=0.25, stop=60.0), batch=50)])
+    Drawing.of([live("live", FmuRun(fmu, step=0.25, stop=60.0), batch=50)]).draw(rec)
 with open_recording(save=then) as rec:
-    draw(rec, [stored("stored", FmuRun(fmu, step=0.25, stop=60.0).trajectory(), batch=50)])
+    Drawing.of([stored("stored", FmuRun(fmu, step=0.25, stop=60.0).trajectory(), batch=50)]).draw(rec)
 """
 
 

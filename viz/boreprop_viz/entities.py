@@ -10,12 +10,13 @@ import rerun as rr
 from boreprop.analysis.axis import AXIS_REACH, axis_ripple
 from boreprop.analysis.hole import HoleAxis, bit_positions
 from boreprop.core.quantities import BY_NAME
+from boreprop.run.trajectory import Trajectory
 from boreprop.units import UNITS
 
 from .scene import AHEAD, REACH_ABOVE_BHA, Shapes
 from .source import Stretch
 from .style import LANES, PLOTS
-from .track import Track, points, send, send_arrows, send_curve, send_strips
+from .track import Track, arrivals, moments, points, send, send_arrows, send_curve, send_strips
 
 RIPPLE = "plots/ripple/ripple"
 BIT_LENGTH = 0.04  # length of the drawn bit over that of the BHA
@@ -45,14 +46,14 @@ def log_drilled_hole(track: Track, stretch: Stretch, drilled: float) -> None:
     new = (hole.length > drilled) & (hole.length <= stretch.rows["drilled_length"][-1])
     ends = np.flatnonzero(new)
     segments = np.stack((hole.position[ends - 1], hole.position[ends]), axis=1)
-    send_strips(track, "vertical_section/drilled_hole", hole.length[ends], segments[:, None])
+    send_strips(track, "vertical_section/drilled_hole", arrivals(stretch.rows, hole.length[ends]), segments[:, None])
 
 
 def log_bha_in_section(track: Track, shapes: Shapes) -> None:
     """The BHA and the bit at true scale."""
-    length = shapes.rows["drilled_length"]
-    send_strips(track, "vertical_section/bha", length, shapes.bha_in_section[:, None])
-    send(track, "vertical_section/bit", length, rr.Points2D.columns(positions=bit_positions(shapes.rows)))
+    at = moments(shapes.rows)
+    send_strips(track, "vertical_section/bha", at, shapes.bha_in_section[:, None])
+    send(track, "vertical_section/bit", at, rr.Points2D.columns(positions=bit_positions(shapes.rows)))
 
 
 # The bit frame
@@ -61,13 +62,13 @@ def log_bha_in_section(track: Track, shapes: Shapes) -> None:
 def log_walls(track: Track, shapes: Shapes) -> None:
     """The low and the high side of the hole."""
     strips = points(track.scales.lateral * shapes.walls, -shapes.frame.s_hole)
-    send_strips(track, "bit_frame/walls", shapes.rows["drilled_length"], strips)
+    send_strips(track, "bit_frame/walls", moments(shapes.rows), strips)
 
 
 def log_bha(track: Track, shapes: Shapes) -> None:
     """The axis of the BHA, bent as in the model."""
     strips = points(track.scales.lateral * shapes.bha_axis, -shapes.frame.s)[:, None]
-    send_strips(track, "bit_frame/bha", shapes.rows["drilled_length"], strips)
+    send_strips(track, "bit_frame/bha", moments(shapes.rows), strips)
 
 
 def log_bit(track: Track, shapes: Shapes) -> None:
@@ -76,12 +77,12 @@ def log_bit(track: Track, shapes: Shapes) -> None:
     across = shapes.frame.radius * np.array([-1.0, 1.0, 0.5, -0.5, -1.0])
     along = ahead * np.array([0.0, 0.0, 1.0, 1.0, 0.0])
     strips = points(track.scales.lateral * (across + shapes.bit_turn[:, None] * along), along)[:, None]
-    send_strips(track, "bit_frame/bit", shapes.rows["drilled_length"], strips)
+    send_strips(track, "bit_frame/bit", moments(shapes.rows), strips)
 
 
 def log_tilt(track: Track, shapes: Shapes) -> None:
     """The axis of the bit, the direction of the hole, and the limits of the angle between them."""
-    length, reach = shapes.rows["drilled_length"], AHEAD * float(shapes.frame.stabilizer[-1])
+    at, reach = moments(shapes.rows), AHEAD * float(shapes.frame.stabilizer[-1])
     limit = track.case.bit.tilt_limit
     directions = {
         "limits": shapes.hole_turn[:, None] + np.array([-limit, limit]),
@@ -91,39 +92,39 @@ def log_tilt(track: Track, shapes: Shapes) -> None:
     ahead = np.array([0.0, reach])
     for thing, angles in directions.items():
         strips = points(track.scales.lateral * angles[..., None] * ahead, ahead)
-        send_strips(track, f"bit_frame/tilt/{thing}", length, strips)
+        send_strips(track, f"bit_frame/tilt/{thing}", at, strips)
     tilts = [f"ψ {UNITS['rad'].number(tilt, '+.2f')}{UNITS['rad'].shown}" for tilt in shapes.rows["bit_tilt"]]
     places = points(track.scales.lateral * shapes.bit_turn * reach, (LABEL - LABELS_APART * track.place) * reach)
     labels = rr.Points2D.columns(positions=places, labels=tilts)
-    send(track, "bit_frame/tilt/label", length, labels)
+    send(track, "bit_frame/tilt/label", at, labels)
 
 
 def log_stabilizers(track: Track, shapes: Shapes) -> None:
     """The blades of the stabilizers, from one side of the BHA to the other; the last stabilizer fills the hole."""
     strips = points(track.scales.lateral * shapes.blades, -shapes.frame.stabilizer[:, None])
-    send_strips(track, "bit_frame/stabilizers", shapes.rows["drilled_length"], strips)
+    send_strips(track, "bit_frame/stabilizers", moments(shapes.rows), strips)
 
 
 def log_contacts(track: Track, shapes: Shapes) -> None:
     """The points where the wall pushes on a stabilizer, and its force; nothing where it does not."""
-    length, force = shapes.rows["drilled_length"], shapes.rows.stack("stabilizer_force")
+    at, force = moments(shapes.rows), shapes.rows.stack("stabilizer_force")
     for i, lateral in enumerate(shapes.contact_points.T):
         place = points(track.scales.lateral * lateral, -shapes.frame.stabilizer[i])
         there = np.isfinite(lateral)
         dots = rr.Points2D.columns(positions=place[there]).partition(there)
-        send(track, f"bit_frame/contact_point/{i + 1}", length, dots)
-        send_arrows(track, f"bit_frame/contact_force/{i + 1}", length, place, force[:, i])
+        send(track, f"bit_frame/contact_point/{i + 1}", at, dots)
+        send_arrows(track, f"bit_frame/contact_force/{i + 1}", at, place, force[:, i])
 
 
 def log_forces(track: Track, shapes: Shapes) -> None:
     """The force of the steering pads on the BHA, and the side force on the bit."""
     frame, rows = shapes.frame, shapes.rows
     ahead = (track.place + 1.5) * BIT_LENGTH * frame.stabilizer[-1]  # ahead of the bit, which would hide the arrow
-    at = {"rss_force": (frame.at_rss, frame.rss), "bit_lateral_force": (0, -ahead)}
-    for force, (place, s) in at.items():
+    from_places = {"rss_force": (frame.at_rss, frame.rss), "bit_lateral_force": (0, -ahead)}
+    for force, (place, s) in from_places.items():
         if force in rows.columns:
             tip = points(track.scales.lateral * shapes.bha_axis[:, place], -s)
-            send_arrows(track, f"bit_frame/{force}", rows["drilled_length"], tip, rows[force])
+            send_arrows(track, f"bit_frame/{force}", moments(rows), tip, rows[force])
 
 
 # The plots
@@ -140,26 +141,27 @@ def log_plots(track: Track, shapes: Shapes) -> None:
     for name, plot in PLOTS.items():
         for scalar in plot.names(rows.n):
             if scalar in rows.columns:
-                send_curve(track, curve(name, scalar), rows["drilled_length"], plot.unit.factor * rows[scalar])
+                send_curve(track, curve(name, scalar), moments(rows), plot.unit.factor * rows[scalar])
 
 
 def log_tilt_limits(track: Track, shapes: Shapes) -> None:
     """±ψ*, from the first row to the last."""
-    ends, limit = shapes.rows["drilled_length"][[0, -1]], UNITS["rad"].factor * track.case.bit.tilt_limit
+    ends, limit = moments(shapes.rows).where(np.array([0, -1])), UNITS["rad"].factor * track.case.bit.tilt_limit
     for side, sign in (("lower", -1.0), ("upper", 1.0)):
         send_curve(track, f"plots/bit_tilt/{side}_limit", ends, np.full(2, sign * limit))
 
 
-def log_ripple(track: Track, stretch: Stretch, rippled: float) -> float:
+def log_ripple(track: Track, stretch: Stretch, recent: Trajectory, rippled: float) -> float:
     """The ripple of the drilled hole, mm, from the length `rippled`, m, as far as its trend is determined.
 
+    `recent` are the last rows of the run, back to where the trend is determined only now.
     Returns the length up to which it is logged now.
     """
     width = track.scales.trend
     hole = stretch.hole.since(max(rippled, 0.0) - (AXIS_REACH + 1.0) * width)
     length, ripple = axis_ripple(hole.length, hole.position, width)
     new = (length > rippled) & (length >= 0.0)
-    send_curve(track, RIPPLE, length[new], 1000 * ripple[new])
+    send_curve(track, RIPPLE, arrivals(recent, length[new]), 1000 * ripple[new])
     return float(length[-1]) if len(length) else rippled
 
 
@@ -184,6 +186,6 @@ def log_modes(track: Track, stretch: Stretch, shown: dict[str, float]) -> dict[s
             values = rows[scalar]
             changed = np.flatnonzero(np.diff(values, prepend=shown.get(lane, np.nan)) != 0.0)
             words = [states[int(value)][0] for value in values[changed]]
-            send(track, lane, rows["drilled_length"][changed], rr.StateChange.columns(state=words))
+            send(track, lane, moments(rows).where(changed), rr.StateChange.columns(state=words))
             last[lane] = values[-1]
     return last

@@ -51,14 +51,13 @@ def show(
     except ModuleNotFoundError as error:
         message = f"show: {error.name} must be installed for this: pip install 'boreprop[viz]', got: {error}"
         raise InputError(message) from error
-    from .record import draw, find_sources
-    from .sinks import APPLICATION
+    from .record import Drawing, find_sources
 
-    sources = list(find_sources(named, plan))
-    rec = rr.RecordingStream(APPLICATION)
+    drawing = Drawing.of(find_sources(named, plan), plan)
+    rec = rr.RecordingStream(drawing.application)
     rec.set_log_time_enabled(False)
     viewer = Viewer(recording=rec, width=width, height=height)
-    draw(rec, sources, plan)
+    drawing.draw(rec)
     rec.flush()
     viewer.display()
 

@@ -1,20 +1,27 @@
 """Draws runs into a recording, which goes to a file, to a viewer, or to both."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+from importlib.metadata import version
 from pathlib import Path
+from secrets import token_hex
+from typing import Self
 
 import numpy as np
 import rerun as rr
 
-from boreprop.analysis.hole import bit_positions
+from boreprop.analysis.hole import SurveyedHole, bit_positions
 from boreprop.analysis.plan import planned_hole
+from boreprop.case.file import dump_case
+from boreprop.case.parameters import parameters
 from boreprop.core.survey import Survey
 from boreprop.run.trajectory import Trajectory
 
 from .card import log_card
 from .furniture import log_furniture, log_grid, log_names, log_plan
 from .layout import blueprint
-from .scales import choose_scales
+from .scales import Scales, choose_scales
 from .scene import plan_to_draw
 from .sinks import flush, open_recording
 from .source import LiveRun, Source, live, stored
@@ -60,9 +67,9 @@ def record(
     OSError
         If the file cannot be written.
     """
-    sources = list(find_sources(runs, plan))
-    with open_recording(save=save, spawn=spawn, serve=serve, connect=connect) as rec:
-        draw(rec, sources, plan, progress)
+    drawing = Drawing.of(find_sources(runs, plan), plan)
+    with open_recording(drawing.application, save=save, spawn=spawn, serve=serve, connect=connect) as rec:
+        drawing.draw(rec, progress)
 
 
 def find_sources(runs: Runs, plan: Survey | None = None) -> Iterator[Source]:
@@ -71,59 +78,106 @@ def find_sources(runs: Runs, plan: Survey | None = None) -> Iterator[Source]:
         yield stored(name, run, plan) if isinstance(run, Trajectory) else live(name, run, plan)
 
 
-def draw(
-    rec: rr.RecordingStream,
-    sources: Sequence[Source],
-    plan: Survey | None = None,
-    progress: Callable[[float], None] = lambda _: None,
-) -> None:
-    """Log some runs and the blueprint into an open recording.
+@dataclass(frozen=True)
+class Drawing:
+    """Runs that are ready to be drawn in one recording.
 
     Parameters
     ----------
-    rec
-        The recording.
     sources
         The runs.
-    plan, progress
-        As in `record`.
-
-    Raises
-    ------
-    InputError
-        If a live run fails, or the plan does not reach the start of the first run.
-    OSError
-        If the recording's file cannot be written.
+    planned
+        The planned hole, if there is one.
+    scales
+        The scales and ranges of the views that suit all of them.
     """
-    planned = None
-    if plan is not None:
-        planned = plan_to_draw(planned_hole(plan, sources[0].case.survey.measured_depth[-1]))
-    ahead = [source.likely_positions() for source in sources] + ([] if planned is None else [planned])
-    scales = choose_scales(
-        [source.beginning for source in sources],
-        whole=not any(source.live for source in sources),
-        section=np.concatenate(ahead),
-    )
-    log_furniture(rec, scales, [source.case for source in sources])
-    if planned is not None:
-        log_plan(rec, planned)
-    tracks = make_tracks(rec, scales, sources)
-    if len(tracks) > 1:
-        log_names(rec, scales, tracks)
-    rec.send_blueprint(blueprint(scales, tracks))
-    findings = ["drilling" if source.live else "" for source in sources]
-    log_card(rec, sources, findings)
-    done = 0
-    for i, (source, track) in enumerate(zip(sources, tracks, strict=True)):
-        stream = RunStream(track)
-        for stretch in source.stretches:
-            if not scales.section.hold(bit_positions(stretch.rows)):
-                scales = scales.widened(bit_positions(stretch.rows))
-                log_grid(rec, scales)
-                rec.send_blueprint(blueprint(scales, tracks))
-            flush(rec)  # the stretch before this one, which would else pile up in memory if the disk is slow
-            stream.send(stretch)
-            done += stretch.rows.row_count
-            progress(done)
-        findings[i] = stream.finding()
+
+    sources: Sequence[Source]
+    planned: SurveyedHole | None
+    scales: Scales
+
+    @classmethod
+    def of(cls, sources: Iterable[Source], plan: Survey | None = None) -> Self:
+        """Choose the scales; `InputError` if the plan does not reach the start of the first run."""
+        sources = list(sources)
+        planned = None if plan is None else planned_hole(plan, sources[0].case.survey.measured_depth[-1])
+        ahead = [source.likely_positions() for source in sources]
+        if planned is not None:
+            ahead.append(plan_to_draw(planned))
+        scales = choose_scales(
+            [source.beginning for source in sources],
+            whole=not any(source.live for source in sources),
+            section=np.concatenate(ahead),
+        )
+        return cls(sources, planned, scales)
+
+    @property
+    def name(self) -> str:
+        """The name of the recording: those of its runs."""
+        return " + ".join(source.name for source in self.sources)
+
+    @property
+    def application(self) -> str:
+        """What Rerun calls the application: its name with a digest of the look.
+
+        A viewer keeps one layout for all recordings of an application, the newest, so recordings that look different
+        must have different applications. How a live run will look in the end is not known, so its application is its
+        own.
+        """
+        look = [repr((self.scales, [(source.name, source.case) for source in self.sources])), version("boreprop")]
+        if any(source.live for source in self.sources):
+            look.append(token_hex())
+        return f"boreprop: {self.name} {sha256(' '.join(look).encode()).hexdigest()[:8]}"
+
+    def draw(self, rec: rr.RecordingStream, progress: Callable[[float], None] = lambda _: None) -> None:
+        """Log the runs and the blueprint into an open recording.
+
+        Parameters
+        ----------
+        rec
+            The recording.
+        progress
+            As in `record`.
+
+        Raises
+        ------
+        InputError
+            If a live run fails.
+        OSError
+            If the recording's file cannot be written.
+        """
+        sources, scales = self.sources, self.scales
+        rec.send_recording_name(self.name)
+        log_cases(rec, sources)
+        log_furniture(rec, scales, [source.case for source in sources])
+        if self.planned is not None:
+            log_plan(rec, plan_to_draw(self.planned))
+        tracks = make_tracks(rec, scales, sources)
+        if len(tracks) > 1:
+            log_names(rec, scales, tracks)
+        rec.send_blueprint(blueprint(scales, tracks))
+        findings = ["drilling" if source.live else "" for source in sources]
         log_card(rec, sources, findings)
+        done = 0
+        for i, (source, track) in enumerate(zip(sources, tracks, strict=True)):
+            stream = RunStream(track)
+            for stretch in source.stretches:
+                if not scales.section.hold(bit_positions(stretch.rows)):
+                    scales = scales.widened(bit_positions(stretch.rows))
+                    log_grid(rec, scales)
+                    rec.send_blueprint(blueprint(scales, tracks))
+                flush(rec)  # the stretch before this one, which would else pile up in memory if the disk is slow
+                stream.send(stretch)
+                done += stretch.rows.row_count
+                progress(done)
+            findings[i] = stream.finding()
+            log_card(rec, sources, findings)
+
+
+def log_cases(rec: rr.RecordingStream, sources: Sequence[Source]) -> None:
+    """The cases as properties of the recording: each with its parameters, SI units, and as the text of a case file."""
+    for source in sources:
+        name = "case" if len(sources) == 1 else f"case {source.name}"
+        values = parameters(source.case) | {"case_file": dump_case(source.case)}
+        arrays = {what: np.array([value]) for what, value in values.items()}  # of anything else pyarrow asks pandas
+        rec.send_property(name, rr.AnyValues(drop_untyped_nones=True, **arrays))

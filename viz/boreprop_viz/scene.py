@@ -30,8 +30,9 @@ FRAME_WIDTH = 0.9  # lengths of the BHA: room for the walls, and for arrows and 
 
 
 def plan_to_draw(plan: SurveyedHole) -> Array:
-    """Points along the planned hole, (N, 2)."""
-    return plan.at(np.union1d(plan.length, np.linspace(plan.length[0], plan.length[-1], POINTS_OF_PLAN)))
+    """Points along the planned hole, one of them where drilling starts, (N, 2)."""
+    even = np.linspace(plan.length[0], plan.length[-1], POINTS_OF_PLAN)
+    return plan.at(np.unique(np.concatenate((plan.length, [0.0], even))))
 
 
 class BitFrame:

@@ -41,7 +41,12 @@ PATIENCE = 20.0  # s after which a viewer or a disk that accepts no data is give
 
 @contextmanager
 def open_recording(
-    *, save: str | Path | None = None, spawn: bool = False, serve: bool = False, connect: str | None = None
+    application: str = APPLICATION,
+    *,
+    save: str | Path | None = None,
+    spawn: bool = False,
+    serve: bool = False,
+    connect: str | None = None,
 ) -> Iterator[rr.RecordingStream]:
     """Open a recording whose data go to a file, to a viewer, or to both.
 
@@ -50,6 +55,8 @@ def open_recording(
 
     Parameters
     ----------
+    application
+        What Rerun calls the application; recordings of one application share a layout in a viewer.
     save
         The .rrd file to write. An existing file is replaced when the block ends, also by Ctrl-C (with the data up to
         then), but not by any other exception.
@@ -69,7 +76,7 @@ def open_recording(
     interrupt = viewer = None
     with replacing(Path(save)) if save is not None else scratch_file() as draft:
         try:
-            with recording_to(draft) as rec:
+            with recording_to(draft, application) as rec:
                 viewer = open_viewer(draft, spawn, serve, connect, required=save is None)
                 yield rec
             if viewer is not None:
@@ -94,9 +101,9 @@ def scratch_file() -> Iterator[Path]:
 
 
 @contextmanager
-def recording_to(path: Path) -> Iterator[rr.RecordingStream]:
+def recording_to(path: Path, application: str) -> Iterator[rr.RecordingStream]:
     """Open a recording whose data go to a file, which is complete at the end; `OSError` if it cannot be written."""
-    rec = rr.RecordingStream(APPLICATION)
+    rec = rr.RecordingStream(application)
     rec.set_log_time_enabled(False)
     try:
         try:

@@ -49,6 +49,8 @@ class RunStream:
             log_existing_hole(self.track, stretch.hole, self.drilled)
         log_drilled_hole(self.track, stretch, self.drilled)
         self.drilled = float(stretch.rows["drilled_length"][-1])
+        rows = stretch.rows if self.recent is None else _joined(self.recent, stretch.rows)
+        self.recent = _last(rows, RECENT * self.track.case.bha.half_length)
         shapes = self.frame.shapes(stretch.rows, stretch.hole)
         for log in (
             log_bha_in_section,
@@ -63,21 +65,21 @@ class RunStream:
             log_tilt_limits,
         ):
             log(self.track, shapes)
-        self.rippled = log_ripple(self.track, stretch, self.rippled)
+        self.rippled = log_ripple(self.track, stretch, rows, self.rippled)
         self.modes = log_modes(self.track, stretch, self.modes)
-        self.recent = _latest(self.recent, stretch.rows, RECENT * self.track.case.bha.half_length)
 
     def finding(self) -> str:
         """Whether the hole ripples near the bit, in words; empty before the first rows."""
         return in_words(find_rippling(self.recent)) if self.recent else ""
 
 
-def _latest(before: Trajectory | None, new: Trajectory, length: float) -> Trajectory:
+def _joined(before: Trajectory, after: Trajectory) -> Trajectory:
+    """Rows of a run and those that follow."""
+    columns = {name: np.concatenate((before.columns[name], values)) for name, values in after.columns.items()}
+    return Trajectory(columns, after.case)
+
+
+def _last(rows: Trajectory, length: float) -> Trajectory:
     """The last rows of a run, over `length` m."""
-    columns = {
-        name: np.concatenate((before.columns[name], values)) if before else values
-        for name, values in new.columns.items()
-    }
-    drilled = columns["drilled_length"]
-    first = int(np.searchsorted(drilled, drilled[-1] - length))
-    return Trajectory({name: values[first:] for name, values in columns.items()}, new.case)
+    first = int(np.searchsorted(rows["drilled_length"], rows["drilled_length"][-1] - length))
+    return Trajectory({name: values[first:] for name, values in rows.columns.items()}, rows.case)

@@ -1,15 +1,19 @@
-"""Tracks: the entities, colour and timeline of each run in a recording, and functions that send data to them.
+"""Tracks: the entities, colour and timelines of each run in a recording, and functions that send data to them.
 
-The timeline is the drilled length in whole millimetres.
+All that a run shows is on up to three timelines: the drilled length and, if all runs start at the same one, the
+measured depth, in whole millimetres; and the simulation time, if the run has one.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 import rerun as rr
+from numpy.typing import NDArray
 
 from boreprop.case.case import Case
+from boreprop.run.trajectory import Trajectory
 from boreprop.units import UNITS
 
 from .scales import Scales
@@ -17,7 +21,9 @@ from .scene import Array
 from .source import Source
 from .style import BY_RUN, Colour, shade
 
-TIMELINE = "drilled_length_mm"
+TIMELINE = "drilled_length_mm"  # the one that a viewer shows first
+DEPTH_TIMELINE = "measured_depth_mm"
+TIME_TIMELINE = "simulation_time"
 
 
 @dataclass(frozen=True)
@@ -76,11 +82,41 @@ def make_tracks(rec: rr.RecordingStream, scales: Scales, sources: Sequence[Sourc
     ]
 
 
-def send(track: Track, thing: str, length: Array, columns: rr.ComponentColumnList) -> None:
-    """Send components of a thing at drilled lengths. Nothing is sent if there are none, since viewers fail on that."""
-    if len(length):
-        time = rr.TimeColumn(TIMELINE, sequence=np.rint(1000 * length).astype(np.int64))
-        track.rec.send_columns(track.entity(thing), [time], columns)
+class Moments(NamedTuple):
+    """Some moments of a run: the drilled length, m, and the time, s, at each; no times if the run has none."""
+
+    length: Array
+    time: Array | None
+
+    def where(self, kept: NDArray[Any] | slice) -> "Moments":
+        """The moments that a mask, indices or a slice select."""
+        return Moments(self.length[kept], None if self.time is None else self.time[kept])
+
+
+def moments(rows: Trajectory) -> Moments:
+    """The moments of the rows of a run."""
+    return Moments(rows["drilled_length"], rows.columns.get("time"))
+
+
+def arrivals(rows: Trajectory, length: Array) -> Moments:
+    """The moments at which the bit first came to some drilled lengths, which the rows of a run reach."""
+    drilled, time = moments(rows)
+    if time is not None:  # of several rows at one length `interp` takes the last: in the reversed order, the first
+        time = np.interp(-length, -drilled[::-1], time[::-1])
+    return Moments(length, time)
+
+
+def send(track: Track, thing: str, at: Moments, columns: rr.ComponentColumnList) -> None:
+    """Send components of a thing at some moments. Nothing is sent if there are none, since viewers fail on that."""
+    if not len(at.length):
+        return
+    millimetres = np.rint(1000 * at.length).astype(np.int64)
+    index = [rr.TimeColumn(TIMELINE, sequence=millimetres)]
+    if track.scales.start is not None:
+        index.append(rr.TimeColumn(DEPTH_TIMELINE, sequence=millimetres + round(1000 * track.scales.start)))
+    if at.time is not None:
+        index.append(rr.TimeColumn(TIME_TIMELINE, duration=at.time))
+    track.rec.send_columns(track.entity(thing), index, columns)
 
 
 def points(x: Array | float, y: Array | float) -> Array:
@@ -88,23 +124,23 @@ def points(x: Array | float, y: Array | float) -> Array:
     return np.stack(np.broadcast_arrays(x, y), axis=-1)
 
 
-def send_strips(track: Track, thing: str, length: Array, strips: Array) -> None:
-    """Send line strips at drilled lengths, shape (rows, strips, points, 2)."""
+def send_strips(track: Track, thing: str, at: Moments, strips: Array) -> None:
+    """Send line strips at some moments, shape (rows, strips, points, 2)."""
     rows, per_row = strips.shape[:2]
     columns = rr.LineStrips2D.columns(strips=strips.reshape(-1, *strips.shape[2:]).astype(np.float32))
-    send(track, thing, length, columns.partition([per_row] * rows))
+    send(track, thing, at, columns.partition([per_row] * rows))
 
 
-def send_arrows(track: Track, thing: str, length: Array, tip: Array, force: Array) -> None:
+def send_arrows(track: Track, thing: str, at: Moments, tip: Array, force: Array) -> None:
     """Send lateral forces (rows,), N, as arrows that end at `tip` (rows, 2), with their values; none where zero."""
     there = force != 0.0
     vectors = points(force[there] / track.scales.newtons_per_metre, 0.0)
     unit = UNITS["N"]
     labels = [f"{round(unit.factor * newtons, 2):.3g} {unit.shown}" for newtons in np.abs(force[there])]
     columns = rr.Arrows2D.columns(vectors=vectors, origins=tip[there] - vectors, labels=labels)
-    send(track, thing, length, columns.partition(there))
+    send(track, thing, at, columns.partition(there))
 
 
-def send_curve(track: Track, thing: str, length: Array, values: Array) -> None:
+def send_curve(track: Track, thing: str, at: Moments, values: Array) -> None:
     """Send a curve of a plot, in the unit of the plot."""
-    send(track, thing, length, rr.Scalars.columns(scalars=values))
+    send(track, thing, at, rr.Scalars.columns(scalars=values))

@@ -14,7 +14,7 @@ from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Stopped, Trajectory
 from boreprop_fmu.packed_case import read_packed_case
 
-from .record import draw
+from .record import Drawing
 from .sinks import open_recording
 from .source import Source, live, stored
 from .without_pandas import skip_pandas_check
@@ -100,12 +100,13 @@ def show(
     planned = None if plan is None else read_survey(plan)
     opener = Opener(case, fmu, planned, schedule, step, stop)
     opened = [opener.open(name, path) for name, path in zip(names(sources), sources, strict=True)]
+    drawing = Drawing.of(opened, planned)
     rows = sum(source.row_count for source in opened)
     with (
-        open_recording(save=save, spawn=spawn, serve=serve, connect=connect) as rec,
+        open_recording(drawing.application, save=save, spawn=spawn, serve=serve, connect=connect) as rec,
         console.progress("drawing", rows) as done,
     ):
-        draw(rec, opened, planned, done)
+        drawing.draw(rec, done)
     if save is not None:
         print(f"{save}: {rows} rows, {save.stat().st_size / 1e6:.1f} MB")
     if opener.stopped:
