@@ -18,7 +18,7 @@ from boreprop.case.parameters import parameters
 from boreprop.core.survey import Survey
 from boreprop.run.trajectory import Trajectory
 
-from .card import log_card
+from .card import Card
 from .furniture import log_furniture, log_grid, log_names, log_plan
 from .layout import blueprint
 from .scales import Scales, choose_scales
@@ -156,22 +156,20 @@ class Drawing:
         if len(tracks) > 1:
             log_names(rec, scales, tracks)
         rec.send_blueprint(blueprint(scales, tracks))
-        findings = ["drilling" if source.live else "" for source in sources]
-        log_card(rec, sources, findings)
+        card = Card(rec, scales, sources)
         done = 0
         for i, (source, track) in enumerate(zip(sources, tracks, strict=True)):
             stream = RunStream(track)
-            for stretch in source.stretches:
-                if not scales.section.hold(bit_positions(stretch.rows)):
-                    scales = scales.widened(bit_positions(stretch.rows))
-                    log_grid(rec, scales)
-                    rec.send_blueprint(blueprint(scales, tracks))
-                flush(rec)  # the stretch before this one, which would else pile up in memory if the disk is slow
-                stream.send(stretch)
-                done += stretch.rows.row_count
-                progress(done)
-            findings[i] = stream.finding()
-            log_card(rec, sources, findings)
+            with card.ending(i, stream.verdict, source.beginning.stopped):
+                for stretch in source.stretches:
+                    if not scales.section.hold(bit_positions(stretch.rows)):
+                        scales = scales.widened(bit_positions(stretch.rows))
+                        log_grid(rec, scales)
+                        rec.send_blueprint(blueprint(scales, tracks))
+                    flush(rec)  # the stretch before this one, which would else pile up in memory if the disk is slow
+                    card.say(i, stream.send(stretch))
+                    done += stretch.rows.row_count
+                    progress(done)
 
 
 def log_cases(rec: rr.RecordingStream, sources: Sequence[Source]) -> None:

@@ -15,12 +15,12 @@ from ..run.completion import case_of
 from ..run.trajectory import Trajectory
 from .hole import HoleAxis, SurveyedHole, chord_inclination, hole_of
 
-ROUNDING = 1e-6  # m of measured depth: a hole that ends this little below its plan ends with it
+ROUNDING = 1e-6  # m of measured depth: a hole that goes on this little beyond its plan ends with it
 
 
 @dataclass(frozen=True)
 class Deviation:
-    """How far a hole is off its plan at some lengths along it; nan below the end of the plan.
+    """How far a hole is off its plan at some lengths along it; nan where the plan does not reach.
 
     Parameters
     ----------
@@ -71,8 +71,12 @@ def deviation_from(plan: SurveyedHole, hole: HoleAxis, length: Floats, over: flo
     position = hole.at(length)
     _, distance = plan.away(position, plan.nearest(position, length))
     planned = chord_inclination(plan, length, over)
-    beyond = np.where(length > plan.length[-1] + ROUNDING, np.nan, 0.0)
-    return Deviation(distance + beyond, chord_inclination(hole, length, over) - planned + beyond, planned + beyond)
+    outside = (length < plan.length[0] - ROUNDING) | (length > plan.length[-1] + ROUNDING)
+    return Deviation(
+        distance=np.where(outside, np.nan, distance),
+        inclination=np.where(outside, np.nan, chord_inclination(hole, length, over) - planned),
+        planned_inclination=np.where(outside, np.nan, planned),
+    )
 
 
 def deviation_of(run: Trajectory, plan: SurveyedHole, over: float) -> Deviation:

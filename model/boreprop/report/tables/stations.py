@@ -66,11 +66,11 @@ def plan_lines(run: Trajectory, off: Deviation) -> list[tuple[str, str]]:
     )
     inclination = UNITS["rad"].text(off.inclination[last], SIGNED)
     return [
-        (f"off the plan {where}", f"{_beside(off.distance[last])}, {inclination}"),
-        ("off the plan at most", f"{_beside(off.distance[most])} at {UNITS['m'].text(measured_depth[most])}"),
+        (f"off the plan {where}", f"{beside(off.distance[last])}, {inclination}"),
+        ("off the plan at most", f"{beside(off.distance[most])} at {UNITS['m'].text(measured_depth[most])}"),
     ]
 
 
-def _beside(distance: float) -> str:
-    """A distance from the plan, m, in words."""
-    return f"{UNITS['m'].text(abs(distance), '.2f')} {'high' if distance > 0 else 'low'}"
+def beside(distance: float, digits: str = ".2f") -> str:
+    """A distance from the plan, m, and its side, in words."""
+    return f"{UNITS['m'].text(abs(distance), digits)} {'high' if distance > 0 else 'low'}"
