@@ -13,7 +13,7 @@ from boreprop.analysis.hole import HoleAxis, SurveyedHole, bit_positions, existi
 from boreprop.analysis.plan import deviation_from
 from boreprop.case.case import Case
 from boreprop.core.survey import Survey
-from boreprop.errors import InputError
+from boreprop.errors import BorepropError, InputError
 from boreprop.run.completion import case_of, complete
 from boreprop.run.trajectory import Trajectory
 from boreprop.units import BUILD_LENGTH
@@ -140,14 +140,19 @@ def live(name: str, run: LiveRun, plan: Survey | None = None, *, batch: int = BA
 
 
 def gather(run: LiveRun, batch: int) -> Iterator[Trajectory]:
-    """The rows of a run in batches, of fewer rows if no more have come after a tenth of a second."""
+    """The rows of a run in batches, of fewer rows if no more have come after a tenth of a second, or ever will."""
     rows: list[Sequence[float]] = []
     due = 0.0  # the first row comes at once
-    for row in run:
-        rows.append(row)
-        if len(rows) == batch or monotonic() > due:
+    try:
+        for row in run:
+            rows.append(row)
+            if len(rows) == batch or monotonic() > due:
+                yield trajectory_of(run, rows)
+                rows, due = [], monotonic() + PATIENCE
+    except (BorepropError, KeyboardInterrupt):
+        if rows:
             yield trajectory_of(run, rows)
-            rows, due = [], monotonic() + PATIENCE
+        raise
     if rows:
         yield trajectory_of(run, rows)
 

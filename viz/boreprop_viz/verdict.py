@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from boreprop.analysis.rippling import Rippling, State, find_rippling, last_wave
+from boreprop.analysis.waves import large_until
 from boreprop.case.case import Case
 from boreprop.report.tables.stations import beside
 from boreprop.run.trajectory import Trajectory
@@ -47,8 +48,9 @@ class Verdict:
         self.checked = -np.inf  # the last row that was checked, m
         self.state = State.NONE  # at the last check
         self.told = Rippling()  # the wave that was told last
-        self.began: float | None = None  # where the present ripple began, m
-        self.rippled, self.past = 0.0, ""  # where a ripple was found last, m; the last one that is over, in words
+        self.began: float | None = None  # from where on the present ripple has had half its size, m
+        self.ended: tuple[float, Rippling] | None = None  # a ripple that is over, until it is known where it ended
+        self.past = ""  # the last ripple that is over, in words
         self.off_plan = 0.0  # the distance from the plan that was told last, m
         self.ripple, self.plan, self.said = SO_FAR, "", ""  # in words
 
@@ -103,26 +105,29 @@ class Verdict:
         if wave.state is State.STEERED and going_on:
             wave = replace(wave, state=State.LASTING)
         self.checked = float(recent["drilled_length"][-1])
-        if wave.ripples:
-            self.rippled = self.checked
-        sure, self.state = sure or wave.state is self.state, wave.state
-        if sure and (wave.state is not self.told.state or _changed(wave, self.told)):
-            self._tell(replace(find_rippling(recent), state=wave.state))
+        confirmed, self.state = sure or wave.state is self.state, wave.state
+        if confirmed and (wave.state is not self.told.state or _changed(wave, self.told)):
+            self._tell(replace(find_rippling(recent), state=wave.state), recent)
         self._see_plan(recent, sure)
 
-    def _tell(self, wave: Rippling) -> None:
-        """Put a wave into words."""
+    def _tell(self, wave: Rippling, recent: Trajectory) -> None:
+        """Put a wave into words that was found in the last rows."""
         size = f"±{rounded(wave.amplitude, UNITS['rad'])}, ±{rounded(wave.axis_amplitude, SMALL_LENGTH)}"
         waves = f"waves of {rounded(wave.wavelength, UNITS['m'], digits=3)}, {size}"
-        self.told = wave
+        before, self.told = self.told, wave
         if wave.ripples:
-            self.began = wave.since if self.began is None else self.began
+            if (
+                self.began is None or wave.since > recent["drilled_length"][0] + wave.wavelength
+            ):  # else it was as large all along
+                self.began = wave.since
             what = "growing" if wave.state is State.GROWING else "rippling"
             self.ripple = f"{what} since {self.began:.0f} m: {waves}"
             return
         if self.began is not None:
-            self.past = f"; rippling from {self.began:.0f} m to {self.rippled:.0f} m"
+            self.ended, self.past = (self.began, before), f"; rippling from {self.began:.0f} m"
             self.began = None
+        if self.ended is not None and (end := _end(recent, *self.ended)) is not None:
+            self.ended, self.past = None, f"{self.past} to {end:.0f} m"
         now = {
             State.NONE: "no ripple" if self.past else SO_FAR,
             State.DYING: f"dying out: {waves}",
@@ -138,6 +143,17 @@ class Verdict:
         elif sure or not self.plan or abs(distance - self.off_plan) > max(NEAR, NOTICEABLE * abs(self.off_plan)):
             self.off_plan = distance
             self.plan = f"; {beside(distance, '.1f')} of the plan" if abs(distance) > NEAR / 2 else "; on the plan"
+
+
+def _end(recent: Trajectory, began: float, ripple: Rippling) -> float | None:
+    """Where a ripple that is over fell to half its size, m; None if it has not yet."""
+    rows = between(recent, began + 2 * ripple.wavelength, np.inf)
+    length = rows["drilled_length"]
+    if not len(length):
+        return None
+    least = ripple.amplitude / 2 / 2**0.5  # as a root mean square
+    end = large_until(length, rows["borehole_inclination"], ripple.wavelength, least)
+    return end if end < length[-1] else None
 
 
 def _changed(wave: Rippling, told: Rippling) -> bool:

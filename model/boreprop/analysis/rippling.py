@@ -303,10 +303,11 @@ def _with_course(found: _Found) -> Rippling:
     """The wave that was found, with the fields since and inclination_drift."""
     if found.waves is None or found.rows is None:
         return found.rippling
-    least = HALF * float(found.waves.sizes[-AT_THE_END:].min())
+    sizes = found.waves.sizes[-AT_THE_END:]
+    size = sizes[-1] if found.rippling.state is State.GROWING else sizes.min()  # of these a growing wave exceeds most
     return replace(
         found.rippling,
-        since=large_since(found.rows.length, found.rows.inclination, found.waves.wavelength, least),
+        since=large_since(found.rows.length, found.rows.inclination, found.waves.wavelength, HALF * float(size)),
         inclination_drift=slope(found.waves.x, found.waves.trend),
     )
 
