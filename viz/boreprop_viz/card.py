@@ -43,7 +43,7 @@ class Card:
         self.names = [source.name for source in sources]
         self.sayings: list[list[Saying]] = [[] for _ in sources]
         self.going_on = [source.live for source in sources]
-        self.table = _table(self.names, [case_facts(source.case) for source in sources])
+        self.table = table(self.names, [case_facts(source.case) for source in sources])
 
     def say(self, run: int, sayings: Sequence[Saying]) -> None:
         """Log what there is to say of a run from some moments on."""
@@ -93,10 +93,13 @@ class Card:
         return "\n".join(["Does the hole ripple?", "", *lines, "", self.table])
 
 
-def _table(names: Sequence[str], facts: Sequence[dict[str, str]]) -> str:
-    lines = [f"| | {' | '.join(names)} |", "|---" * (len(names) + 1) + "|"]
-    lines += [f"| {what} | {' | '.join(fact[what] for fact in facts)} |" for what in facts[0]]
-    return "\n".join(lines)
+def table(names: Sequence[str], facts: Sequence[dict[str, str]]) -> str:
+    """The facts about some cases side by side; those that differ come first."""
+    rows = sorted(
+        ([what, *(fact[what] for fact in facts)] for what in facts[0]), key=lambda row: len(set(row[1:])) == 1
+    )
+    heading = [["", *names], ["---"] * (len(names) + 1)]
+    return "\n".join(f"| {' | '.join(row)} |" for row in heading + rows)
 
 
 def case_facts(case: Case) -> dict[str, str]:
@@ -105,6 +108,12 @@ def case_facts(case: Case) -> dict[str, str]:
     contact = can_touch(bha, bit, case.survey.inclination[-1], case.schedule.rss_force)
     straight = straight_drilling(case)
     return {
+        "active weight on bit": UNITS["N"].text(case.active_weight_on_bit),
+        "**ηΠ**": f"**{eta_pi(bha, bit, case.active_weight_on_bit):.4g}**",
+        "drilling straight, contact": touching(straight.response) + ", tilt at its limit" * straight.saturated,
+        "drilling straight, roots": BY_THE_ROOTS[straight.verdict],
+        "its critical ηΠ": _limit(straight.critical),
+        "critical ηΠ, all touching": _limit(critical_eta_pi(case, contact=contact)),
         "stabilizers": f"{', '.join(f'{s:.4g}' for s in bha.stabilizer_positions)} m",
         "clearances": f"{', '.join(map(SMALL_LENGTH.number, bha.stabilizer_clearances)) or '–'} {SMALL_LENGTH.shown}",
         "weight": UNITS["N/m"].text(bha.distributed_weight),
@@ -112,12 +121,6 @@ def case_facts(case: Case) -> dict[str, str]:
         "η, χ": f"{bit.lateral_steering_resistance:g}, {bit.angular_steering_resistance:g}",
         "tilt limit ψ*": UNITS["rad"].text(bit.tilt_limit),
         "pads, hole": f"{UNITS['m'].text(bha.rss_position, '.3g')}, {SMALL_LENGTH.text(case.bit_diameter, '.4g')}",
-        "active weight on bit": UNITS["N"].text(case.active_weight_on_bit),
-        "**ηΠ**": f"**{eta_pi(bha, bit, case.active_weight_on_bit):.4g}**",
-        "drilling straight, contact": touching(straight.response) + ", tilt at its limit" * straight.saturated,
-        "drilling straight, roots": BY_THE_ROOTS[straight.verdict],
-        "its critical ηΠ": _limit(straight.critical),
-        "critical ηΠ, all touching": _limit(critical_eta_pi(case, contact=contact)),
     }
 
 
