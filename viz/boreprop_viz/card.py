@@ -95,9 +95,8 @@ class Card:
 
 def table(names: Sequence[str], facts: Sequence[dict[str, str]]) -> str:
     """The facts about some cases side by side; those that differ come first."""
-    rows = sorted(
-        ([what, *(fact[what] for fact in facts)] for what in facts[0]), key=lambda row: len(set(row[1:])) == 1
-    )
+    rows = [[what, *(fact[what] for fact in facts)] for what in facts[0]]
+    rows.sort(key=lambda row: len(set(row[1:])) == 1)
     heading = [["", *names], ["---"] * (len(names) + 1)]
     return "\n".join(f"| {' | '.join(row)} |" for row in heading + rows)
 

@@ -195,8 +195,8 @@ def find_rippling(
         Contact of each stabilizer and saturation of the bit tilt, whole numbers, shape (rows, k). Only without a run.
         If they are not given, a wave that dies out very slowly counts as lasting.
     inputs
-        Steering force and weight on bit, shape (rows,) each. Only without a run. If they are not given, they are taken
-        to be constant.
+        Steering force and active weight on bit, shape (rows,) each. Only without a run. If they are not given, they are
+        taken to be constant.
 
     Returns
     -------
