@@ -6,6 +6,7 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from .card import CARD
+from .listing import STATIONS
 from .scales import Scales
 from .scene import Bounds
 from .style import GROUND, PLOTS, TABS
@@ -33,7 +34,9 @@ def blueprint(scales: Scales, tracks: Sequence[Track]) -> rrb.Blueprint:
     lanes = min(sum(track.lanes for track in tracks), MOST_LANES)
     return rrb.Blueprint(
         rrb.Horizontal(
-            rrb.Vertical(vertical_section(scales, tracks), card(), row_shares=[0.6, 0.4]),
+            rrb.Vertical(
+                vertical_section(scales, tracks), rrb.Tabs(card(), stations(), active_tab=0), row_shares=[0.6, 0.4]
+            ),
             bit_frame(scales),
             rrb.Vertical(
                 rrb.Tabs(*(rrb.Vertical(*plots, name=name) for name, plots in tabs.items() if plots), active_tab=0),
@@ -70,6 +73,11 @@ def vertical_section(scales: Scales, tracks: Sequence[Track]) -> rrb.Spatial2DVi
 def card() -> rrb.TextDocumentView:
     """The cases, and whether their holes ripple."""
     return rrb.TextDocumentView(origin=CARD, name="Case")
+
+
+def stations() -> rrb.TextDocumentView:
+    """The holes at survey stations."""
+    return rrb.TextDocumentView(origin=STATIONS, name="Stations")
 
 
 def bit_frame(scales: Scales) -> rrb.Spatial2DView:

@@ -11,8 +11,7 @@ from typing import Self
 import numpy as np
 import rerun as rr
 
-from boreprop.analysis.hole import SurveyedHole, bit_positions
-from boreprop.analysis.plan import planned_hole
+from boreprop.analysis.hole import bit_positions
 from boreprop.case.file import dump_case
 from boreprop.case.parameters import parameters
 from boreprop.core.survey import Survey
@@ -21,8 +20,9 @@ from boreprop.run.trajectory import Trajectory
 from .card import Card
 from .furniture import log_furniture, log_grid, log_names, log_plan
 from .layout import blueprint
+from .listing import Listing
 from .scales import Scales, choose_scales
-from .scene import plan_to_draw
+from .scene import planned_path
 from .sinks import flush, open_recording
 from .source import LiveRun, Source, live, stored
 from .stream import RunStream
@@ -86,30 +86,29 @@ class Drawing:
     ----------
     sources
         The runs.
-    planned
-        The planned hole, if there is one.
+    plan
+        The planned hole, if there is one, with measured depths as in the survey.
     scales
         The scales and ranges of the views that suit all of them.
     """
 
     sources: Sequence[Source]
-    planned: SurveyedHole | None
+    plan: Survey | None
     scales: Scales
 
     @classmethod
     def of(cls, sources: Iterable[Source], plan: Survey | None = None) -> Self:
         """Choose the scales; `InputError` if the plan does not reach the start of the first run."""
         sources = list(sources)
-        planned = None if plan is None else planned_hole(plan, sources[0].case.survey.measured_depth[-1])
         ahead = [source.likely_positions() for source in sources]
-        if planned is not None:
-            ahead.append(plan_to_draw(planned))
+        if plan is not None:
+            ahead.append(planned_path(plan, sources[0].case))
         scales = choose_scales(
             [source.beginning for source in sources],
             whole=not any(source.live for source in sources),
             section=np.concatenate(ahead),
         )
-        return cls(sources, planned, scales)
+        return cls(sources, plan, scales)
 
     @property
     def name(self) -> str:
@@ -150,17 +149,20 @@ class Drawing:
         rec.send_recording_name(self.name)
         log_cases(rec, sources)
         log_furniture(rec, scales, [source.case for source in sources])
-        if self.planned is not None:
-            log_plan(rec, plan_to_draw(self.planned))
+        if self.plan is not None:
+            log_plan(rec, planned_path(self.plan, sources[0].case))
         tracks = make_tracks(rec, scales, sources)
         if len(tracks) > 1:
             log_names(rec, scales, tracks)
         rec.send_blueprint(blueprint(scales, tracks))
-        card = Card(rec, scales, sources)
+        card, listing = Card(rec, scales, sources), Listing(rec, self.plan)
         done = 0
         for i, (source, track) in enumerate(zip(sources, tracks, strict=True)):
             stream = RunStream(track)
-            with card.ending(i, stream.verdict, source.beginning.stopped):
+            with (
+                listing.listed(source, stream.verdict) as follow,
+                card.ending(i, stream.verdict, source.beginning.stopped),
+            ):
                 for stretch in source.stretches:
                     if not scales.section.hold(bit_positions(stretch.rows)):
                         scales = scales.widened(bit_positions(stretch.rows))
@@ -168,6 +170,7 @@ class Drawing:
                         rec.send_blueprint(blueprint(scales, tracks))
                     flush(rec)  # the stretch before this one, which would else pile up in memory if the disk is slow
                     card.say(i, stream.send(stretch))
+                    follow(stretch.rows)
                     done += stretch.rows.row_count
                     progress(done)
 

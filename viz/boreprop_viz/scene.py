@@ -14,9 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from boreprop.analysis.hole import HoleAxis, SurveyedHole, bit_positions
+from boreprop.analysis.hole import HoleAxis, bit_positions
+from boreprop.analysis.plan import planned_hole
 from boreprop.case.case import Case
 from boreprop.core.beam import Beam
+from boreprop.core.survey import Survey
 from boreprop.core.system import scale
 from boreprop.run.trajectory import Trajectory
 
@@ -29,10 +31,17 @@ AHEAD = 0.2  # lengths of the BHA ahead of the bit over which the bit frame show
 FRAME_WIDTH = 0.9  # lengths of the BHA: room for the walls, and for arrows and names beside them
 
 
-def plan_to_draw(plan: SurveyedHole) -> Array:
-    """Points along the planned hole, one of them where drilling starts, (N, 2)."""
-    even = np.linspace(plan.length[0], plan.length[-1], POINTS_OF_PLAN)
-    return plan.at(np.unique(np.concatenate((plan.length, [0.0], even))))
+def planned_path(plan: Survey, case: Case) -> Array:
+    """Points along the planned hole, one of them where drilling starts, (N, 2).
+
+    Raises
+    ------
+    InputError
+        If the plan does not include the measured depth at which drilling starts.
+    """
+    hole = planned_hole(plan, case.survey.measured_depth[-1])
+    even = np.linspace(hole.length[0], hole.length[-1], POINTS_OF_PLAN)
+    return hole.at(np.unique(np.concatenate((hole.length, [0.0], even))))
 
 
 class BitFrame:
