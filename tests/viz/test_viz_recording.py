@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from boreprop.analysis.axis import axis_ripple
+from boreprop.analysis.hole import bit_positions
 from boreprop.case.case import Case, Schedule
 from boreprop.case.file import load_case, parse_case
 from boreprop.core.survey import Survey
@@ -20,7 +21,7 @@ from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
 from boreprop_viz.record import Drawing, record
 from boreprop_viz.scales import Scales, choose_scales
-from boreprop_viz.scene import Array, BitFrame, bit_positions
+from boreprop_viz.scene import Array, BitFrame
 from boreprop_viz.sinks import open_recording
 from boreprop_viz.source import stored
 from conftest import Command
@@ -294,11 +295,18 @@ def test_the_card_names_the_case_and_whether_it_ripples(tmp_path: Path, paper_ca
     ripples = load_case(paper_case)
     more = replace(ripples, active_weight_on_bit=16 * ripples.active_weight_on_bit)
     record({"a": simulate(ripples), "b": simulate(more)}, save=tmp_path / "two.rrd")
-    [[text]] = static(tmp_path / "two.rrd", "case", "TextDocument:text")[-1:]
+    texts = read(tmp_path / "two.rrd", "case", "TextDocument:text")
+    [text] = texts[max(texts)]
     assert "| **ηΠ** | **0.01** | **0.16** |" in text
-    assert "| critical ηΠ | 0.1468 | 0.1468 |" in text
-    assert re.search(r"- \*\*a\*\* yes: 5\.0\d m long, ±2\.\d\d °", text)
-    assert "- **b** no" in text
+    assert "| drilling straight, contact | 1 low | none |" in text
+    assert "| drilling straight, roots | unstable, oscillates | stable |" in text
+    assert "| its critical ηΠ | 0.1468 = 23.7 kN | none |" in text
+    assert "| critical ηΠ, all touching | 0.1468 = 23.7 kN | 0.1468 = 23.7 kN |" in text
+    facts = [line.split(" | ")[0].strip("| *") for line in text.splitlines() if line.startswith("| ")]
+    assert facts.index("critical ηΠ, all touching") > facts.index("its critical ηΠ") > facts.index("ηΠ")
+    assert "weight on bit" not in text.replace("active weight on bit", "")
+    assert re.search(r"- \*\*a\*\* rippling since 17 m: waves of 5\.0\d m, ±2\.\d °, ±3\d mm", text)
+    assert "- **b** no ripple" in text
 
 
 def test_several_runs_are_drawn_over_each_other_each_under_its_name(

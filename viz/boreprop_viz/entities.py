@@ -8,11 +8,12 @@ import numpy as np
 import rerun as rr
 
 from boreprop.analysis.axis import AXIS_REACH, axis_ripple
+from boreprop.analysis.hole import HoleAxis, bit_positions
 from boreprop.core.quantities import BY_NAME
 from boreprop.run.trajectory import Trajectory
 from boreprop.units import UNITS
 
-from .scene import AHEAD, REACH_ABOVE_BHA, HoleAxis, Shapes, bit_positions
+from .scene import AHEAD, REACH_ABOVE_BHA, Shapes
 from .source import Stretch
 from .style import LANES, PLOTS
 from .track import Track, arrivals, moments, points, send, send_arrows, send_curve, send_strips, send_texts

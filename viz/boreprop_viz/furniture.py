@@ -14,7 +14,7 @@ from boreprop.units import UNITS
 
 from .entities import RIPPLE, curve, lanes, planned_curve
 from .scales import Scales, round_down
-from .scene import Array, HoleAxis
+from .scene import Array
 from .style import (
     BIT,
     BY_STABILIZER,
@@ -139,9 +139,9 @@ def log_grid(rec: rr.RecordingStream, scales: Scales) -> None:
     log_labels(rec, "vertical_section/grid/displacement", points(x, bottom), [f"{round(value)} m" for value in x])
 
 
-def log_plan(rec: rr.RecordingStream, plan: HoleAxis) -> None:
-    """The planned path."""
-    rec.log("vertical_section/plan", rr.LineStrips2D.from_fields(strips=[plan.position]), static=True)
+def log_plan(rec: rr.RecordingStream, plan: Array) -> None:
+    """The planned path through points (N, 2)."""
+    rec.log("vertical_section/plan", rr.LineStrips2D.from_fields(strips=[plan]), static=True)
 
 
 def log_places(rec: rr.RecordingStream, scales: Scales, cases: Sequence[Case]) -> None:

@@ -11,6 +11,7 @@ import rerun.blueprint as rrb
 
 from .card import CARD
 from .key import KEY, LINE, WIDTH, Entry, line_count
+from .listing import STATIONS
 from .scales import Scales
 from .scene import Bounds
 from .style import GROUND, PLOTS, TABS
@@ -45,7 +46,7 @@ def blueprint(scales: Scales, tracks: Sequence[Track], key: Sequence[Entry]) -> 
             bit_frame(scales),
             rrb.Vertical(
                 rrb.Spatial2DView(origin=KEY, titlebar=False, background=GROUND, visual_bounds=key_bounds(high)),
-                rrb.Tabs(*(one for one in tabs if one), active_tab=2 if scales.rippling else 0),
+                rrb.Tabs(*(one for one in tabs if one), stations(), active_tab=2 if scales.rippling else 0),
                 row_shares=[high, TAB],
             ),
             column_shares=[0.24, 0.28, 0.48],
@@ -93,6 +94,11 @@ def vertical_section(scales: Scales, tracks: Sequence[Track]) -> rrb.Spatial2DVi
 def card() -> rrb.TextDocumentView:
     """The cases, and whether their holes ripple."""
     return rrb.TextDocumentView(origin=CARD, name="Case")
+
+
+def stations() -> rrb.TextDocumentView:
+    """The holes at survey stations."""
+    return rrb.TextDocumentView(origin=STATIONS, name="Stations")
 
 
 def bit_frame(scales: Scales) -> rrb.Spatial2DView:

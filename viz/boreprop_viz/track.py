@@ -122,13 +122,24 @@ def send_to(track: Track, entity: str, at: Moments, columns: rr.ComponentColumnL
     """Send components of an entity at some moments. Nothing is sent if there are none, since viewers fail on that."""
     if not len(at.length):
         return
-    millimetres = np.rint(1000 * at.length).astype(np.int64)
-    index = [rr.TimeColumn(TIMELINE, sequence=millimetres)]
-    if track.scales.start is not None:
-        index.append(rr.TimeColumn(DEPTH_TIMELINE, sequence=millimetres + round(1000 * track.scales.start)))
+    index = lengths_index(track.scales.start, at.length)
     if at.time is not None:
-        index.append(rr.TimeColumn(TIME_TIMELINE, duration=at.time))
+        index.append(times_index(at.time))
     track.rec.send_columns(entity, index, columns)
+
+
+def lengths_index(start: float | None, length: Array) -> list[rr.TimeColumn]:
+    """Drilled lengths, m, on their timeline and, given the measured depth of the start, m, on that of depths."""
+    millimetres = np.rint(1000 * length).astype(np.int64)
+    index = [rr.TimeColumn(TIMELINE, sequence=millimetres)]
+    if start is not None:
+        index.append(rr.TimeColumn(DEPTH_TIMELINE, sequence=millimetres + round(1000 * start)))
+    return index
+
+
+def times_index(time: Array) -> rr.TimeColumn:
+    """Simulation times, s, on their timeline."""
+    return rr.TimeColumn(TIME_TIMELINE, duration=time)
 
 
 def points(x: Array | float, y: Array | float) -> Array:
