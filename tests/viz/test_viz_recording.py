@@ -389,6 +389,8 @@ def test_the_command_runs_a_case_file(command: Command, paper_text: str, tmp_pat
         (["run.csv", "--case", "a.toml", "--fmu", "b.fmu"], "--case, --fmu: at most one must be given, got both"),
         (["run.csv", "--case", "no.toml"], "no.toml: must be a readable TOML file, got: No such file or directory"),
         (["run.csv", "--step", "1"], "--step: must be given with an FMU to run, got run.csv"),
+        (["run.csv", "--pace", "2"], "--pace: must be given with an FMU to run, got run.csv"),
+        (["Borehole.fmu", "--pace", "0"], "Invalid value for '--pace': must be a number > 0, got '0'"),
         (["run.csv", "./run.csv", "run.csv"], "run.csv: must be given once, got it twice"),
         (["a.toml", "--case", "b.toml"], "a.toml: must be a result file with --case or --fmu, got a case file"),
     ],

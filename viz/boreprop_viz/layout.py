@@ -18,6 +18,7 @@ from .style import GROUND, PLOTS, TABS
 from .track import DEPTH_TIMELINE, TIMELINE, TIMELINES, Track
 
 INFINITE = rr.TimeRangeBoundary.infinite()
+PLAYED_IN = 30.0  # s that a run takes when it is played
 HERE = rr.TimeRangeBoundary.cursor_relative(seq=0)
 WHOLE_RUN = rr.TimeRange(start=INFINITE, end=INFINITE)
 SHARED_AXIS = "view/5c0dca6a-e63f-9cf7-f657-2602590474cc/TimeAxis"  # where a viewer looks for the range of linked axes
@@ -60,10 +61,22 @@ def blueprint(scales: Scales, tracks: Sequence[Track], key: Sequence[Entry]) -> 
 
 
 class TimePanel(rrb.TimePanel):
-    """The time panel, and the range of the axes that are linked, for which Rerun has no part of its own."""
+    """The time panel, which plays a run in half a minute, and the range of the axes that are linked.
+
+    Rerun plays `playback_speed` seconds of time, and `playback_speed` × `fps` ticks of a length, per second. For the
+    linked axes it has no part of its own.
+    """
 
     def __init__(self, scales: Scales) -> None:
-        super().__init__(state="collapsed", timeline=first_timeline(scales), play_state="following")
+        speed = (scales.duration or PLAYED_IN) / PLAYED_IN
+        ticks = max(1000 * scales.length, 1.0) / PLAYED_IN
+        super().__init__(
+            state="collapsed",
+            timeline=first_timeline(scales),
+            playback_speed=speed,
+            fps=ticks / speed,
+            play_state="following",
+        )
 
     def _log_to_stream(self, stream: rr.RecordingStream) -> None:
         super()._log_to_stream(stream)

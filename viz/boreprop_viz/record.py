@@ -124,10 +124,10 @@ class Drawing:
         must have different applications. How a live run will look in the end is not known, so its application is its
         own.
         """
-        look = [repr((self.scales, [(source.name, source.case) for source in self.sources])), version("boreprop")]
         if any(source.live for source in self.sources):
-            look.append(token_hex())
-        return f"boreprop: {self.name} {sha256(' '.join(look).encode()).hexdigest()[:8]}"
+            return application_of_its_own(self.name)
+        look = repr((self.scales, [(source.name, source.case) for source in self.sources], version("boreprop")))
+        return f"boreprop: {self.name} {sha256(look.encode()).hexdigest()[:8]}"
 
     def draw(self, rec: rr.RecordingStream, progress: Callable[[float], None] = lambda _: None) -> None:
         """Log the runs and the blueprint into an open recording.
@@ -176,6 +176,11 @@ class Drawing:
                     follow(stretch.rows)
                     done += stretch.rows.row_count
                     progress(done)
+
+
+def application_of_its_own(name: str) -> str:
+    """What Rerun calls the application of a recording that shares its look with no other."""
+    return f"boreprop: {name} {token_hex(4)}"
 
 
 def log_cases(rec: rr.RecordingStream, sources: Sequence[Source]) -> None:

@@ -42,6 +42,8 @@ class Scales:
     rippling: bool  # whether a run is known to ripple
     ripple: tuple[float, float]  # the range of the plot of the ripple, mm
     trend: float  # width of the trend from which the ripple is measured, m
+    length: float  # drilled length from the first row to the last, m
+    duration: float | None  # time from the first row to the last, s; None if the runs have no time
     start: float | None  # measured depth at which drilling starts, m; None if the runs differ
     ranges: dict[str, tuple[float, float] | None]  # plot → its range in the unit shown; None: the viewer chooses it
 
@@ -82,6 +84,7 @@ def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) ->
     ripples = [RIPPLES * wave.axis_amplitude for wave in waves] or [
         FULL_RIPPLE * wavelength * max(case.bit.tilt_limit for case in cases)
     ]
+    length, duration = extent(runs, cases, whole)
     limit = TILTS * max(case.bit.tilt_limit for case in cases)
     return Scales(
         section=section_bounds(section, around=2 * reach),
@@ -92,8 +95,23 @@ def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) ->
         rippling=bool(waves),
         ripple=with_ticks(-1000 * max(ripples), 1000 * max(ripples)),
         trend=min(TREND * wavelength, *(case.bha.half_length for case in cases)),
+        length=length,
+        duration=duration,
         start=starts.pop() if len(starts) == 1 else None,
         ranges=ranges | {"bit_tilt": with_ticks(-UNITS["rad"].factor * limit, UNITS["rad"].factor * limit)},
+    )
+
+
+def extent(runs: Sequence[Trajectory], cases: Sequence[Case], whole: bool) -> tuple[float, float | None]:
+    """Drilled length, m, and time, s, from the first row to the last; if not all rows are there, those of the cases."""
+    lengths = [length for run in runs for length in run["drilled_length"][[0, -1]]]
+    times = [time for run in runs if "time" in run for time in run["time"][[0, -1]]]
+    if whole:
+        return float(np.ptp(lengths)), float(np.ptp(times)) if times else None
+    rates = [float(run["rate_of_penetration"][-1]) if "rate_of_penetration" in run else 0.0 for run in runs]
+    return (
+        max(case.length for case in cases),
+        max(case.length / (rate or 1.0) for case, rate in zip(cases, rates, strict=True)) if times else None,
     )
 
 
