@@ -45,7 +45,7 @@ def run(
     importer: Annotated[Importer, typer.Option(help="What runs the FMUs.")] = Importer.fmpy,
     half_weight_at: Annotated[
         float | None,
-        typer.Option(parser=positive, metavar="M", help="Drilled length where the weight on bit drops by half."),
+        typer.Option(parser=positive, metavar="M", help="Drilled length where the active weight on bit drops by half."),
     ] = None,
     view: Annotated[
         bool, typer.Option("--view", help="Show the run beside the plan in a new viewer as it goes.")

@@ -22,7 +22,7 @@ from boreprop.core.survey import Survey
 from boreprop.errors import InputError, shown
 
 from .record import Drawing, application_of_its_own
-from .scene import planned_hole
+from .scene import planned_path
 from .sinks import open_recording
 from .source import live as live_source
 from .source import rows_of
@@ -97,7 +97,7 @@ def live(
     case = case_from(case_or_fmu)
     planned = read_survey(plan) if isinstance(plan, str | Path) else plan
     if planned is not None:
-        planned_hole(planned, case.survey.measured_depth[-1])  # raises if it does not reach the start
+        planned_path(planned, case)  # raises if it does not reach the start
     check_sinks(spawn, serve, connect, save)
     name = name or ("run" if isinstance(case_or_fmu, Case) else Path(case_or_fmu).stem)
     ended = None

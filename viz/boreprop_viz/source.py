@@ -9,14 +9,16 @@ from typing import Protocol
 import numpy as np
 
 from boreprop.analysis.axis import AXIS_REACH
+from boreprop.analysis.hole import HoleAxis, SurveyedHole, bit_positions, existing_hole, turning
+from boreprop.analysis.plan import deviation_from
 from boreprop.case.case import Case
 from boreprop.core.survey import Survey
-from boreprop.errors import InputError
+from boreprop.errors import BorepropError, InputError
 from boreprop.run.completion import case_of, complete, complete_rows
 from boreprop.run.trajectory import Trajectory
 from boreprop.units import BUILD_LENGTH
 
-from .scene import REACH_ABOVE_BHA, Array, HoleAxis, bit_positions, existing_hole, turning
+from .scene import REACH_ABOVE_BHA, Array
 
 BATCH = 1000  # rows drawn at once, which limits memory
 POINTS_IN_HALF = 25  # points of the existing hole over half the length of the BHA: its curve looks smooth
@@ -180,15 +182,20 @@ def paced(
 
 
 def gather(coming: Iterable[Sequence[float] | None], batch: int) -> Iterator[list[Sequence[float]]]:
-    """The rows of a run in batches, of fewer rows if no more have come after a tenth of a second."""
+    """The rows of a run in batches, of fewer rows if no more have come after a tenth of a second, or ever will."""
     rows: list[Sequence[float]] = []
     due = 0.0  # the first row comes at once
-    for row in coming:
-        if row is not None:
-            rows.append(row)
-        if rows and (len(rows) == batch or monotonic() > due):
+    try:
+        for row in coming:
+            if row is not None:
+                rows.append(row)
+            if rows and (len(rows) == batch or monotonic() > due):
+                yield rows
+                rows, due = [], monotonic() + PATIENCE
+    except (BorepropError, KeyboardInterrupt):
+        if rows:
             yield rows
-            rows, due = [], monotonic() + PATIENCE
+        raise
     if rows:
         yield rows
 
@@ -207,24 +214,30 @@ def stretches(runs: Iterable[Trajectory], case: Case, plan: Survey | None) -> It
     half = case.bha.half_length
     reach = max(2 * REACH_ABOVE_BHA * half, BUILD_LENGTH + half, 2 * AXIS_REACH * half) + half
     hole = existing_hole(case.survey, reach, spacing=half / POINTS_IN_HALF)
+    planned = None if plan is None else SurveyedHole.of(plan, case.survey.measured_depth[-1])
     for rows in runs:
         length = rows["drilled_length"]
         hole = hole.followed_by(length, bit_positions(rows))
-        yield Stretch(replace(rows, columns=rows.columns | hole_columns(length, hole, case, plan)), hole)
+        yield Stretch(replace(rows, columns=rows.columns | hole_columns(length, hole, half, planned)), hole)
         hole = hole.since(float(length[-1]) - reach)
 
 
-def hole_columns(length: Array, hole: HoleAxis, case: Case, plan: Survey | None) -> dict[str, Array]:
-    """Build rate and dogleg severity of the hole behind the bit, rad/m, and with a plan its inclination there, rad."""
-    half = case.bha.half_length
+def hole_columns(length: Array, hole: HoleAxis, half: float, plan: SurveyedHole | None) -> dict[str, Array]:
+    """Build rate and dogleg severity of the hole behind the bit, rad/m, and what there is to say of the plan.
+
+    These are the planned inclination, rad, and how far the hole is off the plan: the distance, m, positive to the high
+    side, and the difference of the inclinations, rad; nan where the plan does not reach. `half` is half the length of
+    the BHA, m, over which inclinations are averaged.
+    """
     columns = {
         "build_rate": turning(hole, length, over=BUILD_LENGTH, chord=half),
         "dogleg_severity": np.abs(turning(hole, length, over=half, chord=half)),
     }
     if plan is not None:
-        depth = case.survey.measured_depth[-1] + length
-        planned = np.interp(depth, plan.measured_depth, plan.inclination, left=np.nan, right=np.nan)
-        columns["planned_inclination"] = planned
+        off = deviation_from(plan, hole, length, half)
+        columns["planned_inclination"] = np.where(np.isnan(off.distance), np.nan, plan.inclination_at(length))
+        columns["distance_from_plan"] = off.distance
+        columns["inclination_less_plan"] = off.inclination
     return columns
 
 
@@ -233,3 +246,16 @@ def pieces(whole: Stretch, batch: int) -> Iterator[Stretch]:
     for first in range(0, whole.rows.row_count, batch):
         columns = {name: column[first : first + batch] for name, column in whole.rows.columns.items()}
         yield replace(whole, rows=replace(whole.rows, columns=columns))
+
+
+def joined(before: Trajectory, after: Trajectory) -> Trajectory:
+    """Rows of a run and those that follow."""
+    columns = {name: np.concatenate((before.columns[name], values)) for name, values in after.columns.items()}
+    return Trajectory(columns, after.case)
+
+
+def between(rows: Trajectory, low: float, high: float) -> Trajectory:
+    """Those rows of a run that lie between two drilled lengths, m, both included."""
+    length = rows["drilled_length"]
+    kept = slice(int(np.searchsorted(length, low)), int(np.searchsorted(length, high, side="right")))
+    return Trajectory({name: values[kept] for name, values in rows.columns.items()}, rows.case)
