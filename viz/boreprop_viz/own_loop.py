@@ -108,7 +108,7 @@ def live(
                 yield view
             except BaseException as error:
                 ended = error
-            view.finish()
+            view.finish(ended)
             if ended:
                 raise KeyboardInterrupt  # so the file is kept, and the viewer closed
     except BaseException as error:
@@ -194,8 +194,15 @@ class LiveView:
         if self._failure is None:
             rows.waiting.append([row[name] for name in rows.columns])
 
-    def finish(self) -> None:
-        """Wait until all rows are drawn; raise what went wrong, or `InputError` if there was no row."""
+    def finish(self, error: BaseException | None) -> None:
+        """Wait until all rows are drawn; raise what went wrong, or `InputError` if there was no row.
+
+        `error` is what ended the loop; None if it came to its end.
+        """
+        if isinstance(error, Exception):
+            self._rows.error = InputError(f"{type(error).__name__}: {error}")
+        elif error is not None:
+            self._rows.error = KeyboardInterrupt()
         self._rows.ended.set()
         if not self._rows.columns:
             raise InputError("send: must be called at least once in the with block, got no row to draw")
@@ -212,8 +219,9 @@ class LiveView:
         try:
             Drawing.of([live_source(name, self._rows, plan)], plan).draw(rec)
         except BaseException as error:
-            self._failure = error
-            self._rows.waiting.clear()
+            if error is not self._rows.error:
+                self._failure = error
+                self._rows.waiting.clear()
 
 
 class Rows:
@@ -227,6 +235,8 @@ class Rows:
         The names of the values of a row, in order and as a set; empty before the first row.
     waiting
         The rows that are not taken yet.
+    error
+        What ended the loop, raised after the last row; None if it came to its end.
     ended
         Set when no more rows will come.
     """
@@ -236,6 +246,7 @@ class Rows:
         self.columns: list[str] = []
         self.names: set[str] = set()
         self.waiting: deque[list[float]] = deque()
+        self.error: BaseException | None = None
         self.ended = Event()
 
     def begin(self, row: Mapping[str, float]) -> None:
@@ -257,6 +268,8 @@ class Rows:
             while self.waiting:
                 yield self.waiting.popleft()
             yield None
+        if self.error is not None:
+            raise self.error
 
 
 def scalars(values: dict[str, Any], n: int) -> dict[str, float]:
