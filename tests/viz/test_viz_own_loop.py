@@ -24,7 +24,7 @@ from boreprop.core.survey import Survey
 from boreprop.errors import InputError
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
-from boreprop_viz import live
+from boreprop_viz import live, sinks
 from boreprop_viz.source import gather
 from boreprop_viz.stream import RunStream
 from rrd import read, stacked, static
@@ -423,8 +423,13 @@ def test_a_viewer_that_is_there_gets_all_rows(run: Trajectory, rows: list[Row], 
 
 @signals
 def test_the_loop_goes_on_when_the_viewer_is_gone(
-    run: Trajectory, rows: list[Row], saved: Path, capfd: pytest.CaptureFixture[str]
+    run: Trajectory,
+    rows: list[Row],
+    saved: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
 ) -> None:
+    monkeypatch.setattr(sinks, "PATIENCE", 2.0)
     assert run.case
     with rerun("--serve-grpc") as (viewer, address), live(run.case, connect=address, save=saved) as view:
         for row in rows:
