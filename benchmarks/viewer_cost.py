@@ -32,8 +32,11 @@ from boreprop_viz.record import record
 how, fmu, step, rrd = sys.argv[1], sys.argv[2], float(sys.argv[3]), sys.argv[4]
 run, sizes, sending = FmuRun(fmu, step=step), [], 0.0
 size = psutil.Process().memory_info
-if how != "bare":
-    record({"live": FmuRun(fmu, step=step, stop=1.0)}, save=rrd)  # imports and first uses
+if how != "bare":  # imports and first uses
+    record({"live": FmuRun(fmu, step=step, stop=1.0)}, save=rrd)
+    with live(fmu, save=rrd) as view:
+        for row in FmuRun(fmu, step=step, stop=1.0):
+            view.send(**dict(zip(run.columns, row)))
 begin = perf_counter()
 if how == "record":
     record({"live": run}, save=rrd, progress=lambda done: sizes.append((done, size().rss)))
