@@ -48,6 +48,14 @@ def view(
     stop: Annotated[
         float | None, typer.Option(parser=positive, metavar="T", help="Time at the end, s, for an FMU.")
     ] = None,
+    pace: Annotated[
+        float | None,
+        typer.Option(
+            parser=positive,
+            metavar="SECONDS_PER_SECOND",
+            help="Seconds of simulation per second of the clock, for an FMU. Default: as fast as it goes.",
+        ),
+    ] = None,
     save: Annotated[Path | None, typer.Option(metavar="X.rrd", help="The recording to write.")] = None,
     spawn: Annotated[bool, typer.Option("--spawn", help="Show the runs in a new viewer. This is the default.")] = False,
     serve: Annotated[bool, typer.Option("--serve", help="Show the runs in the browser until Ctrl-C.")] = False,
@@ -64,7 +72,7 @@ def view(
         raise InputError("--case, --fmu: at most one must be given, got both")
     if (viewers := spawn + serve + (connect is not None)) > 1:
         raise InputError(f"--spawn, --serve, --connect: at most one must be given, got {viewers}")
-    check_that_one_runs(sources, {"--schedule": schedule, "--step": step, "--stop": stop})
+    check_that_one_runs(sources, {"--schedule": schedule, "--step": step, "--stop": stop, "--pace": pace})
     from .view import show  # imported here, so that a wrong option is reported before Rerun, which is slow, is imported
 
     show(
@@ -75,6 +83,7 @@ def view(
         schedule=schedule,
         step=step,
         stop=stop,
+        pace=pace,
         save=save,
         spawn=spawn or (save is None and viewers == 0),
         serve=serve,

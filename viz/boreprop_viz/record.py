@@ -19,6 +19,7 @@ from boreprop.run.trajectory import Trajectory
 
 from .card import Card
 from .furniture import log_furniture, log_grid, log_names, log_plan
+from .key import entries, log_key
 from .layout import blueprint
 from .listing import Listing
 from .scales import Scales, choose_scales
@@ -123,10 +124,10 @@ class Drawing:
         must have different applications. How a live run will look in the end is not known, so its application is its
         own.
         """
-        look = [repr((self.scales, [(source.name, source.case) for source in self.sources])), version("boreprop")]
         if any(source.live for source in self.sources):
-            look.append(token_hex())
-        return f"boreprop: {self.name} {sha256(' '.join(look).encode()).hexdigest()[:8]}"
+            return application_of_its_own(self.name)
+        look = repr((self.scales, [(source.name, source.case) for source in self.sources], version("boreprop")))
+        return f"boreprop: {self.name} {sha256(look.encode()).hexdigest()[:8]}"
 
     def draw(self, rec: rr.RecordingStream, progress: Callable[[float], None] = lambda _: None) -> None:
         """Log the runs and the blueprint into an open recording.
@@ -152,9 +153,11 @@ class Drawing:
         if self.plan is not None:
             log_plan(rec, planned_path(self.plan, sources[0].case))
         tracks = make_tracks(rec, scales, sources)
+        key = entries(tracks, planned=self.plan is not None)
+        log_key(rec, key)
         if len(tracks) > 1:
             log_names(rec, scales, tracks)
-        rec.send_blueprint(blueprint(scales, tracks))
+        rec.send_blueprint(blueprint(scales, tracks, key))
         card, listing = Card(rec, scales, sources), Listing(rec, self.plan)
         done = 0
         for i, (source, track) in enumerate(zip(sources, tracks, strict=True)):
@@ -167,12 +170,17 @@ class Drawing:
                     if not scales.section.hold(bit_positions(stretch.rows)):
                         scales = scales.widened(bit_positions(stretch.rows))
                         log_grid(rec, scales)
-                        rec.send_blueprint(blueprint(scales, tracks))
+                        rec.send_blueprint(blueprint(scales, tracks, key))
                     flush(rec)  # the stretch before this one, which would else pile up in memory if the disk is slow
                     card.say(i, stream.send(stretch))
                     follow(stretch.rows)
                     done += stretch.rows.row_count
                     progress(done)
+
+
+def application_of_its_own(name: str) -> str:
+    """What Rerun calls the application of a recording that shares its look with no other."""
+    return f"boreprop: {name} {token_hex(4)}"
 
 
 def log_cases(rec: rr.RecordingStream, sources: Sequence[Source]) -> None:

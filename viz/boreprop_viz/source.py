@@ -1,9 +1,9 @@
 """The sources of what is drawn: stored and live runs, as stretches of consecutive rows with the hole behind them."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence, Sized
 from dataclasses import dataclass, replace
 from itertools import chain
-from time import monotonic
+from time import monotonic, sleep
 from typing import Protocol
 
 import numpy as np
@@ -14,7 +14,7 @@ from boreprop.analysis.plan import deviation_from
 from boreprop.case.case import Case
 from boreprop.core.survey import Survey
 from boreprop.errors import BorepropError, InputError
-from boreprop.run.completion import case_of, complete
+from boreprop.run.completion import case_of, complete, complete_rows
 from boreprop.run.trajectory import Trajectory
 from boreprop.units import BUILD_LENGTH
 
@@ -23,10 +23,17 @@ from .scene import REACH_ABOVE_BHA, Array
 BATCH = 1000  # rows drawn at once, which limits memory
 POINTS_IN_HALF = 25  # points of the existing hole over half the length of the BHA: its curve looks smooth
 PATIENCE = 0.1  # s after which the rows of a live run are drawn though there are fewer: longer would look like stalling
+DRAWN = (
+    *("drilled_length", "displacement", "true_vertical_depth", "bit_inclination", "borehole_inclination", "bit_tilt"),
+    *("bit_tilt_saturation", "average_inclination", "stabilizer_force", "stabilizer_contact", "rss_force"),
+)  # the quantities without which there is no picture
 
 
 class LiveRun(Protocol):
-    """A run that is drilled while it is drawn: iterating over it drills, and gives one row after the other."""
+    """A run that is drilled while it is drawn: iterating over it drills, and gives one row after the other.
+
+    If it has a length, that is the number of rows to come.
+    """
 
     @property
     def case(self) -> Case | None:
@@ -36,11 +43,8 @@ class LiveRun(Protocol):
     def columns(self) -> Sequence[str]:
         """The names of the values of a row; they are names of columns of a `Trajectory`."""
 
-    def __len__(self) -> int:
-        """How many rows there will be."""
-
-    def __iter__(self) -> Iterator[Sequence[float]]:
-        """Drill; `InputError` if that fails."""
+    def __iter__(self) -> Iterator[Sequence[float] | None]:
+        """Drill; a None says that there is no row for the moment. `InputError` if drilling fails."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +66,7 @@ class Source:
     case
         What is drilled.
     row_count
-        The number of rows that it will have.
+        The number of rows that it will have; None if that is not known.
     beginning
         The whole run, or its first rows if it is `live`.
     live
@@ -73,7 +77,7 @@ class Source:
 
     name: str
     case: Case
-    row_count: int
+    row_count: int | None
     beginning: Trajectory
     live: bool
     stretches: Iterator[Stretch]
@@ -115,7 +119,9 @@ def stored(name: str, run: Trajectory, plan: Survey | None = None, *, batch: int
     return Source(name, case, run.row_count, whole.rows, live=False, stretches=pieces(whole, batch))
 
 
-def live(name: str, run: LiveRun, plan: Survey | None = None, *, batch: int = BATCH) -> Source:
+def live(
+    name: str, run: LiveRun, plan: Survey | None = None, *, pace: float | None = None, batch: int = BATCH
+) -> Source:
     """The source of a run that is drilled while it is drawn.
 
     Parameters
@@ -123,7 +129,10 @@ def live(name: str, run: LiveRun, plan: Survey | None = None, *, batch: int = BA
     name, plan
         As in `stored`.
     run
-        The run; drilling begins now.
+        The run; drilling begins now. Columns that it lacks are computed from the others as far as each row determines
+        them.
+    pace
+        Seconds of simulation per second of the clock: no row is drawn before it is due. None: as fast as they come.
     batch
         Largest number of rows drawn at once; fewer are drawn if no more have come after a tenth of a second.
 
@@ -134,32 +143,70 @@ def live(name: str, run: LiveRun, plan: Survey | None = None, *, batch: int = BA
     """
     if run.case is None:
         raise InputError(f"{name}: must come with its case, as the FMUs of boreprop-fmu do, got none")
-    coming = stretches(gather(run, batch), run.case, plan)
+    rows = run if pace is None else paced(run, run.columns.index("time"), pace)
+    trajectories = (rows_of(run.case, run.columns, some) for some in gather(rows, batch))
+    coming = stretches(trajectories, run.case, plan)
     first = next(coming)
-    return Source(name, run.case, len(run), first.rows, live=True, stretches=chain([first], coming))
+    row_count = len(run) if isinstance(run, Sized) else None
+    return Source(name, run.case, row_count, first.rows, live=True, stretches=chain([first], coming))
 
 
-def gather(run: LiveRun, batch: int) -> Iterator[Trajectory]:
+def paced(
+    rows: Iterable[Sequence[float] | None],
+    time: int,
+    pace: float,
+    clock: Callable[[], float] = monotonic,
+    pause: Callable[[float], None] = sleep,
+) -> Iterator[Sequence[float] | None]:
+    """Rows, each given when it is due.
+
+    Parameters
+    ----------
+    rows
+        The rows, as of a `LiveRun`.
+    time
+        The place of the time in a row.
+    pace
+        Seconds of simulation per second of the clock, which starts when the second row is asked for: the viewer may
+        take some seconds to start with the first one.
+    clock, pause
+        What tells the time, s, and what waits for some seconds.
+    """
+    begin = None  # what the clock shows at time 0
+    for row in rows:
+        if row is not None and begin is not None and (early := begin + row[time] / pace - clock()) > 0.0:
+            pause(early)
+        yield row
+        if row is not None and begin is None:
+            begin = clock() - row[time] / pace
+
+
+def gather(coming: Iterable[Sequence[float] | None], batch: int) -> Iterator[list[Sequence[float]]]:
     """The rows of a run in batches, of fewer rows if no more have come after a tenth of a second, or ever will."""
     rows: list[Sequence[float]] = []
     due = 0.0  # the first row comes at once
     try:
-        for row in run:
-            rows.append(row)
-            if len(rows) == batch or monotonic() > due:
-                yield trajectory_of(run, rows)
+        for row in coming:
+            if row is not None:
+                rows.append(row)
+            if rows and (len(rows) == batch or monotonic() > due):
+                yield rows
                 rows, due = [], monotonic() + PATIENCE
     except (BorepropError, KeyboardInterrupt):
         if rows:
-            yield trajectory_of(run, rows)
+            yield rows
         raise
     if rows:
-        yield trajectory_of(run, rows)
+        yield rows
 
 
-def trajectory_of(run: LiveRun, rows: Sequence[Sequence[float]]) -> Trajectory:
-    """Some rows of a live run, with its case."""
-    return Trajectory(dict(zip(run.columns, np.array(rows).T.copy(), strict=True)), run.case)
+def rows_of(case: Case, columns: Sequence[str], rows: Sequence[Sequence[float]]) -> Trajectory:
+    """Some rows of a live run, with its case and all columns that are drawn; `MissingColumn` if one cannot be had."""
+    given = Trajectory(dict(zip(columns, np.array(rows, dtype=float).T.copy(), strict=True)), case)
+    completed = complete_rows(given)
+    for name in DRAWN:
+        completed.stack(name)  # raises if it is missing
+    return completed
 
 
 def stretches(runs: Iterable[Trajectory], case: Case, plan: Survey | None) -> Iterator[Stretch]:
