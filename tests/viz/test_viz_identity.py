@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -69,9 +70,9 @@ def test_each_of_two_recordings_in_one_viewer_keeps_its_look(
         for name in order:
             show = {"file": opened, "connect": connected}[way]
             show(client, {name: runs[name]}, tmp_path)
-            assert until(lambda name=name: shows(client, alone[name]))
-        client.run_command("ui.switch_to_previous_recording")
-        assert until(lambda: shows(client, alone[order[0]]))
+            assert until(partial(shows, client, alone[name]))
+        client.set_location(client.get_state().recordings[0].location)
+        assert until(partial(shows, client, alone[order[0]]))
 
 
 Show = Callable[[ViewerClient, dict[str, Trajectory], Path], None]

@@ -25,6 +25,9 @@ from boreprop.run.trajectory import Trajectory
 from boreprop_viz import live
 from boreprop_viz.source import gather
 from boreprop_viz.stream import RunStream
+from boreprop_viz.style import LANES
+from boreprop_viz.track import DECIMALS
+from boreprop_viz.verdict import Saying
 from rrd import read, stacked, static
 from viewers import signals, sound
 
@@ -54,6 +57,8 @@ with boreprop_viz.live(path, save=save) as view:
         fmu.doStep(0.5 * k, 0.5)
 fmu.terminate()
 """  # noqa: E501
+
+ROUNDED = 0.51 * 10.0**-DECIMALS  # what the plots leave out
 
 
 def test_a_loop_of_twenty_lines_around_an_fmu_is_drawn(case: Case, fmu: Path, tmp_path: Path) -> None:
@@ -124,7 +129,7 @@ def test_values_of_all_stabilizers_may_come_together(run: Trajectory, rows: list
         curve = "stabilizer_force/stabilizer_force_1" if name == "stabilizer_force" else f"{name}/{name}"
         found = stacked(saved, f"plots/{curve}", "Scalars:scalars")[:, 0]
         expected = run["stabilizer_force[1]"] if name == "stabilizer_force" else run[name]
-        np.testing.assert_allclose(found, scale * expected, atol=1e-9)
+        np.testing.assert_allclose(found, scale * expected, atol=ROUNDED)
 
 
 def test_what_each_row_determines_may_be_left_out(run: Trajectory, rows: list[Row], saved: Path) -> None:
@@ -134,14 +139,14 @@ def test_what_each_row_determines_may_be_left_out(run: Trajectory, rows: list[Ro
     with live(run.case, save=saved) as view:
         for row in rows:
             view.send(**{name: row[name] for name in (*needed, *angles)})
-    for curve, expected, within in (
-        ("inclination/borehole_inclination", np.degrees(run["borehole_inclination"]), 1e-9),
-        ("stabilizer_force/stabilizer_force_1", run["stabilizer_force[1]"] / 1000, 1e-6),
-        ("bit_lateral_force/bit_lateral_force", run["bit_lateral_force"] / 1000, 1e-6),
+    for curve, expected in (
+        ("inclination/borehole_inclination", np.degrees(run["borehole_inclination"])),
+        ("stabilizer_force/stabilizer_force_1", run["stabilizer_force[1]"] / 1000),
+        ("bit_lateral_force/bit_lateral_force", run["bit_lateral_force"] / 1000),
     ):
-        np.testing.assert_allclose(stacked(saved, f"plots/{curve}", "Scalars:scalars")[:, 0], expected, atol=within)
+        np.testing.assert_allclose(stacked(saved, f"plots/{curve}", "Scalars:scalars")[:, 0], expected, atol=ROUNDED)
     words = read(saved, "modes/stabilizer_1", "StateChange:state")
-    assert next(iter(words.values())) == [{1: "low", -1: "high", 0: "free"}[int(run["stabilizer_contact[1]"][0])]]
+    assert next(iter(words.values())) == [LANES["stabilizer_contact"][int(run["stabilizer_contact[1]"][0])][0]]
 
 
 @pytest.mark.parametrize(("kind", "name"), [("case", "run"), ("file", "drilled"), ("fmu", "Borehole")])
@@ -283,6 +288,8 @@ def test_after_an_exception_the_file_has_all_that_was_sent(
     assert sound(old)
     assert drilled(old) == ticks(rows)
     assert capsys.readouterr().err == ""
+    texts = read(old, "verdict", "TextDocument:text")
+    assert f"interrupted at {rows[-1]['drilled_length']:.1f} m" in texts[max(texts)][0]
 
 
 @pytest.mark.parametrize("kind", [OwnError, KeyboardInterrupt, None])
@@ -303,9 +310,9 @@ def held(monkeypatch: pytest.MonkeyPatch) -> Iterator[Event]:
     """Lets nothing be drawn before it is set."""
     go_on, send = Event(), RunStream.send
 
-    def wait(stream: RunStream, stretch: Any) -> None:
+    def wait(stream: RunStream, stretch: Any) -> list[Saying]:
         assert go_on.wait(60.0)
-        send(stream, stretch)
+        return send(stream, stretch)
 
     monkeypatch.setattr(RunStream, "send", wait)
     yield go_on
@@ -328,11 +335,11 @@ def broken(monkeypatch: pytest.MonkeyPatch) -> Event:
     """A disk that is full after the first row; set when that was found."""
     found, send = Event(), RunStream.send
 
-    def fail(stream: RunStream, stretch: Any) -> None:
+    def fail(stream: RunStream, stretch: Any) -> list[Saying]:
         if stream.drilled is not None:
             found.set()
             raise OSError("the disk is full")
-        send(stream, stretch)
+        return send(stream, stretch)
 
     monkeypatch.setattr(RunStream, "send", fail)
     return found
@@ -395,7 +402,7 @@ with boreprop_viz.live("case.toml", save="saved.rrd") as view:
         loop.kill()
     assert loop.returncode == -signal.SIGINT
     assert said.splitlines()[-1] == b"KeyboardInterrupt"
-    assert b"line 8, in <module>" in said  # where it slept
+    assert b"line 7, in <module>" in said or b"line 8, in <module>" in said  # where it printed, or slept
     assert drilled(saved) == ticks(rows)
 
 

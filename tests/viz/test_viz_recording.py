@@ -268,6 +268,19 @@ def test_the_plan_is_drawn_from_where_drilling_starts(run: Trajectory, case: Cas
     np.testing.assert_allclose(np.arctan2(*steps[[0, -1]].T), [0.0, 0.2], atol=1e-3)
 
 
+def test_whatever_the_runs_are_called_rerun_does_not_complain(run: Trajectory, tmp_path: Path) -> None:
+    write_trajectory(run, tmp_path / "run.csv")
+    program = """
+import sys
+from boreprop import read_trajectory
+from boreprop_viz.record import record
+run = read_trajectory("run.csv")
+record({"ηΠ = 0.1, first": run, "a/b (2) & " + 200 * "c": run}, save="run.rrd")
+"""
+    done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 def test_a_plan_that_ends_above_the_start_is_refused(run: Trajectory, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"plan: must include 7\.32 m, where drilling starts, got 0 to 5"):
         record(run, plan=Survey((0.0, 5.0), (0.0, 0.0)), save=tmp_path / "run.rrd")
@@ -278,7 +291,7 @@ def test_the_card_names_the_case_and_whether_it_ripples(tmp_path: Path, paper_ca
     ripples = load_case(paper_case)
     more = replace(ripples, active_weight_on_bit=16 * ripples.active_weight_on_bit)
     record({"a": simulate(ripples), "b": simulate(more)}, save=tmp_path / "two.rrd")
-    texts = read(tmp_path / "two.rrd", "case", "TextDocument:text")
+    texts = read(tmp_path / "two.rrd", "verdict", "TextDocument:text")
     [text] = texts[max(texts)]
     assert "| **ηΠ** | **0.01** | **0.16** |" in text
     assert "| drilling straight, contact | 1 low | none |" in text

@@ -105,7 +105,7 @@ def live(
                 yield view
             except BaseException as error:
                 ended = error
-            view.finish()
+            view.finish(interrupted=ended is not None)
             if ended:
                 raise KeyboardInterrupt  # so the file is kept, and the viewer closed
     except BaseException as error:
@@ -191,8 +191,12 @@ class LiveView:
         if self._failure is None:
             rows.waiting.append([row[name] for name in rows.columns])
 
-    def finish(self) -> None:
-        """Wait until all rows are drawn; raise what went wrong, or `InputError` if there was no row."""
+    def finish(self, interrupted: bool) -> None:
+        """Wait until all rows are drawn; raise what went wrong, or `InputError` if there was no row.
+
+        A loop that was `interrupted` is drawn as such, and this raises `KeyboardInterrupt`.
+        """
+        self._rows.interrupted = interrupted
         self._rows.ended.set()
         if not self._rows.columns:
             raise InputError("send: must be called at least once in the with block, got no row to draw")
@@ -226,6 +230,8 @@ class Rows:
         The rows that are not taken yet.
     ended
         Set when no more rows will come.
+    interrupted
+        Whether the loop ended with an exception.
     """
 
     def __init__(self, case: Case) -> None:
@@ -234,6 +240,7 @@ class Rows:
         self.names: set[str] = set()
         self.waiting: deque[list[float]] = deque()
         self.ended = Event()
+        self.interrupted = False
 
     def begin(self, row: Mapping[str, float]) -> None:
         """Let rows have the values of this one; `InputError` if one is unknown, not finite or missing."""
@@ -247,13 +254,15 @@ class Rows:
         self.columns, self.names = columns, set(columns)
 
     def __iter__(self) -> Iterator[list[float] | None]:
-        """The rows as they come; None when there is none for the moment."""
+        """The rows as they come; None when there is none for the moment; at last `KeyboardInterrupt` if interrupted."""
         over = False
         while not over:
             over = self.ended.wait(TICK)  # asked before the last look, so that no row is missed
             while self.waiting:
                 yield self.waiting.popleft()
             yield None
+        if self.interrupted:
+            raise KeyboardInterrupt
 
 
 def scalars(values: Mapping[str, ArrayLike], n: int) -> dict[str, float]:

@@ -30,7 +30,7 @@ from .source import LiveRun, Source, live, stored
 from .stream import RunStream
 from .track import make_tracks
 
-LONGEST_NAME = 60  # of an application, in characters
+LONGEST_NAME = 100  # letters of the name of an application: Rerun allows some 150
 
 Runs = Trajectory | Mapping[str, Trajectory | LiveRun]
 
@@ -184,9 +184,10 @@ def application_of_its_own(name: str) -> str:
     return application(name, token_hex(4))
 
 
-def application(name: str, look: str) -> str:
-    """What Rerun calls an application: the name of the recording, in the letters that it allows, and its look."""
-    return f"boreprop: {re.sub(r'[^A-Za-z0-9_ -]', '-', name)[:LONGEST_NAME].strip()} {look}"
+def application(name: str, digest: str) -> str:
+    """What Rerun calls the application of a recording: of another spelling it would say that it has changed it."""
+    spelt = re.sub("[^A-Za-z0-9_ -]", "-", name)[:LONGEST_NAME]
+    return f"boreprop: {spelt} {digest}"
 
 
 def log_cases(rec: rr.RecordingStream, sources: Sequence[Source]) -> None:

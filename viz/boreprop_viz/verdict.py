@@ -120,9 +120,8 @@ class Verdict:
         waves = f"waves of {rounded(wave.wavelength, UNITS['m'], digits=3)}, {size}"
         before, self.told = self.told, wave
         if wave.ripples:
-            if (
-                self.began is None or wave.since > recent["drilled_length"][0] + wave.wavelength
-            ):  # else it was as large all along
+            all_along = wave.since <= recent["drilled_length"][0] + wave.wavelength
+            if self.began is None or not all_along:
                 self.began = wave.since
             what = "growing" if wave.state is State.GROWING else "rippling"
             self.ripple = f"{what} since {self._place(self.began)}: {waves}"
