@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+import rerun as rr
 from rerun.chunk import RrdReader
 from rerun.experimental import ViewerClient
 
@@ -27,7 +28,8 @@ NAMES = ("slim.csv", "wide + heavy")
 @pytest.fixture(scope="module")
 def runs(case: Case) -> dict[str, Trajectory]:
     """Runs of two holes so different in size that their bit frames are enlarged differently."""
-    cases = replace(case, length=30.0), replace(case, length=30.0, bit_diameter=2 * case.bit_diameter)
+    wide = replace(case, bit_diameter=2 * case.bit_diameter, active_weight_on_bit=2 * case.active_weight_on_bit)
+    cases = replace(case, length=30.0), replace(wide, length=30.0)
     return {name: simulate(one, sample_interval=0.1) for name, one in zip(NAMES, cases, strict=True)}
 
 
@@ -48,12 +50,12 @@ def test_a_recording_has_the_names_of_its_runs_and_their_cases(runs: dict[str, T
     [[name]] = static(tmp_path / "two.rrd", "__properties", "RecordingInfo:name")
     assert name == "slim.csv + wide + heavy"
     for run, expected in runs.items():
-        entity = f"__properties/case {run}".replace(" ", "\\ ").replace("+", "\\+")
+        entity = f"__properties/{rr.escape_entity_path_part(f'case {run}')}"
         [[text]] = static(tmp_path / "two.rrd", entity, "case_file")
         assert parse_case(text, "case") == expected.case
-        [[diameter]] = static(tmp_path / "two.rrd", entity, "bit_diameter")
+        [[weight]] = static(tmp_path / "two.rrd", entity, "active_weight_on_bit")
         assert expected.case
-        assert diameter == expected.case.bit_diameter
+        assert weight == expected.case.active_weight_on_bit
 
 
 @pytest.mark.slow
