@@ -21,8 +21,9 @@ import pytest
 import rerun as rr
 from rerun.chunk import RrdReader
 
-from boreprop_viz import sinks
-from boreprop_viz.sinks import LOOPBACK, PROGRAM, free_port
+from boreprop_viz import feeder
+from boreprop_viz.feeder import PROGRAM
+from boreprop_viz.ports import LOOPBACK, free_port
 from places import TESTS
 
 T = TypeVar("T")
@@ -98,7 +99,7 @@ def stand_in(command: str, monkeypatch: pytest.MonkeyPatch, folder: Path) -> Non
     program = folder / "viewer"
     program.write_text(f"#!/bin/sh\nrerun='{PROGRAM}'\n{command}\n")
     program.chmod(0o755)
-    monkeypatch.setattr(sinks, "PROGRAM", str(program))
+    monkeypatch.setattr(feeder, "PROGRAM", str(program))
 
 
 def children_from_now_on() -> Callable[[], list[psutil.Process]]:

@@ -12,7 +12,7 @@ import numpy as np
 import psutil
 import pytest
 
-from boreprop_viz import sinks
+from boreprop_viz import feeder
 from boreprop_viz.sinks import open_recording
 from viewers import (
     ROWS,
@@ -63,7 +63,7 @@ def test_control_c_while_a_viewer_starts_leaves_no_viewer(tmp_path: Path, monkey
         raise KeyboardInterrupt
 
     stand_in("exec sleep 60", monkeypatch, tmp_path)
-    monkeypatch.setattr(sinks, "sleep", interrupt)
+    monkeypatch.setattr(feeder, "sleep", interrupt)
     with pytest.raises(KeyboardInterrupt), open_recording(spawn=True):
         pass
     assert not children()
@@ -121,7 +121,7 @@ def test_a_late_viewer_of_what_is_served_gets_everything(tmp_path: Path, served:
     saved, seen = tmp_path / "saved.rrd", tmp_path / "seen.rrd"
     until(saved.exists)
     assert b"rerun" in urlopen(page).read().lower()
-    address = page.partition("?url=")[2]
+    address = page.partition("?url=")[2].partition("&")[0]
     with rerun("--save", seen, address.replace("%3A", ":").replace("%2F", "/").replace("%2B", "+")) as _:
         assert until(lambda: read(seen) == rows(5))
 
@@ -170,8 +170,8 @@ def test_memory_is_bounded_and_the_run_goes_on_when_the_viewer_hangs(tmp_path: P
         with rerun("--serve-grpc") as (viewer, address):
             run = script(f"""
                 import resource, sys
-                from boreprop_viz import sinks
-                sinks.PATIENCE = 0.5
+                from boreprop_viz import feeder
+                feeder.PATIENCE = 0.5
                 with open_recording(save={str(tmp_path / "saved.rrd")!r}, connect={address!r}) as rec:
                     send(rec, range(1))
                     print("ready", flush=True)

@@ -11,9 +11,10 @@ import rerun.blueprint as rrb
 from rerun.experimental import ViewerClient
 
 from boreprop.errors import InputError
-from boreprop_viz import sinks
+from boreprop_viz import feeder, sinks
 from boreprop_viz.picture import SOFTWARE_DRIVERS, environment
-from boreprop_viz.sinks import LOOPBACK, free_port, open_recording
+from boreprop_viz.ports import LOOPBACK, free_port
+from boreprop_viz.sinks import open_recording
 from viewers import ROWS, children_from_now_on, read, rerun, rows, send, signals, sound, stand_in, until
 
 draws = pytest.mark.skipif(
@@ -62,7 +63,7 @@ def test_the_viewer_is_fed_while_the_run_goes_on(tmp_path: Path) -> None:
 
 
 @signals
-@pytest.mark.parametrize(("harm", "told"), [("SIGKILL", "ended with exit status 1"), ("SIGSTOP", "hangs")])
+@pytest.mark.parametrize(("harm", "told"), [("SIGKILL", "at ADDRESS has ended"), ("SIGSTOP", "hangs")])
 def test_a_viewer_that_dies_or_hangs_does_no_harm(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -71,7 +72,7 @@ def test_a_viewer_that_dies_or_hangs_does_no_harm(
     told: str,
 ) -> None:
     children = children_from_now_on()
-    monkeypatch.setattr(sinks, "PATIENCE", 0.5)
+    monkeypatch.setattr(feeder, "PATIENCE", 0.5)
     saved, seen = tmp_path / "saved.rrd", tmp_path / "seen.rrd"
     with rerun("--save", seen) as (viewer, address):
         with open_recording(save=saved, connect=address) as rec:
@@ -82,6 +83,7 @@ def test_a_viewer_that_dies_or_hangs_does_no_harm(
         assert children() == [psutil.Process(viewer.pid)]
     assert sound(saved)
     assert read(saved) == rows(20)
+    told = told.replace("ADDRESS", address)
     assert capsys.readouterr().err == f"warning: the viewer {told}: it may not have received all data\n"
 
 
