@@ -81,9 +81,11 @@ def listens(port: int) -> bool:
 
 
 @contextmanager
-def rerun(*options: str | Path, env: dict[str, str] | None = None) -> Iterator[tuple[Process, str]]:
-    """Run a viewer that is there already; yields its process and its address."""
-    port = free_port()
+def rerun(
+    *options: str | Path, env: dict[str, str] | None = None, port: int | None = None
+) -> Iterator[tuple[Process, str]]:
+    """Run a viewer that is there already, at a port or any; yields its process and its address."""
+    port = port or free_port()
     where = ["--bind", LOOPBACK, "--port", str(port)]
     process = subprocess.Popen([PROGRAM, *where, *options], stderr=subprocess.DEVNULL, env=env)
     try:
@@ -92,6 +94,10 @@ def rerun(*options: str | Path, env: dict[str, str] | None = None) -> Iterator[t
     finally:
         process.kill()
         process.wait()
+
+
+def port_of(address: str) -> int:
+    return int(address.rpartition(":")[2].partition("/")[0])
 
 
 def stand_in(command: str, monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
