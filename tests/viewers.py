@@ -126,3 +126,22 @@ def script(body: str, env: dict[str, str] | None = None) -> Process:
         start_new_session=True,
         env=env,
     )
+
+
+def boreprop_view(*arguments: str | Path, before: str = "", folder: Path) -> Process:
+    """Start the command boreprop-view, as `script` does, after a line of Python; its new viewers need no screen."""
+    program = folder / "viewer"
+    program.write_text(f"""#!/bin/sh\ncase "$*" in *--web-viewer*) ;; *) set -- --serve-grpc "$@";; esac
+exec '{PROGRAM}' "$@"\n""")
+    program.chmod(0o755)
+    return script(
+        f"""
+            import signal
+            from boreprop_viz import cli, feeder
+            feeder.PROGRAM = {str(program)!r}
+            sys.argv = ["boreprop-view", *{[str(argument) for argument in arguments]!r}]
+            {before}
+            cli.main()
+        """,
+        env=os.environ | {"BROWSER": "true"},
+    )
