@@ -33,7 +33,7 @@ def check_free(*ports: int) -> None:
     """Raise `InputError` if one of the ports cannot be used."""
     for port in ports:
         if not 1 <= port <= LAST:
-            raise InputError(f"--port: the viewer's ports must be 1 to {LAST}, got {port}")
+            raise InputError(f"--port: must be 1 to {LAST}, got {port}")
         try:
             bound(port)
         except OSError as error:
