@@ -23,6 +23,7 @@ from rerun.chunk import RrdReader
 
 from boreprop_viz import feeder
 from boreprop_viz.feeder import PROGRAM
+from boreprop_viz.picture import SOFTWARE_DRIVERS
 from boreprop_viz.ports import LOOPBACK, free_port
 from places import TESTS
 
@@ -31,6 +32,9 @@ Process = subprocess.Popen[bytes]
 
 ROWS = 1000  # in a batch
 signals = pytest.mark.skipif(os.name != "posix", reason="no such signals")
+draws = pytest.mark.skipif(
+    not SOFTWARE_DRIVERS, reason="no software Vulkan driver (Debian: mesa-vulkan-drivers and libvulkan1)"
+)
 
 
 def send(rec: rr.RecordingStream, batches: range) -> None:

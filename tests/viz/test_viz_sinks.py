@@ -12,12 +12,13 @@ from rerun.experimental import ViewerClient
 
 from boreprop.errors import InputError
 from boreprop_viz import feeder, sinks
-from boreprop_viz.picture import SOFTWARE_DRIVERS, environment
+from boreprop_viz.picture import environment
 from boreprop_viz.ports import LOOPBACK, free_port
 from boreprop_viz.sinks import open_recording
 from viewers import (
     ROWS,
     children_from_now_on,
+    draws,
     listens,
     port_of,
     read,
@@ -28,10 +29,6 @@ from viewers import (
     sound,
     stand_in,
     until,
-)
-
-draws = pytest.mark.skipif(
-    not SOFTWARE_DRIVERS, reason="no software Vulkan driver (Debian: mesa-vulkan-drivers and libvulkan1)"
 )
 
 
