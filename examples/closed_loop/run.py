@@ -39,7 +39,7 @@ def run(
     importer: Annotated[Importer, typer.Option(help="What runs the FMUs.")] = Importer.fmpy,
     half_weight_at: Annotated[
         float | None,
-        typer.Option(parser=positive, metavar="M", help="Drilled length where the weight on bit drops by half."),
+        typer.Option(parser=positive, metavar="M", help="Drilled length where the active weight on bit drops by half."),
     ] = None,
 ) -> None:
     """Run the system over its default experiment; a row after each communication step."""

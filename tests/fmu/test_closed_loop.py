@@ -88,7 +88,7 @@ Run = Callable[[float | None], Trajectory]
 
 @pytest.fixture(scope="module")
 def run(ssp: Path) -> Run:
-    """A run on fmpy, with half the weight on bit from a length on: made once."""
+    """A run on fmpy, with half the active weight on bit from a length on: made once."""
     return cache(partial(drill, ssp, "fmpy"))
 
 

@@ -91,7 +91,7 @@ def test_runs_without_names_are_numbered(sent: list[RrdReader], run: Trajectory)
 
 def test_a_plan_reaches_the_widget(sent: list[RrdReader], run: Trajectory) -> None:
     show(run, plan=Survey((0.0, 100.0), (0.0, 0.1)))
-    assert ticks(sent, "/plots/inclination/planned_inclination") == millimetres(run)
+    assert ticks(sent, "/plots/inclination/0_plan") == millimetres(run)
 
 
 def test_the_widget_gets_the_layout(sent: list[RrdReader], run: Trajectory) -> None:

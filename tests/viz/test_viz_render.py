@@ -20,9 +20,10 @@ from boreprop_viz.feeder import PROGRAM
 from boreprop_viz.picture import SOFTWARE_DRIVERS, Viewer, viewer
 from boreprop_viz.record import record
 from boreprop_viz.style import ORANGE
-from boreprop_viz.track import TIMELINE
+from boreprop_viz.track import DEPTH_TIMELINE, TIMELINE
 
 LENGTH = 60.0
+RATE = 0.5  # m/s
 SIZE = 960, 600
 BLANK = 1e-3  # of a picture: a line across it is three times that
 
@@ -36,9 +37,10 @@ pytestmark = [
 
 @pytest.fixture(scope="module")
 def recorded(case: Case, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The paper's case, far enough to ripple."""
+    """The paper's case, far enough to ripple, with its time."""
     path = tmp_path_factory.mktemp("render") / "run.rrd"
-    record(simulate(replace(case, length=LENGTH), sample_interval=0.1), save=path)
+    run = simulate(replace(case, length=LENGTH), sample_interval=0.1)
+    record(replace(run, columns={"time": run["drilled_length"] / RATE} | run.columns), save=path)
     return path
 
 
@@ -88,7 +90,8 @@ def test_a_view_without_its_data_is_blank(recorded: Path, tmp_path: Path) -> Non
     rec = rr.RecordingStream(run.application_id, recording_id=run.recording_id)
     rec.save(ticks)
     for tick in (0, round(1000 * LENGTH)):
-        rec.set_time(TIMELINE, sequence=tick)
+        for timeline in (TIMELINE, DEPTH_TIMELINE):
+            rec.set_time(timeline, sequence=tick)
         rec.log("nowhere", rr.Scalars(0.0))
     rec.disconnect()
     data = {chunk.entity_path for chunk in reader.stream() if not chunk.is_static}
@@ -96,17 +99,23 @@ def test_a_view_without_its_data_is_blank(recorded: Path, tmp_path: Path) -> Non
     drop = [argument for entity in data for argument in ("--drop-entity", entity)]
     subprocess.run([PROGRAM, "rrd", "filter", *drop, recorded, ticks, "--output", left], check=True)
     with viewer(left, *SIZE) as shown:
-        views = shown.views()
+        views = [view for view in shown.views() if view.name != "key"]
         assert len(views) >= 4
         for view in views:
             assert drawn(view, shown.picture(view)) < BLANK, view.name
 
 
-def test_half_way_there_is_half_of_the_hole(shown: Viewer) -> None:
+@pytest.mark.parametrize("timeline", ["drilled_length_mm", "measured_depth_mm", "simulation_time"])
+def test_half_way_there_is_half_of_the_hole(shown: Viewer, case: Case, timeline: str) -> None:
     [section] = [view for view in shown.views() if view.name.startswith("Vertical section")]
     orange = []
     for length in (LENGTH / 2, LENGTH):
-        shown.seek(round(1000 * length))
+        depth = case.survey.measured_depth[-1] + length
+        if timeline == "simulation_time":
+            shown.client.set_time(timeline, duration=length / RATE, play_state="paused")
+        else:
+            tick = round(1000 * {"drilled_length_mm": length, "measured_depth_mm": depth}[timeline])
+            shown.client.set_time(timeline, sequence=tick, play_state="paused")
         pixels = np.asarray(shown.picture(section), dtype=int)
         orange.append(np.count_nonzero(np.abs(pixels - ORANGE).max(axis=-1) < 40))
     assert 0.3 < orange[0] / orange[1] < 0.6  # the BHA covers some of both

@@ -83,6 +83,14 @@ def view(
     stop: Annotated[
         float | None, typer.Option(parser=positive, metavar="T", help="Time at the end, s, for an FMU.")
     ] = None,
+    pace: Annotated[
+        float | None,
+        typer.Option(
+            parser=positive,
+            metavar="SECONDS_PER_SECOND",
+            help="Seconds of simulation per second of the clock, for an FMU. Default: as fast as it goes.",
+        ),
+    ] = None,
     save: Annotated[Path | None, typer.Option(metavar="X.rrd", help="The recording to write.")] = None,
     spawn: Annotated[bool, typer.Option("--spawn", help="Show the runs in a new viewer. This is the default.")] = False,
     serve: Annotated[
@@ -119,11 +127,8 @@ def view(
         raise InputError("--case, --fmu: at most one must be given, got both")
     if (viewers := spawn + serve + (connect is not None)) > 1:
         raise InputError(f"--spawn, --serve, --connect: at most one must be given, got {viewers}")
-    if port is not None:
-        if not (serve or spawn):
-            raise InputError(f"--port: must be given with --serve or --spawn, got {port} without")
-        check_free(port, *([port + 1] if serve else []))  # now, since a case is simulated before it is shown
-    check_that_one_runs(sources, {"--schedule": schedule, "--step": step, "--stop": stop})
+    check_port(port, spawn, serve)
+    check_that_one_runs(sources, {"--schedule": schedule, "--step": step, "--stop": stop, "--pace": pace})
     from .view import show  # imported here, so that a wrong option is reported before Rerun, which is slow, is imported
 
     show(
@@ -134,12 +139,22 @@ def view(
         schedule=schedule,
         step=step,
         stop=stop,
+        pace=pace,
         save=save,
         spawn=spawn or (save is None and viewers == 0),
         serve=serve,
         connect=connect,
         port=port,
     )
+
+
+def check_port(port: int | None, spawn: bool, serve: bool) -> None:
+    """Raise `InputError` if a port is given that cannot be used, before a case is simulated."""
+    if port is None:
+        return
+    if not (spawn or serve):
+        raise InputError(f"--port: must be given with --serve or --spawn, got {port} without")
+    check_free(port, *([port + 1] if serve else []))
 
 
 def check_that_one_runs(sources: list[Path], options: dict[str, object]) -> None:

@@ -11,16 +11,19 @@ from typing import Self
 import numpy as np
 import rerun as rr
 
+from boreprop.analysis.hole import bit_positions
 from boreprop.case.file import dump_case
 from boreprop.case.parameters import parameters
 from boreprop.core.survey import Survey
 from boreprop.run.trajectory import Trajectory
 
-from .card import log_card
+from .card import Card
 from .furniture import log_furniture, log_grid, log_names, log_plan
+from .key import entries, log_key
 from .layout import blueprint
+from .listing import Listing
 from .scales import Scales, choose_scales
-from .scene import HoleAxis, bit_positions, planned_hole
+from .scene import planned_path
 from .sinks import flush, open_recording
 from .source import LiveRun, Source, live, stored
 from .stream import RunStream
@@ -88,28 +91,29 @@ class Drawing:
     ----------
     sources
         The runs.
-    planned
-        The planned hole, if there is one.
+    plan
+        The planned hole, if there is one, with measured depths as in the survey.
     scales
         The scales and ranges of the views that suit all of them.
     """
 
     sources: Sequence[Source]
-    planned: HoleAxis | None
+    plan: Survey | None
     scales: Scales
 
     @classmethod
     def of(cls, sources: Iterable[Source], plan: Survey | None = None) -> Self:
         """Choose the scales; `InputError` if the plan does not reach the start of the first run."""
         sources = list(sources)
-        planned = None if plan is None else planned_hole(plan, sources[0].case.survey.measured_depth[-1])
-        ahead = [source.likely_positions() for source in sources] + ([] if planned is None else [planned.position])
+        ahead = [source.likely_positions() for source in sources]
+        if plan is not None:
+            ahead.append(planned_path(plan, sources[0].case))
         scales = choose_scales(
             [source.beginning for source in sources],
             whole=not any(source.live for source in sources),
             section=np.concatenate(ahead),
         )
-        return cls(sources, planned, scales)
+        return cls(sources, plan, scales)
 
     @property
     def name(self) -> str:
@@ -124,10 +128,10 @@ class Drawing:
         must have different applications. How a live run will look in the end is not known, so its application is its
         own.
         """
-        look = [repr((self.scales, [(source.name, source.case) for source in self.sources])), version("boreprop")]
         if any(source.live for source in self.sources):
-            look.append(token_hex())
-        return f"boreprop: {self.name} {sha256(' '.join(look).encode()).hexdigest()[:8]}"
+            return application_of_its_own(self.name)
+        look = repr((self.scales, [(source.name, source.case) for source in self.sources], version("boreprop")))
+        return f"boreprop: {self.name} {sha256(look.encode()).hexdigest()[:8]}"
 
     def draw(self, rec: rr.RecordingStream, progress: Callable[[float], None] = lambda _: None) -> None:
         """Log the runs and the blueprint into an open recording.
@@ -150,28 +154,37 @@ class Drawing:
         rec.send_recording_name(self.name)
         log_cases(rec, sources)
         log_furniture(rec, scales, [source.case for source in sources])
-        if self.planned is not None:
-            log_plan(rec, self.planned)
+        if self.plan is not None:
+            log_plan(rec, planned_path(self.plan, sources[0].case))
         tracks = make_tracks(rec, scales, sources)
+        key = entries(tracks, planned=self.plan is not None)
+        log_key(rec, key)
         if len(tracks) > 1:
             log_names(rec, scales, tracks)
-        rec.send_blueprint(blueprint(scales, tracks))
-        findings = ["drilling" if source.live else "" for source in sources]
-        log_card(rec, sources, findings)
+        rec.send_blueprint(blueprint(scales, tracks, key))
+        card, listing = Card(rec, scales, sources), Listing(rec, self.plan)
         done = 0
         for i, (source, track) in enumerate(zip(sources, tracks, strict=True)):
             stream = RunStream(track)
-            for stretch in source.stretches:
-                if not scales.section.hold(bit_positions(stretch.rows)):
-                    scales = scales.widened(bit_positions(stretch.rows))
-                    log_grid(rec, scales)
-                    rec.send_blueprint(blueprint(scales, tracks))
-                flush(rec)  # the stretch before this one, which would else pile up in memory if the disk is slow
-                stream.send(stretch)
-                done += stretch.rows.row_count
-                progress(done)
-            findings[i] = stream.finding()
-            log_card(rec, sources, findings)
+            with (
+                listing.listed(source, stream.verdict) as follow,
+                card.ending(i, stream.verdict, source.beginning.stopped),
+            ):
+                for stretch in source.stretches:
+                    if not scales.section.hold(bit_positions(stretch.rows)):
+                        scales = scales.widened(bit_positions(stretch.rows))
+                        log_grid(rec, scales)
+                        rec.send_blueprint(blueprint(scales, tracks, key))
+                    flush(rec)  # the stretch before this one, which would else pile up in memory if the disk is slow
+                    card.say(i, stream.send(stretch))
+                    follow(stretch.rows)
+                    done += stretch.rows.row_count
+                    progress(done)
+
+
+def application_of_its_own(name: str) -> str:
+    """What Rerun calls the application of a recording that shares its look with no other."""
+    return f"boreprop: {name} {token_hex(4)}"
 
 
 def log_cases(rec: rr.RecordingStream, sources: Sequence[Source]) -> None:

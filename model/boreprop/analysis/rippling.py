@@ -195,8 +195,8 @@ def find_rippling(
         Contact of each stabilizer and saturation of the bit tilt, whole numbers, shape (rows, k). Only without a run.
         If they are not given, a wave that dies out very slowly counts as lasting.
     inputs
-        Steering force and weight on bit, shape (rows,) each. Only without a run. If they are not given, they are taken
-        to be constant.
+        Steering force and active weight on bit, shape (rows,) each. Only without a run. If they are not given, they are
+        taken to be constant.
 
     Returns
     -------
@@ -303,10 +303,11 @@ def _with_course(found: _Found) -> Rippling:
     """The wave that was found, with the fields since and inclination_drift."""
     if found.waves is None or found.rows is None:
         return found.rippling
-    least = HALF * float(found.waves.sizes[-AT_THE_END:].min())
+    sizes = found.waves.sizes[-AT_THE_END:]
+    size = sizes[-1] if found.rippling.state is State.GROWING else sizes.min()  # of these a growing wave exceeds most
     return replace(
         found.rippling,
-        since=large_since(found.rows.length, found.rows.inclination, found.waves.wavelength, least),
+        since=large_since(found.rows.length, found.rows.inclination, found.waves.wavelength, HALF * float(size)),
         inclination_drift=slope(found.waves.x, found.waves.trend),
     )
 
