@@ -1,6 +1,7 @@
 """Recordings go to files and viewers, whatever the viewers do."""
 
 import signal
+import string
 import sys
 from contextlib import ExitStack, suppress
 from pathlib import Path
@@ -14,7 +15,7 @@ from boreprop.errors import InputError
 from boreprop_viz import feeder, sinks
 from boreprop_viz.picture import environment
 from boreprop_viz.ports import LOOPBACK, free_port
-from boreprop_viz.sinks import open_recording
+from boreprop_viz.sinks import new_recording, open_recording
 from viewers import (
     ROWS,
     children_from_now_on,
@@ -284,6 +285,11 @@ def test_an_exception_leaves_the_old_file_and_no_viewer(tmp_path: Path) -> None:
         assert children() == [psutil.Process(viewer.pid)]
     assert saved.read_text() == "old"
     assert list(tmp_path.iterdir()) == [saved]
+
+
+def test_rerun_takes_any_name_of_an_application_without_a_word(capfd: pytest.CaptureFixture[str]) -> None:
+    new_recording(f"{string.punctuation} ηΠ")
+    assert capfd.readouterr() == ("", "")
 
 
 def end(client: ViewerClient) -> int | None:

@@ -62,17 +62,17 @@ def show(
     """
     named = by_name(runs)
     try:
-        import rerun as rr
+        import rerun  # noqa: F401
         import rerun_notebook  # noqa: F401  # Rerun imports it only when it shows something
         from rerun.notebook import Viewer
     except ModuleNotFoundError as error:
         message = f"show: {error.name} must be installed for this: pip install 'boreprop[viz]', got: {error}"
         raise InputError(message) from error
     from .record import Drawing, find_sources
+    from .sinks import new_recording
 
     drawing = Drawing.of(find_sources(named, plan), plan)
-    rec = rr.RecordingStream(drawing.application)
-    rec.set_log_time_enabled(False)
+    rec = new_recording(drawing.application)
     viewer = Viewer(recording=rec, width=width, height=height)
     drawing.draw(rec)
     rec.flush()

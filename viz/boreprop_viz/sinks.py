@@ -5,6 +5,7 @@ is in the file. So a run waits for the disk alone. (Rerun's own connections bloc
 hangs.)
 """
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -97,8 +98,7 @@ def scratch_file() -> Iterator[Path]:
 @contextmanager
 def recording_to(path: Path, application: str) -> Iterator[rr.RecordingStream]:
     """Open a recording whose data go to a file, which is complete at the end; `OSError` if it cannot be written."""
-    rec = rr.RecordingStream(application)
-    rec.set_log_time_enabled(False)
+    rec = new_recording(application)
     try:
         try:
             rec.set_sinks(rr.FileSink(path))
@@ -112,6 +112,13 @@ def recording_to(path: Path, application: str) -> Iterator[rr.RecordingStream]:
         end.join(PATIENCE)  # like `flush`, it may wait for ever
         if end.is_alive():
             raise OSError(f"{path}: must be written within {PATIENCE:g} s, got a file without its end")
+
+
+def new_recording(application: str) -> rr.RecordingStream:
+    """A recording of an application, without the time of day. What Rerun does not take in a name becomes "-"."""
+    rec = rr.RecordingStream(re.sub(r"[^A-Za-z0-9 :\[\]_-]", "-", application))
+    rec.set_log_time_enabled(False)
+    return rec
 
 
 def flush(rec: rr.RecordingStream) -> None:
