@@ -43,6 +43,7 @@ def record(
     spawn: bool = False,
     serve: bool = False,
     connect: str | None = None,
+    port: int | None = None,
     progress: Callable[[float], None] = lambda _: None,
 ) -> None:
     """Draw runs into a file, a viewer, or both.
@@ -58,6 +59,9 @@ def record(
         The .rrd file to write. An existing file is replaced only at the end, or at Ctrl-C by the data up to then.
     spawn, serve, connect
         Show the runs in a new viewer, in the browser, or in the viewer at an address rerun+http://HOST:PORT/proxy.
+    port
+        With `serve`, the port of the page; the data are at the next one. With `spawn`, the port at which the viewer
+        takes further data.
     progress
         Called with the number of rows done.
 
@@ -72,7 +76,7 @@ def record(
         If the file cannot be written.
     """
     drawing = Drawing.of(find_sources(runs, plan), plan)
-    with open_recording(drawing.application, save=save, spawn=spawn, serve=serve, connect=connect) as rec:
+    with open_recording(drawing.application, save=save, spawn=spawn, serve=serve, connect=connect, port=port) as rec:
         drawing.draw(rec, progress)
 
 
