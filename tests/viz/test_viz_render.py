@@ -16,9 +16,9 @@ from rerun.experimental import View
 from boreprop.case.case import Case
 from boreprop.run.simulate import simulate
 from boreprop_viz import picture
+from boreprop_viz.feeder import PROGRAM
 from boreprop_viz.picture import SOFTWARE_DRIVERS, Viewer, viewer
 from boreprop_viz.record import record
-from boreprop_viz.sinks import PROGRAM
 from boreprop_viz.style import ORANGE
 from boreprop_viz.track import DEPTH_TIMELINE, TIMELINE
 

@@ -42,6 +42,7 @@ def live(
     spawn: bool = False,
     serve: bool = False,
     connect: str | None = None,
+    port: int | None = None,
     save: str | Path | None = None,
 ) -> Iterator["LiveView"]:
     """Draw the run of one's own loop while it goes on: ``with live(…) as view: … view.send(time=…, **outputs)``.
@@ -63,6 +64,9 @@ def live(
     spawn, serve, connect
         Show the run in a new viewer, in the browser, or in the viewer at an address rerun+http://HOST:PORT/proxy. At
         most one.
+    port
+        With `serve`, the port of the page; the data are at the next one. With `spawn`, the port at which the viewer
+        takes further data.
     save
         The .rrd file to write. An existing file is replaced at the end of the block, unless no row was sent.
 
@@ -102,7 +106,9 @@ def live(
     name = name or ("run" if isinstance(case_or_fmu, Case) else Path(case_or_fmu).stem)
     ended = None
     try:
-        with open_recording(application_of_its_own(name), save=save, spawn=spawn, serve=serve, connect=connect) as rec:
+        with open_recording(
+            application_of_its_own(name), save=save, spawn=spawn, serve=serve, connect=connect, port=port
+        ) as rec:
             view = LiveView(name, case, planned, rec)
             try:
                 yield view
@@ -261,7 +267,7 @@ class Rows:
         self.columns, self.names = columns, set(columns)
 
     def __iter__(self) -> Iterator[list[float] | None]:
-        """The rows as they come; None when there is none for the moment."""
+        """The rows as they come; None when there is none for the moment; at last `KeyboardInterrupt` if interrupted."""
         over = False
         while not over:
             over = self.ended.wait(TICK)  # asked before the last look, so that no row is missed

@@ -19,7 +19,8 @@ from typing import TypeVar
 from PIL import Image
 from rerun.experimental import View, ViewerClient, ViewReport
 
-from .sinks import LOOPBACK, PROGRAM, free_port
+from .feeder import PROGRAM
+from .ports import LOOPBACK, free_port
 
 T = TypeVar("T")
 

@@ -1,6 +1,6 @@
 """What is true of a hole at each drilled length, in words: its ripple, where it began and ended, and its plan.
 
-A run is checked at points evenly spaced in drilled length, so the words do not depend on how its rows come.
+A run is checked at points that its drilled length decides, so the words do not depend on how its rows come.
 """
 
 from dataclasses import replace
@@ -19,6 +19,7 @@ from .source import between, joined
 
 RECENT = 32.0  # half lengths of the BHA up to the bit that decide whether the hole ripples: five of the longest waves
 EVERY = 1.0  # half lengths of the BHA from check to check: a ripple comes and goes over several
+SELDOM = 4  # times as far to the next check while a ripple lasts: these checks cost most, and most find nothing new
 NOTICEABLE = 0.15  # of an amplitude or a distance: a smaller change is not told
 FADED = 0.5  # of an amplitude: a wave that dies out swings while it does, and is told again when it has fallen to this
 STILL = 0.5  # of an amplitude: a ripple that is at least this large goes on while force or weight change
@@ -38,13 +39,15 @@ class Verdict:
     """Follows a run, and says what is true of it.
 
     A new state of the ripple is told once two checks running have found it, or at the end of the run. While force or
-    weight change too often to tell, a ripple counts as going on.
+    weight change too often to tell, a ripple counts as going on. Places are drilled lengths from an `origin`, m: with
+    the measured depth of the start they are measured depths.
     """
 
-    def __init__(self, case: Case) -> None:
+    def __init__(self, case: Case, origin: float = 0.0) -> None:
+        self.origin = origin
         self.every, self.reach = EVERY * case.bha.half_length, RECENT * case.bha.half_length
-        self.rows: Trajectory | None = None  # the last rows, as far back as the next check needs
-        self.start, self.checks = 0.0, 0  # where the run starts, m, and the number of checks up to now
+        self.rows: Trajectory | None = None  # the last rows, as far back as a check needs
+        self.start, self.steps = 0.0, 1  # where the run starts, m, and how many steps from there the next check is
         self.checked = -np.inf  # the last row that was checked, m
         self.state = State.NONE  # at the last check
         self.told = Rippling()  # the wave that was told last
@@ -57,7 +60,7 @@ class Verdict:
     @property
     def next(self) -> float:
         """The drilled length of the next check, m."""
-        return self.start + (self.checks + 1) * self.every
+        return self.start + self.steps * self.every
 
     def follow(self, rows: Trajectory) -> list[Saying]:
         """Take the next rows of the run, at least one; returns what there is to say up to the last of them."""
@@ -72,22 +75,23 @@ class Verdict:
         length = rows["drilled_length"]
         while self.next < length[-1]:  # so that no further row will come at the length of the check
             recent = between(rows, self.next - self.reach, self.next)
-            self.checks += 1
             if recent.row_count and recent["drilled_length"][-1] > self.checked:
                 self._check(recent)
                 sayings += self._say(recent)
-        self.rows = between(rows, self.next - self.reach, np.inf)
+            self.steps += SELDOM if self.state is self.told.state is State.LASTING else 1
+        self.rows = between(rows, length[-1] - self.reach, np.inf)
         return sayings
 
     def end(self, how: str = "", why: str = "") -> list[Saying]:
         """Check the last rows, and say where, `how` and `why` the run ended, if early; returns what else is to say."""
         if self.rows is None:
             return []
-        recent = between(self.rows, self.rows["drilled_length"][-1] - self.reach, np.inf)
-        self._check(recent, sure=True)
+        self._check(self.rows, sure=True)
         if self.ripple == SO_FAR:
             self.ripple = "no ripple"
-        return self._say(recent, f"; {how} at {UNITS['m'].text(self.checked)}{': ' * bool(why)}{why}" if how else "")
+        return self._say(
+            self.rows, f"; {how} at {UNITS['m'].text(self.origin + self.checked)}{': ' * bool(why)}{why}" if how else ""
+        )
 
     def _say(self, recent: Trajectory, end: str = "") -> list[Saying]:
         """What is to be said from the last of some rows on: nothing if it was said already."""
@@ -116,24 +120,27 @@ class Verdict:
         waves = f"waves of {rounded(wave.wavelength, UNITS['m'], digits=3)}, {size}"
         before, self.told = self.told, wave
         if wave.ripples:
-            if (
-                self.began is None or wave.since > recent["drilled_length"][0] + wave.wavelength
-            ):  # else it was as large all along
+            all_along = wave.since <= recent["drilled_length"][0] + wave.wavelength
+            if self.began is None or not all_along:
                 self.began = wave.since
             what = "growing" if wave.state is State.GROWING else "rippling"
-            self.ripple = f"{what} since {self.began:.0f} m: {waves}"
+            self.ripple = f"{what} since {self._place(self.began)}: {waves}"
             return
         if self.began is not None:
-            self.ended, self.past = (self.began, before), f"; rippling from {self.began:.0f} m"
+            self.ended, self.past = (self.began, before), f"; rippling from {self._place(self.began)}"
             self.began = None
         if self.ended is not None and (end := _end(recent, *self.ended)) is not None:
-            self.ended, self.past = None, f"{self.past} to {end:.0f} m"
+            self.ended, self.past = None, f"{self.past} to {self._place(end)}"
         now = {
             State.NONE: "no ripple" if self.past else SO_FAR,
             State.DYING: f"dying out: {waves}",
             State.STEERED: f"{waves}, but force or weight change too often to tell",
         }
         self.ripple = now[wave.state] + self.past
+
+    def _place(self, length: float) -> str:
+        """A drilled length, m, in words."""
+        return UNITS["m"].text(self.origin + length, ".0f")
 
     def _see_plan(self, recent: Trajectory, sure: bool = False) -> None:
         """Look how far the last of some rows is off the plan, and put it into words if that has changed noticeably."""

@@ -98,6 +98,7 @@ def show(
     spawn: bool,
     serve: bool,
     connect: str | None,
+    port: int | None,
 ) -> None:
     """Draw runs, see the options of the command."""
     skip_pandas_check()
@@ -107,7 +108,7 @@ def show(
     drawing = Drawing.of(opened, planned)
     rows = sum(source.row_count or 0 for source in opened)
     with (
-        open_recording(drawing.application, save=save, spawn=spawn, serve=serve, connect=connect) as rec,
+        open_recording(drawing.application, save=save, spawn=spawn, serve=serve, connect=connect, port=port) as rec,
         console.progress("drawing", rows) as done,
     ):
         drawing.draw(rec, done)
