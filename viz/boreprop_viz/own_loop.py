@@ -267,7 +267,7 @@ class Rows:
         self.columns, self.names = columns, set(columns)
 
     def __iter__(self) -> Iterator[list[float] | None]:
-        """The rows as they come; None when there is none for the moment; at last `KeyboardInterrupt` if interrupted."""
+        """The rows as they come; None when there is none for the moment; at last what ended the loop is raised."""
         over = False
         while not over:
             over = self.ended.wait(TICK)  # asked before the last look, so that no row is missed
