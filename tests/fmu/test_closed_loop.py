@@ -272,7 +272,7 @@ def test_it_can_be_watched_beside_the_plan(ssp: Path, run: Run) -> None:
     depth = PLAN.measured_depth[0] + run(None)["drilled_length"]
     for curve, expected in (
         ("borehole_inclination", run(None)["borehole_inclination"]),
-        ("planned_inclination", np.interp(depth, PLAN.measured_depth, PLAN.inclination)),
+        ("0_plan", np.interp(depth, PLAN.measured_depth, PLAN.inclination)),
     ):
         shown = read(saved, f"plots/inclination/{curve}", "Scalars:scalars", "simulation_time")
         np.testing.assert_allclose([shown[time][0] for time in sorted(shown)], np.degrees(expected), atol=1e-4)
