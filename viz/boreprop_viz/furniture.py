@@ -34,7 +34,7 @@ from .style import (
     curve_label,
     mixed,
 )
-from .track import Track, points
+from .track import DEPTH_TIMELINE, Track, points
 
 PALE = 0.5  # share of white in the colour of a run's text, which is read on the grey ground of a label
 LINE = 0.045  # height of a line of text over that of its view, which is some 20 lines high
@@ -48,6 +48,7 @@ def log_furniture(rec: rr.RecordingStream, scales: Scales, cases: Sequence[Case]
     log_grid(rec, scales)
     log_places(rec, scales, cases)
     log_scale(rec, scales)
+    log_round_start(rec, scales)
 
 
 def log_styles(track: Track) -> None:
@@ -137,6 +138,15 @@ def log_grid(rec: rr.RecordingStream, scales: Scales) -> None:
     x, z = x[(x > left) & (x < right)], z[z < bottom]
     log_labels(rec, "vertical_section/grid/depth", points(left, z), [f"{round(value)} m" for value in z])
     log_labels(rec, "vertical_section/grid/displacement", points(x, bottom), [f"{round(value)} m" for value in x])
+
+
+def log_round_start(rec: rr.RecordingStream, scales: Scales) -> None:
+    """Nothing at a round measured depth, in every plot: the viewer counts the axis from the first tick."""
+    if scales.start is None:
+        return
+    tick = rr.TimeColumn(DEPTH_TIMELINE, sequence=[round(1000 * scales.round_start)])
+    for plot in (*PLOTS, "ripple"):
+        rec.send_columns(f"plots/{plot}/0_start", [tick], rr.Scalars.columns(scalars=np.full(1, np.nan)))
 
 
 def log_plan(rec: rr.RecordingStream, plan: Array) -> None:

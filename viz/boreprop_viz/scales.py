@@ -49,6 +49,12 @@ class Scales:
     ranges: dict[str, tuple[float, float] | None]  # plot → its range in the unit shown; None: the viewer chooses it
 
     @property
+    def round_start(self) -> float:
+        """A round measured depth, m, at the start or above it by at most a tenth of the length of the run."""
+        unit = 10.0 ** ceil(log10(max(self.length, 1.0) / 100.0))
+        return unit * floor((self.start or 0.0) / unit)
+
+    @property
     def along(self) -> str:
         """What the horizontal axis of the plots shows."""
         return "drilled length (mm)" if self.start is None else "measured depth (mm)"
