@@ -26,6 +26,7 @@ from boreprop_viz.verdict import Saying, Verdict
 from places import EXAMPLES
 from rrd import read
 
+START = paper_case().survey.measured_depth[-1]
 SIZE = re.compile(r"waves of ([\d.]+) m, ±([\d.e-]+) °, ±([\d.e-]+) mm")
 
 
@@ -35,10 +36,10 @@ def pieces(run: Trajectory, rows: int) -> Iterator[Trajectory]:
         yield Trajectory({name: values[first : first + rows] for name, values in run.columns.items()}, run.case)
 
 
-def say(run: Trajectory, rows: int = 100) -> list[Saying]:
+def say(run: Trajectory, rows: int = 100, origin: float = 0.0) -> list[Saying]:
     """What is said of a run that comes in pieces of so many rows."""
     assert run.case
-    verdict = Verdict(run.case)
+    verdict = Verdict(run.case, origin)
     return [saying for piece in pieces(run, rows) for saying in verdict.follow(piece)] + verdict.end()
 
 
@@ -168,8 +169,8 @@ class Replay:
 
 def words(path: Path) -> list[tuple[int, str]]:
     """The lines about the runs at the ticks of a recording, in order; of several texts at a tick the last holds."""
-    texts = read(path, "case", "TextDocument:text")
-    return [(tick, text.partition("ripple?\n\n")[2].partition("\n\n|")[0]) for tick, [text] in sorted(texts.items())]
+    texts = read(path, "verdict", "TextDocument:text")
+    return [(tick, text.partition(":\n\n")[2]) for tick, [text] in sorted(texts.items())]
 
 
 def test_a_live_run_says_what_the_stored_one_says(tmp_path: Path) -> None:
@@ -177,13 +178,13 @@ def test_a_live_run_says_what_the_stored_one_says(tmp_path: Path) -> None:
     record({"run": Replay(run)}, save=tmp_path / "live.rrd")
     record({"run": run}, save=tmp_path / "stored.rrd")
     assert words(tmp_path / "live.rrd") == words(tmp_path / "stored.rrd")
-    expected = [(round(1000 * saying.length), f"- **run** {saying.words}") for saying in say(run)]
+    expected = [(round(1000 * saying.length), f"- **run** {saying.words}") for saying in say(run, origin=START)]
     assert words(tmp_path / "live.rrd") == expected
 
 
 @pytest.mark.parametrize(
     ("error", "end"),
-    [(KeyboardInterrupt(), "interrupted at 30.0 m"), (InputError("no beam"), "stopped at 30.0 m: no beam")],
+    [(KeyboardInterrupt(), "interrupted at 37.3 m"), (InputError("no beam"), "stopped at 37.3 m: no beam")],
 )
 def test_a_run_that_does_not_reach_its_end_is_marked_so(tmp_path: Path, error: BaseException, end: str) -> None:
     run, path = simulate(paper_case(), length=30.0), tmp_path / "run.rrd"
@@ -217,7 +218,7 @@ def test_a_recording_without_its_end_does_not_claim_to_be_drilling(tmp_path: Pat
 def test_a_stored_run_that_stopped_says_why(tmp_path: Path) -> None:
     run = replace(simulate(paper_case(), length=5.0), stopped="the hole curls up")
     record(run, save=tmp_path / "run.rrd")
-    assert words(tmp_path / "run.rrd")[-1] == (5000, "- **run** no ripple; stopped at 5.0 m: the hole curls up")
+    assert words(tmp_path / "run.rrd")[-1] == (5000, "- **run** no ripple; stopped at 12.3 m: the hole curls up")
 
 
 def test_the_distance_from_the_plan_is_told(tmp_path: Path) -> None:
@@ -236,7 +237,7 @@ def test_the_distance_from_the_plan_is_told(tmp_path: Path) -> None:
 def test_of_several_runs_the_text_says_at_each_tick_what_holds_of_each(tmp_path: Path) -> None:
     runs = {"a": simulate(paper_case(), length=60.0), "b": heavier(paper_case(), 4.0, 50.0)}
     record(runs, save=tmp_path / "two.rrd")
-    said = {name: say(run) for name, run in runs.items()}
+    said = {name: say(run, origin=START) for name, run in runs.items()}
     shown = dict(words(tmp_path / "two.rrd"))
     assert set(shown) == {round(1000 * saying.length) for sayings in said.values() for saying in sayings}
     for tick, text in shown.items():

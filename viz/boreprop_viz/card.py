@@ -1,4 +1,4 @@
-"""The text beside the pictures: whether the holes ripple, moment by moment, and the cases side by side."""
+"""The texts beside the pictures: whether the holes ripple, moment by moment, and the cases side by side."""
 
 from bisect import bisect
 from collections.abc import Iterator, Sequence
@@ -22,7 +22,7 @@ from .source import Source
 from .track import lengths_index, times_index
 from .verdict import Saying, Verdict
 
-CARD = "case"
+VERDICT, CARD = "verdict", "case"
 UNTIL_ITS_END = "as far as recorded: "  # of a run that is being drilled, or of which the end never came
 BY_THE_ROOTS = {
     RootsVerdict.STABLE: "stable",
@@ -33,17 +33,19 @@ BY_THE_ROOTS = {
 
 
 class Card:
-    """Logs the text, which at each moment says of each run what holds there.
+    """Logs the table of the cases, and a text which at each moment says of each run what holds there.
 
     The runs are drawn one after the other, so the moments of the earlier ones are logged again after each.
     """
 
     def __init__(self, rec: rr.RecordingStream, scales: Scales, sources: Sequence[Source]) -> None:
         self.rec, self.start = rec, scales.start
+        self.along = "drilled length" if self.start is None else "measured depth"
         self.names = [source.name for source in sources]
         self.sayings: list[list[Saying]] = [[] for _ in sources]
         self.going_on = [source.live for source in sources]
-        self.table = table(self.names, [case_facts(source.case) for source in sources])
+        cases = table(self.names, [case_facts(source.case) for source in sources])
+        rec.log(CARD, rr.TextDocument(cases, media_type=rr.MediaType.MARKDOWN), static=True)
 
     def say(self, run: int, sayings: Sequence[Saying]) -> None:
         """Log what there is to say of a run from some moments on."""
@@ -82,7 +84,7 @@ class Card:
     def _send(self, index: Sequence[rr.TimeColumn], texts: list[str]) -> None:
         if texts:
             media_type = [rr.MediaType.MARKDOWN] * len(texts)
-            self.rec.send_columns(CARD, index, rr.TextDocument.columns(text=texts, media_type=media_type))
+            self.rec.send_columns(VERDICT, index, rr.TextDocument.columns(text=texts, media_type=media_type))
 
     def _text(self, moments: list[list[float]], at: float) -> str:
         """The text at a moment; `moments` are those of the sayings of each run on the same timeline."""
@@ -90,7 +92,7 @@ class Card:
         words = [said[last].words if last >= 0 else "" for said, last in zip(self.sayings, latest, strict=True)]
         marks = [UNTIL_ITS_END if live and word else "" for live, word in zip(self.going_on, words, strict=True)]
         lines = [f"- **{name}** {mark}{word}" for name, mark, word in zip(self.names, marks, words, strict=True)]
-        return "\n".join(["Does the hole ripple?", "", *lines, "", self.table])
+        return "\n".join([f"Does the hole ripple? In {self.along}:", "", *lines])
 
 
 def table(names: Sequence[str], facts: Sequence[dict[str, str]]) -> str:

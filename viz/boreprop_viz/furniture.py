@@ -175,18 +175,3 @@ def log_scale(rec: rr.RecordingStream, scales: Scales) -> None:
     )
     labels = ["low side", "high side", "100 mm", UNITS["N"].text(newtons, "g")]
     log_labels(rec, "bit_frame/scale/labels", places, labels)
-
-
-def log_names(rec: rr.RecordingStream, scales: Scales, tracks: Sequence[Track]) -> None:
-    """The names of the runs in their colours, in a corner of both pictures."""
-    for view, bounds, side in (("vertical_section", scales.section, 0.85), ("bit_frame", scales.frame, 0.85)):
-        (left, right), (top, bottom) = bounds.x, bounds.y
-        down = top + LINE * (bottom - top) * np.arange(1.0, len(tracks) + 1)
-        names = rr.Points2D(
-            points(left + side * (right - left), down),
-            labels=[track.name for track in tracks],
-            colors=[mixed(track.colour or GREY, WHITE, PALE) for track in tracks],
-            radii=rr.Radius.ui_points(0.0),
-            show_labels=True,
-        )
-        rec.log(f"{view}/names", names, static=True)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import rerun as rr
 import rerun.blueprint as rrb
 
-from .card import CARD
+from .card import CARD, VERDICT
 from .key import KEY, LINE, WIDTH, Entry, line_count
 from .listing import STATIONS
 from .scales import Scales
@@ -43,11 +43,11 @@ def blueprint(scales: Scales, tracks: Sequence[Track], key: Sequence[Entry]) -> 
     high = LINE * line_count(key)
     return rrb.Blueprint(
         rrb.Horizontal(
-            rrb.Vertical(vertical_section(scales, tracks), card(), row_shares=[0.6, 0.4]),
+            rrb.Vertical(vertical_section(scales, tracks), verdict(), row_shares=[0.7, 0.3]),
             bit_frame(scales),
             rrb.Vertical(
                 rrb.Spatial2DView(origin=KEY, titlebar=False, background=GROUND, visual_bounds=key_bounds(high)),
-                rrb.Tabs(*(one for one in tabs if one), stations(), active_tab=2 if scales.rippling else 0),
+                rrb.Tabs(*(one for one in tabs if one), card(), stations(), active_tab=2 if scales.rippling else 0),
                 row_shares=[high, TAB],
             ),
             column_shares=[0.24, 0.28, 0.48],
@@ -104,8 +104,13 @@ def vertical_section(scales: Scales, tracks: Sequence[Track]) -> rrb.Spatial2DVi
     )
 
 
+def verdict() -> rrb.TextDocumentView:
+    """Whether the holes ripple, at the cursor."""
+    return rrb.TextDocumentView(origin=VERDICT, name="Verdict at the cursor")
+
+
 def card() -> rrb.TextDocumentView:
-    """The cases, and whether their holes ripple."""
+    """The cases side by side."""
     return rrb.TextDocumentView(origin=CARD, name="Case")
 
 

@@ -3,9 +3,10 @@
 from collections import deque
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from math import isfinite
+from math import inf, isfinite
 from pathlib import Path
 from threading import Event, Thread
+from typing import Any
 
 import numpy as np
 import rerun as rr
@@ -28,6 +29,7 @@ from .source import rows_of
 from .without_pandas import skip_pandas_check
 
 TICK = 0.05  # s between two looks for new rows: the thread that draws is not woken by each of them
+NUMBERS = frozenset((float, int, np.float64))
 ALONG = ("time", "drilled_length")  # these must not decrease
 
 
@@ -46,9 +48,10 @@ def live(
     """Draw the run of one's own loop while it goes on: ``with live(…) as view: … view.send(time=…, **outputs)``.
 
     The loop is never held up by a slow disk or viewer: `LiveView.send` puts a row into a queue, which another thread
-    draws. Rows that are not drawn yet wait in memory, and the end of the block waits until all are drawn. With `spawn`
-    it then waits until the viewer is closed, with `serve` until Ctrl-C. However the block ends, `save` has all rows up
-    to then; after an exception, or Ctrl-C, a viewer that was started is closed.
+    draws. The two share the interpreter: at 100 steps a second a step took 0.1 ms longer on average and 5 ms at most.
+    Rows that are not drawn yet wait in memory, and the end of the block waits until all are drawn. With `spawn` it then
+    waits until the viewer is closed, with `serve` until Ctrl-C. However the block ends, `save` has all rows up to then;
+    after an exception, or Ctrl-C, a viewer that was started is closed.
 
     Parameters
     ----------
@@ -111,7 +114,7 @@ def live(
                 yield view
             except BaseException as error:
                 ended = error
-            view.finish()
+            view.finish(ended)
             if ended:
                 raise KeyboardInterrupt  # so the file is kept, and the viewer closed
     except BaseException as error:
@@ -155,7 +158,7 @@ class LiveView:
 
     def __init__(self, name: str, case: Case, plan: Survey | None, rec: rr.RecordingStream) -> None:
         self._rows = Rows(case)
-        self._before = dict.fromkeys(ALONG, -np.inf)  # the values of the last row
+        self._before: Mapping[str, float] = dict.fromkeys(ALONG, -inf)  # the last row
         self._failure: BaseException | None = None  # why nothing more is drawn
         self._thread = Thread(target=self._draw, args=(name, plan, rec), daemon=True)
 
@@ -181,7 +184,7 @@ class LiveView:
         rows = self._rows
         if rows.ended.is_set():
             raise InputError(f"send: must be called inside the with block, got a row at {time:g} s after its end")
-        row = scalars({"time": time} | values, rows.n)
+        row = scalars({"time": time, **values}, rows.n)
         if not rows.columns:
             rows.begin(row)
             self._thread.start()
@@ -190,15 +193,22 @@ class LiveView:
             raise InputError(f"send: must be given the same values each time, got a difference in {others}")
         if not isfinite(sum(row.values())):
             check_finite(row)
-        for name, before in self._before.items():
-            if row[name] < before:
-                raise InputError(f"{name}: must not decrease, got {row[name]:.9g} after {before:.9g}")
-        self._before = {name: row[name] for name in ALONG}
+        for name in ALONG:
+            if row[name] < self._before[name]:
+                raise InputError(f"{name}: must not decrease, got {row[name]:.9g} after {self._before[name]:.9g}")
+        self._before = row
         if self._failure is None:
             rows.waiting.append([row[name] for name in rows.columns])
 
-    def finish(self) -> None:
-        """Wait until all rows are drawn; raise what went wrong, or `InputError` if there was no row."""
+    def finish(self, error: BaseException | None) -> None:
+        """Wait until all rows are drawn; raise what went wrong, or `InputError` if there was no row.
+
+        `error` is what ended the loop; None if it came to its end.
+        """
+        if isinstance(error, Exception):
+            self._rows.error = InputError(f"{type(error).__name__}: {error}")
+        elif error is not None:
+            self._rows.error = KeyboardInterrupt()
         self._rows.ended.set()
         if not self._rows.columns:
             raise InputError("send: must be called at least once in the with block, got no row to draw")
@@ -215,8 +225,9 @@ class LiveView:
         try:
             Drawing.of([live_source(name, self._rows, plan)], plan).draw(rec)
         except BaseException as error:
-            self._failure = error
-            self._rows.waiting.clear()
+            if error is not self._rows.error:
+                self._failure = error
+                self._rows.waiting.clear()
 
 
 class Rows:
@@ -230,6 +241,8 @@ class Rows:
         The names of the values of a row, in order and as a set; empty before the first row.
     waiting
         The rows that are not taken yet.
+    error
+        What ended the loop, raised after the last row; None if it came to its end.
     ended
         Set when no more rows will come.
     """
@@ -239,6 +252,7 @@ class Rows:
         self.columns: list[str] = []
         self.names: set[str] = set()
         self.waiting: deque[list[float]] = deque()
+        self.error: BaseException | None = None
         self.ended = Event()
 
     def begin(self, row: Mapping[str, float]) -> None:
@@ -253,22 +267,23 @@ class Rows:
         self.columns, self.names = columns, set(columns)
 
     def __iter__(self) -> Iterator[list[float] | None]:
-        """The rows as they come; None when there is none for the moment."""
+        """The rows as they come; None when there is none for the moment; at last `KeyboardInterrupt` if interrupted."""
         over = False
         while not over:
             over = self.ended.wait(TICK)  # asked before the last look, so that no row is missed
             while self.waiting:
                 yield self.waiting.popleft()
             yield None
+        if self.error is not None:
+            raise self.error
 
 
-def scalars(values: Mapping[str, ArrayLike], n: int) -> dict[str, float]:
+def scalars(values: dict[str, Any], n: int) -> dict[str, float]:
     """Values by scalar name, from values of quantities, some of which are one for each of `n` stabilizers."""
+    if NUMBERS.issuperset(map(type, values.values())):
+        return values
     by_name: dict[str, float] = {}
     for name, value in values.items():
-        if isinstance(value, float | int):
-            by_name[name] = value
-            continue
         try:
             elements = np.asarray(value, dtype=float)
         except (TypeError, ValueError) as error:

@@ -1,5 +1,6 @@
 """Draws runs into a recording, which goes to a file, to a viewer, or to both."""
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
@@ -18,7 +19,7 @@ from boreprop.core.survey import Survey
 from boreprop.run.trajectory import Trajectory
 
 from .card import Card
-from .furniture import log_furniture, log_grid, log_names, log_plan
+from .furniture import log_furniture, log_grid, log_plan
 from .key import entries, log_key
 from .layout import blueprint
 from .listing import Listing
@@ -28,6 +29,8 @@ from .sinks import flush, open_recording
 from .source import LiveRun, Source, live, stored
 from .stream import RunStream
 from .track import make_tracks
+
+LONGEST_NAME = 100  # letters of the name of an application: Rerun allows some 150
 
 Runs = Trajectory | Mapping[str, Trajectory | LiveRun]
 
@@ -131,7 +134,7 @@ class Drawing:
         if any(source.live for source in self.sources):
             return application_of_its_own(self.name)
         look = repr((self.scales, [(source.name, source.case) for source in self.sources], version("boreprop")))
-        return f"boreprop: {self.name} {sha256(look.encode()).hexdigest()[:8]}"
+        return application(self.name, sha256(look.encode()).hexdigest()[:8])
 
     def draw(self, rec: rr.RecordingStream, progress: Callable[[float], None] = lambda _: None) -> None:
         """Log the runs and the blueprint into an open recording.
@@ -159,8 +162,6 @@ class Drawing:
         tracks = make_tracks(rec, scales, sources)
         key = entries(tracks, planned=self.plan is not None)
         log_key(rec, key)
-        if len(tracks) > 1:
-            log_names(rec, scales, tracks)
         rec.send_blueprint(blueprint(scales, tracks, key))
         card, listing = Card(rec, scales, sources), Listing(rec, self.plan)
         done = 0
@@ -184,7 +185,13 @@ class Drawing:
 
 def application_of_its_own(name: str) -> str:
     """What Rerun calls the application of a recording that shares its look with no other."""
-    return f"boreprop: {name} {token_hex(4)}"
+    return application(name, token_hex(4))
+
+
+def application(name: str, digest: str) -> str:
+    """What Rerun calls the application of a recording: of another spelling it would say that it has changed it."""
+    spelt = re.sub("[^A-Za-z0-9_ -]", "-", name)[:LONGEST_NAME]
+    return f"boreprop: {spelt} {digest}"
 
 
 def log_cases(rec: rr.RecordingStream, sources: Sequence[Source]) -> None:

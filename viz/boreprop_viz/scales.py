@@ -22,6 +22,7 @@ TREND = 0.75  # wavelengths, at most half the BHA: width of the trend, see `axis
 FULL_RIPPLE = 0.25  # ψ* times the wavelength: the ripple of a hole whose bit tilts from limit to limit
 MARGIN = 0.1  # of the span of all curves, above and below them, so that they do not run along the edge
 MOST_STEPS = 7.5  # powers of ten in the range of a plot for which it has room, in a small window, to number each
+SMALLEST_SPAN = 0.01  # of its largest value, which a plot shows to either side of a curve without a change
 EDGE = 0.1  # of such a power, between a number and the edge of the plot
 TILTS = 1.15  # tilt limits to either side in the plot of the tilt, so that a tilt at its limit does not lie on the edge
 RIPPLES = 1.15  # ripples to either side in their plot
@@ -129,9 +130,10 @@ def likely_force(case: Case) -> float:
 
 def plot_range(plot: Plot, curves: Sequence[Array]) -> tuple[float, float]:
     """The range of a plot of some curves, in the unit shown."""
-    low = plot.unit.factor * min(float(np.nanmin(curve)) for curve in curves)
-    high = plot.unit.factor * max(float(np.nanmax(curve)) for curve in curves)
-    margin = MARGIN * ((high - low) or 1.0)
+    values = plot.unit.factor * np.concatenate(curves)
+    values = values[np.isfinite(values)] if np.isfinite(values).any() else np.zeros(1)
+    low, high = float(values.min()), float(values.max())
+    margin = max(MARGIN * (high - low), SMALLEST_SPAN * max(abs(low), abs(high))) or 1.0
     return with_ticks(low - margin, high + margin)
 
 

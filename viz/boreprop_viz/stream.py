@@ -34,7 +34,7 @@ class RunStream:
         self.drilled: float | None = None  # drilled length up to which the hole is drawn, m
         self.rippled = -np.inf  # drilled length up to which its ripple is drawn, m
         self.modes: dict[str, float] = {}  # the last value of each lane
-        self.verdict = Verdict(track.case)
+        self.verdict = Verdict(track.case, track.scales.start or 0.0)
         log_styles(track)
 
     def send(self, stretch: Stretch) -> list[Saying]:

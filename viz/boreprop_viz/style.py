@@ -21,7 +21,7 @@ WHITE, GREY, FAINT, GROUND = (240, 240, 240), (150, 155, 160), (52, 58, 66), (20
 # one colour, one meaning, in all views
 HOLE, BIT, PLAN, RSS = ORANGE, SKY_BLUE, PURPLE, GREEN
 BY_STABILIZER = (VERMILION, VIOLET, BROWN, CRIMSON, TEAL)
-BY_RUN = (ORANGE, SKY_BLUE, GREEN, PURPLE, VERMILION, BLUE)
+BY_RUN = (ORANGE, SKY_BLUE, GREEN, VERMILION, BLUE, VIOLET)
 
 
 SHADES = (0.0, 0.5, 0.65, 0.75, 0.8)  # of a run's colour, the first is the colour itself, the others are greyer
@@ -67,7 +67,12 @@ STROKES = {
 }
 
 
-SI_OF_HOLE = {"build_rate": "rad/m", "dogleg_severity": "rad/m"}  # SI units of `source.hole_columns`, …
+SI_OF_HOLE = {  # SI units of `source.hole_columns`, …
+    "build_rate": "rad/m",
+    "dogleg_severity": "rad/m",
+    "distance_from_plan": "m",
+    "inclination_less_plan": "rad",
+}
 OVER = {"build_rate": f"over {BUILD_LENGTH:g} m", "dogleg_severity": "over half the BHA"}  # … and over what they are
 
 
@@ -99,6 +104,8 @@ class Plot:
 PLOTS = {
     "inclination": Plot("Inclination", ("borehole_inclination", "bit_inclination"), (HOLE, BIT), "planned_inclination"),
     "build_rate": Plot("Build rate, dogleg severity", ("build_rate", "dogleg_severity"), (HOLE, OLIVE)),
+    "distance_from_plan": Plot("Distance from the plan, + on its high side", ("distance_from_plan",), (HOLE,)),
+    "inclination_less_plan": Plot("Inclination less that of the plan", ("inclination_less_plan",), (HOLE,)),
     "bit_tilt": Plot("Bit tilt", ("bit_tilt",), (BIT,)),
     "bit_lateral_force": Plot("Bit side force", ("bit_lateral_force",), (BIT,)),
     "stabilizer_force": Plot("Contact forces, + from the low side", ("stabilizer_force",), BY_STABILIZER),
@@ -108,6 +115,7 @@ PLOTS = {
 }
 TABS = (  # names of tabs and the plots in each
     ("Hole", ("inclination", "build_rate")),
+    ("Plan", ("distance_from_plan", "inclination_less_plan")),
     ("Forces", ("stabilizer_force", "rss_force", "bit_lateral_force")),
     ("Drilling", ("active_weight_on_bit", "rate_of_penetration")),
 )

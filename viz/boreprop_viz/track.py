@@ -25,6 +25,7 @@ TIMELINE = "drilled_length_mm"  # the one that a viewer shows first
 DEPTH_TIMELINE = "measured_depth_mm"
 TIME_TIMELINE = "simulation_time"
 TIMELINES = (TIMELINE, DEPTH_TIMELINE, TIME_TIMELINE)
+MODES = "modes"  # the lanes
 MOST_NUMBERED = 2  # runs
 DECIMALS = 4  # of a curve
 LABEL_APART = 0.09  # of the width of the bit frame, from the tail of an arrow to the middle of its number
@@ -57,11 +58,15 @@ class Track:
     numbered: bool = True
 
     def entity(self, thing: str) -> str:
-        """The entity of a thing, named view/thing; with several runs it contains the run's name, too."""
+        """The entity of a thing, named view/thing; with several runs it contains the run's name, too.
+
+        Those of the lanes begin with the number of the run, since they are shown in the order of their names.
+        """
         if not self.name:
             return thing
         view, _, name = thing.rpartition("/")
-        return f"{view}/{rr.escape_entity_path_part('_'.join(self.name.split()))}/{name}"
+        number = f"{self.place + 1}_" if view == MODES else ""
+        return f"{view}/{rr.escape_entity_path_part(number + '_'.join(self.name.split()))}/{name}"
 
     @property
     def lanes(self) -> int:

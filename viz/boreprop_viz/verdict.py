@@ -39,10 +39,12 @@ class Verdict:
     """Follows a run, and says what is true of it.
 
     A new state of the ripple is told once two checks running have found it, or at the end of the run. While force or
-    weight change too often to tell, a ripple counts as going on.
+    weight change too often to tell, a ripple counts as going on. Places are drilled lengths from an `origin`, m: with
+    the measured depth of the start they are measured depths.
     """
 
-    def __init__(self, case: Case) -> None:
+    def __init__(self, case: Case, origin: float = 0.0) -> None:
+        self.origin = origin
         self.every, self.reach = EVERY * case.bha.half_length, RECENT * case.bha.half_length
         self.rows: Trajectory | None = None  # the last rows, as far back as a check needs
         self.start, self.steps = 0.0, 1  # where the run starts, m, and how many steps from there the next check is
@@ -87,7 +89,9 @@ class Verdict:
         self._check(self.rows, sure=True)
         if self.ripple == SO_FAR:
             self.ripple = "no ripple"
-        return self._say(self.rows, f"; {how} at {UNITS['m'].text(self.checked)}{': ' * bool(why)}{why}" if how else "")
+        return self._say(
+            self.rows, f"; {how} at {UNITS['m'].text(self.origin + self.checked)}{': ' * bool(why)}{why}" if how else ""
+        )
 
     def _say(self, recent: Trajectory, end: str = "") -> list[Saying]:
         """What is to be said from the last of some rows on: nothing if it was said already."""
@@ -116,24 +120,27 @@ class Verdict:
         waves = f"waves of {rounded(wave.wavelength, UNITS['m'], digits=3)}, {size}"
         before, self.told = self.told, wave
         if wave.ripples:
-            if (
-                self.began is None or wave.since > recent["drilled_length"][0] + wave.wavelength
-            ):  # else it was as large all along
+            all_along = wave.since <= recent["drilled_length"][0] + wave.wavelength
+            if self.began is None or not all_along:
                 self.began = wave.since
             what = "growing" if wave.state is State.GROWING else "rippling"
-            self.ripple = f"{what} since {self.began:.0f} m: {waves}"
+            self.ripple = f"{what} since {self._place(self.began)}: {waves}"
             return
         if self.began is not None:
-            self.ended, self.past = (self.began, before), f"; rippling from {self.began:.0f} m"
+            self.ended, self.past = (self.began, before), f"; rippling from {self._place(self.began)}"
             self.began = None
         if self.ended is not None and (end := _end(recent, *self.ended)) is not None:
-            self.ended, self.past = None, f"{self.past} to {end:.0f} m"
+            self.ended, self.past = None, f"{self.past} to {self._place(end)}"
         now = {
             State.NONE: "no ripple" if self.past else SO_FAR,
             State.DYING: f"dying out: {waves}",
             State.STEERED: f"{waves}, but force or weight change too often to tell",
         }
         self.ripple = now[wave.state] + self.past
+
+    def _place(self, length: float) -> str:
+        """A drilled length, m, in words."""
+        return UNITS["m"].text(self.origin + length, ".0f")
 
     def _see_plan(self, recent: Trajectory, sure: bool = False) -> None:
         """Look how far the last of some rows is off the plan, and put it into words if that has changed noticeably."""

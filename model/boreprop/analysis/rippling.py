@@ -222,8 +222,7 @@ def find_rippling(
     if np.shape(run) != np.shape(inclination):
         shapes = f"{np.shape(inclination)} for {np.shape(run)}"
         raise InputError(f"inclination: must have a value for each drilled length, got the shapes {shapes}")
-    found = _find(run, inclination, inf if longest is None else longest, modes, inputs)
-    return _with_course(found)
+    return _with_course(_find(run, inclination, inf if longest is None else longest, modes, inputs))
 
 
 def last_wave(run: Trajectory) -> Rippling:
@@ -303,11 +302,11 @@ def _with_course(found: _Found) -> Rippling:
     """The wave that was found, with the fields since and inclination_drift."""
     if found.waves is None or found.rows is None:
         return found.rippling
-    sizes = found.waves.sizes[-AT_THE_END:]
-    size = sizes[-1] if found.rippling.state is State.GROWING else sizes.min()  # of these a growing wave exceeds most
+    few = 1 if found.rippling.state is State.GROWING else AT_THE_END  # waves: of several that grow one is too small
+    least = HALF * float(found.waves.sizes[-few:].min())
     return replace(
         found.rippling,
-        since=large_since(found.rows.length, found.rows.inclination, found.waves.wavelength, HALF * float(size)),
+        since=large_since(found.rows.length, found.rows.inclination, found.waves.wavelength, least),
         inclination_drift=slope(found.waves.x, found.waves.trend),
     )
 
