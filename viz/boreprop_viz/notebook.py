@@ -29,10 +29,9 @@ def show(
     """Show runs in a Rerun viewer below the cell of a Jupyter notebook.
 
     The runs are sent from the notebook's kernel to the page and nowhere else. The page loads the viewer's program from
-    app.rerun.io, unless the environment variable RERUN_NOTEBOOK_ASSET says otherwise before the first call:
-    "serve-local" lets the kernel serve it on this machine, which needs no internet, but a browser on the same machine;
-    "inline" puts it into the notebook's output, whatever its size, which works everywhere; and the address
-    https://…/widget.js of a copy on a server of one's own loads that.
+    app.rerun.io, unless the environment variable RERUN_NOTEBOOK_ASSET says otherwise before the first call. Two of its
+    values need no internet: with "serve-local" the kernel serves the program to a browser on the same machine, and with
+    "inline" it sends the program, 23 MB, with each viewer, wherever the browser is.
 
     A viewer lives as long as its kernel. After the page is reloaded, or the notebook reopened, it is empty: run the
     cell again. On a web page made from the notebook, by nbconvert or by GitHub, it shows nothing at all: there a still
