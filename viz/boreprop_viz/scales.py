@@ -57,7 +57,8 @@ class Scales:
     @property
     def along(self) -> str:
         """What the horizontal axis of the plots shows."""
-        return "drilled length (mm)" if self.start is None else "measured depth (mm)"
+        place = "drilled length (mm)" if self.start is None else "measured depth (mm)"
+        return place if self.duration is None else f"{place} or time"
 
     def widened(self, position: Array) -> "Scales":
         """The same scales with a vertical section at least twice as wide that also shows positions (N, 2)."""
