@@ -1,4 +1,5 @@
-"""What drawing costs: a long run into a file, and an FMU's run drawn while it is drilled beside the same one bare.
+"""What drawing costs: a long run into a file, and an FMU's run drawn while it is drilled or sent by a loop, beside the
+same one bare.
 
 python benchmarks/viewer_cost.py
 """
@@ -12,34 +13,54 @@ from statistics import median
 from tempfile import TemporaryDirectory
 from time import perf_counter
 
+import numpy as np
+
 LENGTH, INTERVAL = 3000.0, 0.1  # m: 30 001 rows
-PAIRS = 3
+ROUNDS = 3
+HOWS = ("bare", "record", "live")
 CASES = Path(__file__).parents[1] / "examples"
-# rows per second of a run that is drilled as fast as it goes, and the growth of the process from a quarter of it on
+# An FMU's run that is drilled as fast as it goes: bare, drawn by `record` while it is drilled, or sent from a loop to
+# `live`. Prints rows per second to the end of all; bytes by which the process grows from a quarter of it on; and, of
+# the loop, rows per second until it is over, and microseconds a row spends in `send`.
 LIVE = """
 import sys, psutil
 from time import perf_counter
 from boreprop_fmu.host.drive import FmuRun
+from boreprop_viz import live
 from boreprop_viz.record import record
 
-fmu, step, rrd = sys.argv[1], float(sys.argv[2]), sys.argv[3]
-run, sizes = FmuRun(fmu, step=step), []
+how, fmu, step, rrd = sys.argv[1], sys.argv[2], float(sys.argv[3]), sys.argv[4]
+run, sizes, sending = FmuRun(fmu, step=step), [], 0.0
 size = psutil.Process().memory_info
-if rrd:
-    record({"live": FmuRun(fmu, step=step, stop=1.0)}, save=rrd)  # imports and first uses
-    begin = perf_counter()
+if how != "bare":  # imports and first uses
+    record({"live": FmuRun(fmu, step=step, stop=1.0)}, save=rrd)
+    with live(fmu, save=rrd) as view:
+        for row in FmuRun(fmu, step=step, stop=1.0):
+            view.send(**dict(zip(run.columns, row)))
+begin = perf_counter()
+if how == "record":
     record({"live": run}, save=rrd, progress=lambda done: sizes.append((done, size().rss)))
+elif how == "live":
+    with live(fmu, save=rrd) as view:
+        for row in run:
+            values = dict(zip(run.columns, row))
+            before = perf_counter()
+            view.send(**values)
+            sending += perf_counter() - before
+        looped = perf_counter() - begin
 else:
-    begin = perf_counter()
-    for _ in run:
-        pass
-rate = run.row_count / (perf_counter() - begin)
-print(rate, sizes[-1][1] - next(size for done, size in sizes if done > run.row_count / 4) if sizes else 0)
+    for row in run:
+        dict(zip(run.columns, row))
+seconds = perf_counter() - begin
+if how != "live":
+    looped = seconds
+growth = sizes[-1][1] - next(size for done, size in sizes if done > len(run) / 4) if sizes else 0
+print(len(run) / seconds, growth, len(run) / looped, 1e6 * sending / len(run))
 """
 
 
 def main() -> None:
-    """Print seconds and megabytes of the file, and the samples per second of both live runs, pair by pair."""
+    """Print seconds and megabytes of the file, and the rows per second of the live runs, round by round."""
     from boreprop.case.file import load_case
     from boreprop.run.results import write_trajectory
     from boreprop.run.simulate import simulate
@@ -58,23 +79,21 @@ def main() -> None:
 
             fmu = build_fmu(replace(case, length=1000.0), folder / f"{case_name}.fmu")
             for step in (0.1, 0.01):
-                pairs = [[live(fmu, step, rrd) for rrd in ("", str(folder / "live.rrd"))] for _ in range(PAIRS)]
-                bare, drawn, alone = (
-                    median(rates)
-                    for rates in zip(*((a, b, 1 / (1 / b - 1 / a)) for (a, _), (b, _) in pairs), strict=True)
-                )
+                rounds = [[drill(how, fmu, step, folder / "live.rrd") for how in HOWS] for _ in range(ROUNDS)]
+                bare, drawn, sent = (np.array(one) for one in zip(*rounds, strict=True))  # shape (rounds, 4)
+                alone = [median(1 / (1 / one[:, 0] - 1 / bare[:, 0])) for one in (drawn, sent)]
                 print(
-                    f"{case_name}, FMU, {1000 / step:.0f} rows: bare {bare:.0f} rows/s, drawn {drawn:.0f}, drawing"
-                    f" alone {alone:.0f} (bar 5000); grows by {max(grown for _, (_, grown) in pairs) / 1e6:.0f} MB"
+                    f"{case_name}, FMU, {1000 / step:.0f} rows: bare {median(bare[:, 0]):.0f} rows/s;"
+                    f" record {median(drawn[:, 0]):.0f}, drawing alone {alone[0]:.0f} (bar 5000), grows by"
+                    f" {drawn[:, 1].max() / 1e6:.0f} MB; live {median(sent[:, 0]):.0f}, drawing alone {alone[1]:.0f},"
+                    f" its loop {median(sent[:, 2]):.0f}, send {median(sent[:, 3]):.1f} µs"
                 )
 
 
-def live(fmu: Path, step: float, rrd: str) -> tuple[float, float]:
-    """Samples per second and bytes of growth of a process that runs an FMU."""
-    command = [sys.executable, "-c", LIVE, str(fmu), str(step), rrd]
-    done = subprocess.run(command, check=True, capture_output=True, text=True)
-    rate, growth = map(float, done.stdout.split())
-    return rate, growth
+def drill(how: str, fmu: Path, step: float, rrd: Path) -> list[float]:
+    """What a process that runs an FMU prints, see `LIVE`."""
+    command = [sys.executable, "-c", LIVE, how, str(fmu), str(step), str(rrd)]
+    return [float(word) for word in subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()]
 
 
 if __name__ == "__main__":

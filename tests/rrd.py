@@ -1,5 +1,6 @@
 """What a recording holds."""
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,17 @@ def read(path: Path, entity: str, component: str, timeline: str = "drilled_lengt
         for batch in batches
         for tick, value in zip(batch.column(timeline).to_pylist(), batch.column(component).to_pylist(), strict=True)
     }
+
+
+def held(path: Path, entity: str, component: str, ticks: Iterable[int]) -> list[Any]:
+    """What an entity's component, which is logged where it changes, holds at some ticks of the timeline."""
+    changes = read(path, entity, component)
+    now: list[Any] = []
+    values = []
+    for tick in ticks:
+        now = changes.get(tick, now)
+        values.append(now)
+    return values
 
 
 def static(path: Path, entity: str, component: str) -> list[Any]:

@@ -13,12 +13,12 @@ from boreprop.case.paper import paper_case
 
 
 def numbered(n: int) -> Study:
-    """Cases whose weight on bit is 1, 2, … N."""
+    """Cases whose active weight on bit is 1, 2, … N."""
     return grid(paper_case(), {"active_weight_on_bit": range(1, n + 1)})
 
 
 def weight(case: Case) -> dict[str, float]:
-    """The weight on bit and its square."""
+    """The active weight on bit and its square."""
     return {"weight": case.active_weight_on_bit, "square": case.active_weight_on_bit**2}
 
 

@@ -21,8 +21,10 @@ import pytest
 import rerun as rr
 from rerun.chunk import RrdReader
 
-from boreprop_viz import sinks
-from boreprop_viz.sinks import LOOPBACK, PROGRAM, free_port
+from boreprop_viz import feeder
+from boreprop_viz.feeder import PROGRAM
+from boreprop_viz.picture import SOFTWARE_DRIVERS
+from boreprop_viz.ports import LOOPBACK, free_port
 from places import TESTS
 
 T = TypeVar("T")
@@ -30,6 +32,9 @@ Process = subprocess.Popen[bytes]
 
 ROWS = 1000  # in a batch
 signals = pytest.mark.skipif(os.name != "posix", reason="no such signals")
+draws = pytest.mark.skipif(
+    not SOFTWARE_DRIVERS, reason="no software Vulkan driver (Debian: mesa-vulkan-drivers and libvulkan1)"
+)
 
 
 def send(rec: rr.RecordingStream, batches: range) -> None:
@@ -80,9 +85,11 @@ def listens(port: int) -> bool:
 
 
 @contextmanager
-def rerun(*options: str | Path, env: dict[str, str] | None = None) -> Iterator[tuple[Process, str]]:
-    """Run a viewer that is there already; yields its process and its address."""
-    port = free_port()
+def rerun(
+    *options: str | Path, env: dict[str, str] | None = None, port: int | None = None
+) -> Iterator[tuple[Process, str]]:
+    """Run a viewer that is there already, at a port or any; yields its process and its address."""
+    port = port or free_port()
     where = ["--bind", LOOPBACK, "--port", str(port)]
     process = subprocess.Popen([PROGRAM, *where, *options], stderr=subprocess.DEVNULL, env=env)
     try:
@@ -93,12 +100,16 @@ def rerun(*options: str | Path, env: dict[str, str] | None = None) -> Iterator[t
         process.wait()
 
 
+def port_of(address: str) -> int:
+    return int(address.rpartition(":")[2].partition("/")[0])
+
+
 def stand_in(command: str, monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
     """Let a command, which is given rerun's path and options, be the viewer of `spawn` and `serve`."""
     program = folder / "viewer"
     program.write_text(f"#!/bin/sh\nrerun='{PROGRAM}'\n{command}\n")
     program.chmod(0o755)
-    monkeypatch.setattr(sinks, "PROGRAM", str(program))
+    monkeypatch.setattr(feeder, "PROGRAM", str(program))
 
 
 def children_from_now_on() -> Callable[[], list[psutil.Process]]:
@@ -118,4 +129,23 @@ def script(body: str, env: dict[str, str] | None = None) -> Process:
         stderr=subprocess.PIPE,
         start_new_session=True,
         env=env,
+    )
+
+
+def boreprop_view(*arguments: str | Path, before: str = "", folder: Path) -> Process:
+    """Start the command boreprop-view, as `script` does, after a line of Python; its new viewers need no screen."""
+    program = folder / "viewer"
+    program.write_text(f"""#!/bin/sh\ncase "$*" in *--web-viewer*) ;; *) set -- --serve-grpc "$@";; esac
+exec '{PROGRAM}' "$@"\n""")
+    program.chmod(0o755)
+    return script(
+        f"""
+            import signal
+            from boreprop_viz import cli, feeder
+            feeder.PROGRAM = {str(program)!r}
+            sys.argv = ["boreprop-view", *{[str(argument) for argument in arguments]!r}]
+            {before}
+            cli.main()
+        """,
+        env=os.environ | {"BROWSER": "true"},
     )

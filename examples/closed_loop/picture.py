@@ -26,7 +26,7 @@ def picture(
     output: Annotated[Path, typer.Argument(metavar="PICTURE.png", help="The picture.")],
     runs: Annotated[list[Path], typer.Argument(metavar="RUN.csv …", help="Result files of run.py, at most four.")],
 ) -> None:
-    """Inclination, its error, force and weight on bit over the drilled length."""
+    """Inclination, its error, force and active weight on bit over the drilled length."""
     console.check_output(output, (".png",))
     plan = read_survey(PLAN)
     figure = Figure(figsize=(9, 9), layout="constrained")
@@ -48,7 +48,7 @@ def picture(
     inclination.set_ylabel("borehole inclination (°)")
     error.set_ylabel("inclination − plan (°)")
     force.set_ylabel("steering force (kN)")
-    weight.set_ylabel("weight on bit (kN)")
+    weight.set_ylabel("active weight on bit (kN)")
     weight.set_ylim(0, 70)
     weight.set_xlabel("drilled length (m)")
     weight.set_xlim(0, drilled[-1])

@@ -7,10 +7,10 @@ from xml.etree import ElementTree
 
 from fmpy.ssp.ssd import read_ssd
 
+from boreprop.case.packed import read_packed_case
 from boreprop.case.parameters import with_parameters
 from boreprop.core.quantities import INPUTS, OUTPUTS, scalar_names
 from boreprop.errors import InputError
-from boreprop_fmu.packed_case import read_packed_case
 
 BOREHOLE = "borehole"  # the component that is disturbed and recorded
 PARAMETER_SET = "initial_values"  # of both components

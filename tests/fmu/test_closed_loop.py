@@ -88,7 +88,7 @@ Run = Callable[[float | None], Trajectory]
 
 @pytest.fixture(scope="module")
 def run(ssp: Path) -> Run:
-    """A run on fmpy, with half the weight on bit from a length on: made once."""
+    """A run on fmpy, with half the active weight on bit from a length on: made once."""
     return cache(partial(drill, ssp, "fmpy"))
 
 
@@ -260,6 +260,22 @@ def test_the_force_changes_only_after_a_survey(run: Run) -> None:
     assert len(begins) > 80
     np.testing.assert_array_equal(begins % 10.0, 0.5)  # m: the survey, and one communication step
     assert np.abs(trajectory["rss_force"]).max() < 15e3
+
+
+def test_it_can_be_watched_beside_the_plan(ssp: Path, run: Run) -> None:
+    pytest.importorskip("rerun")
+    from rrd import read
+
+    saved = ssp.with_suffix(".rrd")
+    done = script("run.py", ssp, "--output", ssp.with_name("watched.csv"), "--save", saved)
+    assert (done.returncode, done.stderr) == (0, "")
+    depth = PLAN.measured_depth[0] + run(None)["drilled_length"]
+    for curve, expected in (
+        ("borehole_inclination", run(None)["borehole_inclination"]),
+        ("0_plan", np.interp(depth, PLAN.measured_depth, PLAN.inclination)),
+    ):
+        shown = read(saved, f"plots/inclination/{curve}", "Scalars:scalars", "simulation_time")
+        np.testing.assert_allclose([shown[time][0] for time in sorted(shown)], np.degrees(expected), atol=1e-4)
 
 
 # the controller

@@ -12,11 +12,11 @@ import pytest
 from fmpy.validation import validate_fmu
 
 from boreprop.case.case import Case
+from boreprop.case.packed import CASE_FILE, read_packed_case
 from boreprop.core.quantities import BY_NAME, VARIABLES, scalar_names
 from boreprop.core.system import BottomHoleAssembly
 from boreprop.errors import InputError
 from boreprop_fmu.host.drive import FmuRun
-from boreprop_fmu.packed_case import CASE_FILE, read_packed_case
 from flavours import Flavour, both_flavours, build_to_read
 
 

@@ -110,7 +110,7 @@ def test_the_readme_of_the_examples_has_the_numbers_of_the_run(case: Case, run: 
         f"{forces[0] / 1e3:.1f} kN at stabilizer 1 (in contact over {100 * contacts[:, 0].mean():.0f} % of the length)",
         f"{forces[1] / 1e3:.1f} kN at stabilizer 2 (all of it)",
         f"within ±{np.degrees(np.abs(run['bit_tilt']).max()):.2f}°, never at its limit",
-        f"half the weight on bit: by up to {np.abs(miss(light)).max():.1f}°",
+        f"half the active weight on bit: by up to {np.abs(miss(light)).max():.1f}°",
         f"clearances doubled: by up to {np.abs(miss(loose)).max():.1f}°",
     )
     assert [text for text in said if text not in README] == []

@@ -2,21 +2,28 @@
 
 import os
 import signal
+import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
+from textwrap import dedent
 from urllib.request import urlopen
 
 import numpy as np
 import psutil
 import pytest
 
-from boreprop_viz import sinks
+from boreprop.case.case import Case
+from boreprop.run.results import write_trajectory
+from boreprop.run.simulate import simulate
+from boreprop_fmu.pack.build import build_fmu
+from boreprop_viz import feeder
 from boreprop_viz.sinks import open_recording
 from viewers import (
     ROWS,
     Process,
+    boreprop_view,
     children_from_now_on,
     read,
     rerun,
@@ -63,7 +70,7 @@ def test_control_c_while_a_viewer_starts_leaves_no_viewer(tmp_path: Path, monkey
         raise KeyboardInterrupt
 
     stand_in("exec sleep 60", monkeypatch, tmp_path)
-    monkeypatch.setattr(sinks, "sleep", interrupt)
+    monkeypatch.setattr(feeder, "sleep", interrupt)
     with pytest.raises(KeyboardInterrupt), open_recording(spawn=True):
         pass
     assert not children()
@@ -121,9 +128,76 @@ def test_a_late_viewer_of_what_is_served_gets_everything(tmp_path: Path, served:
     saved, seen = tmp_path / "saved.rrd", tmp_path / "seen.rrd"
     until(saved.exists)
     assert b"rerun" in urlopen(page).read().lower()
-    address = page.partition("?url=")[2]
+    address = page.partition("?url=")[2].partition("&")[0]
     with rerun("--save", seen, address.replace("%3A", ":").replace("%2F", "/").replace("%2B", "+")) as _:
         assert until(lambda: read(seen) == rows(5))
+
+
+@pytest.fixture(scope="module")
+def run_file(tmp_path_factory: pytest.TempPathFactory, case: Case) -> Path:
+    path = tmp_path_factory.mktemp("run") / "run.csv"
+    write_trajectory(simulate(case, length=5.0), path)
+    return path
+
+
+@signals
+@pytest.mark.parametrize("ending", ["SIGTERM", "SIGHUP"])
+@pytest.mark.parametrize("viewer", ["--serve", "--spawn"])
+def test_the_command_takes_its_viewer_with_it(tmp_path: Path, run_file: Path, viewer: str, ending: str) -> None:
+    saved = tmp_path / "saved.rrd"
+    command = boreprop_view(run_file, viewer, "--save", saved, folder=tmp_path)
+    until(saved.exists)
+    [child] = psutil.Process(command.pid).children()
+    number = signal.Signals[ending]
+    command.send_signal(number)
+    _, errors = command.communicate(timeout=60.0)
+    assert (command.returncode, errors) == (-number, b"")
+    assert not child.is_running()
+    assert sound(saved)
+
+
+@signals
+@pytest.mark.parametrize("ending", ["SIGTERM", "SIGHUP"])
+@pytest.mark.parametrize("viewer", ["--serve", "--spawn"])
+def test_the_command_keeps_the_file_when_it_is_ended_while_it_draws(
+    tmp_path: Path, case: Case, viewer: str, ending: str
+) -> None:
+    saved, fmu = tmp_path / "saved.rrd", tmp_path / "Borehole.fmu"
+    build_fmu(case, fmu, runtime="python")
+    command = boreprop_view(fmu, viewer, "--save", saved, "--step", "0.01", "--stop", "1000", folder=tmp_path)
+    until(lambda: [draft for draft in tmp_path.glob(".*.saved.rrd") if draft.stat().st_size > 100_000])
+    [child] = psutil.Process(command.pid).children()
+    number = signal.Signals[ending]
+    command.send_signal(number)
+    _, errors = command.communicate(timeout=60.0)
+    assert (command.returncode, errors) == (-number, b"")
+    assert not child.is_running()
+    assert sound(saved)
+    assert not list(tmp_path.glob(".*.saved.rrd"))
+
+
+@signals
+def test_a_signal_that_was_ignored_before_is_ignored(tmp_path: Path, run_file: Path) -> None:
+    ignoring = "signal.signal(signal.SIGHUP, signal.SIG_IGN)"
+    saved = tmp_path / "saved.rrd"
+    command = boreprop_view(run_file, "--serve", "--save", saved, before=ignoring, folder=tmp_path)
+    until(saved.exists)
+    command.send_signal(signal.SIGHUP)
+    command.send_signal(signal.SIGTERM)  # which comes first if both are heeded
+    command.communicate(timeout=60.0)
+    assert command.returncode == -signal.SIGTERM
+
+
+@signals
+def test_importing_the_viewer_leaves_all_signals_alone() -> None:
+    code = """
+        import signal
+        before = [signal.getsignal(number) for number in signal.valid_signals()]
+        from boreprop_viz import cli, live, record, show
+        print(before == [signal.getsignal(number) for number in signal.valid_signals()])
+    """
+    done = subprocess.run([sys.executable, "-c", dedent(code)], capture_output=True, text=True, check=True)
+    assert done.stdout == "True\n"
 
 
 @signals
@@ -170,8 +244,8 @@ def test_memory_is_bounded_and_the_run_goes_on_when_the_viewer_hangs(tmp_path: P
         with rerun("--serve-grpc") as (viewer, address):
             run = script(f"""
                 import resource, sys
-                from boreprop_viz import sinks
-                sinks.PATIENCE = 0.5
+                from boreprop_viz import feeder
+                feeder.PATIENCE = 0.5
                 with open_recording(save={str(tmp_path / "saved.rrd")!r}, connect={address!r}) as rec:
                     send(rec, range(1))
                     print("ready", flush=True)

@@ -1,10 +1,14 @@
 """Runs in a notebook: what reaches the viewer's widget, and the example from top to bottom."""
 
+import io
 import re
+import shutil
 import subprocess
 import sys
+from base64 import b64decode
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
+from textwrap import dedent
 from typing import Any
 
 import nbformat
@@ -12,6 +16,10 @@ import numpy as np
 import pytest
 import rerun as rr
 import rerun_notebook
+from IPython.display import Image as DisplayedImage
+from nbclient import NotebookClient
+from nbconvert import HTMLExporter
+from PIL import Image
 from rerun.chunk import RrdReader
 
 from boreprop.case.case import Case
@@ -20,7 +28,9 @@ from boreprop.errors import InputError
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
 from boreprop_viz import show
+from boreprop_viz.notebook import picture_size
 from places import EXAMPLES
+from viewers import draws
 
 NOTEBOOK = EXAMPLES / "rippling.ipynb"
 LARGEST = 500_000  # bytes, of a notebook that is quick to open on a web page
@@ -81,7 +91,7 @@ def test_runs_without_names_are_numbered(sent: list[RrdReader], run: Trajectory)
 
 def test_a_plan_reaches_the_widget(sent: list[RrdReader], run: Trajectory) -> None:
     show(run, plan=Survey((0.0, 100.0), (0.0, 0.1)))
-    assert ticks(sent, "/plots/inclination/planned_inclination") == millimetres(run)
+    assert ticks(sent, "/plots/inclination/0_plan") == millimetres(run)
 
 
 def test_the_widget_gets_the_layout(sent: list[RrdReader], run: Trajectory) -> None:
@@ -137,6 +147,59 @@ def test_importing_the_package_does_not_import_rerun() -> None:
     assert (done.stdout.strip(), done.stderr) == ("set()", "")
 
 
+# The still picture
+
+
+@draws
+def test_a_page_made_by_nbconvert_has_a_picture_of_the_viewer() -> None:
+    source = """
+        from boreprop import load_case, simulate
+        from boreprop_viz import show
+        run = simulate(load_case("paper_case.toml"), length=5.0)
+        show(run, width=800, height=500, still=True)
+    """
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(dedent(source))])  # type: ignore[no-untyped-call]
+    NotebookClient(notebook, kernel_name="python3", resources={"metadata": {"path": str(EXAMPLES)}}).execute()
+    assert {"image/png", "text/plain"} in kinds(notebook)
+    page, _ = HTMLExporter().from_notebook_node(notebook)  # type: ignore[no-untyped-call]
+    [picture] = re.findall(r'<img[^>]* src="data:image/png;base64,([^"]+)"', page)
+    shown = Image.open(io.BytesIO(b64decode(picture)))
+    assert shown.size == (800, 500)
+    assert len(np.unique(np.array(shown.convert("RGB")).reshape(-1, 3), axis=0)) > 20  # not an empty window
+
+
+@pytest.fixture
+def displayed(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """What is displayed below the cell."""
+    outputs: list[Any] = []
+    monkeypatch.setattr("IPython.display.display", outputs.append)
+    return outputs
+
+
+def test_no_picture_is_taken_unless_asked_for(run: Trajectory, displayed: list[Any]) -> None:
+    show(run)
+    assert displayed
+    assert not [output for output in displayed if isinstance(output, DisplayedImage)]
+
+
+def test_the_viewer_is_shown_without_a_picture_if_none_can_be_taken(
+    run: Trajectory, displayed: list[Any], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("boreprop_viz.picture.PROGRAM", shutil.which("false"))
+    show(run, still=True)
+    assert displayed
+    assert not [output for output in displayed if isinstance(output, DisplayedImage)]
+    [warning] = capsys.readouterr().err.splitlines()
+    assert warning.startswith("warning: show: no still picture is left, the viewer must find a Vulkan driver")
+
+
+@pytest.mark.parametrize(
+    ("size", "pixels"), [(("auto", 720), (1600, 720)), (("auto", "auto"), (1600, 900)), ((640, "auto"), (640, 360))]
+)
+def test_the_picture_is_as_large_as_the_viewer(size: tuple[Any, Any], pixels: tuple[int, int]) -> None:
+    assert picture_size(*size) == pixels
+
+
 # The example
 
 
@@ -172,13 +235,15 @@ def test_the_example_can_be_read_without_its_kernel(committed: nbformat.Notebook
     assert NOTEBOOK.stat().st_size < LARGEST
 
 
-def test_the_pictures_that_the_example_refers_to_are_there(committed: nbformat.NotebookNode) -> None:
-    text = "\n".join(cell.source for cell in committed.cells if cell.cell_type == "markdown")
-    pictures = re.findall(r"!\[[^]]+\]\(([^)]+)\)", text)
-    assert pictures
-    assert all((EXAMPLES / picture).is_file() for picture in pictures)
+def test_each_viewer_in_the_example_has_left_a_picture(committed: nbformat.NotebookNode) -> None:
+    viewers = [cell for cell in committed.cells if cell.cell_type == "code" and "\nshow(" in "\n" + cell.source]
+    assert len(viewers) == 2
+    for cell in viewers:
+        [output] = cell.outputs
+        assert "image/png" in output.data
 
 
+@draws
 @pytest.mark.slow
 def test_the_example_runs_in_a_new_kernel_and_says_what_is_in_its_file(committed: nbformat.NotebookNode) -> None:
     spec = spec_from_file_location("execute_notebook", EXAMPLES / "execute_notebook.py")

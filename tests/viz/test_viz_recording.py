@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 from boreprop.analysis.axis import axis_ripple
+from boreprop.analysis.hole import bit_positions
 from boreprop.case.case import Case, Schedule
-from boreprop.case.file import load_case, parse_case
+from boreprop.case.file import load_case
 from boreprop.core.survey import Survey
 from boreprop.errors import InputError
 from boreprop.run.results import write_trajectory
@@ -20,11 +21,11 @@ from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
 from boreprop_viz.record import Drawing, record
 from boreprop_viz.scales import Scales, choose_scales
-from boreprop_viz.scene import Array, BitFrame, bit_positions
+from boreprop_viz.scene import Array, BitFrame
 from boreprop_viz.sinks import open_recording
 from boreprop_viz.source import stored
 from conftest import Command
-from rrd import read, stacked, static
+from rrd import held, read, stacked, static
 
 LENGTH = 40.0
 
@@ -88,23 +89,6 @@ def test_a_run_that_stands_still_goes_on_in_simulation_time(run: Trajectory, tmp
     np.testing.assert_allclose(shown, expected, atol=0.01)
 
 
-def test_the_case_is_a_property_of_the_recording(recorded: Path, case: Case) -> None:
-    [[text]] = static(recorded, "__properties/case", "case_file")
-    assert parse_case(text, "case") == case
-    [[weight]] = static(recorded, "__properties/case", "active_weight_on_bit")
-    assert weight == case.active_weight_on_bit
-
-
-def test_recordings_that_look_alike_share_an_application_and_others_do_not(run: Trajectory, case: Case) -> None:
-    def application(*runs: Trajectory, plan: Survey | None = None) -> str:
-        return Drawing.of([stored(f"run {k}", run) for k, run in enumerate(runs)], plan).application
-
-    wider = simulate(replace(case, bit_diameter=0.3), sample_interval=0.5)
-    plan = Survey((0.0, 100.0), (0.0, 0.1))
-    assert application(run) == application(run)
-    assert len({application(run), application(wider), application(run, wider), application(run, plan=plan)}) == 4
-
-
 def test_the_walls_are_a_hole_radius_from_the_axis_times_the_factor(
     recorded: Path, run: Trajectory, scales: Scales, case: Case
 ) -> None:
@@ -131,8 +115,10 @@ def test_the_axis_of_the_bit_is_tilted_against_the_hole_within_its_limits(
     np.testing.assert_allclose((bit - hole)[:, 0], run["bit_tilt"], atol=1e-6)
     limit = case.bit.tilt_limit
     np.testing.assert_allclose(limits - hole, np.tile([-limit, limit], (run.row_count, 1)), atol=1e-6)
-    labels = read(recorded, "bit_frame/tilt/label", "Points2D:labels").values()
-    shown = [float(label.removeprefix("ψ ").removesuffix("°")) for [label] in labels]
+    ticks = read(recorded, "bit_frame/tilt/label", "Points2D:positions")
+    labels = [label for [label] in held(recorded, "bit_frame/tilt/label", "Points2D:labels", ticks)]
+    assert "ψ −0.00°" not in labels
+    shown = [float(label.removeprefix("ψ ").removesuffix("°").replace("−", "-")) for label in labels]
     np.testing.assert_allclose(shown, np.degrees(run["bit_tilt"]), atol=0.0051)
 
 
@@ -158,15 +144,16 @@ def test_an_arrow_is_drawn_only_where_there_is_a_force_and_is_as_long_as_it(
     recorded: Path, run: Trajectory, scales: Scales, entity: str, column: str
 ) -> None:
     arrows = read(recorded, f"bit_frame/{entity}", "Arrows2D:vectors")
-    labels = read(recorded, f"bit_frame/{entity}", "Arrows2D:labels")
+    labels = held(recorded, f"bit_frame/{entity}/label", "Points2D:labels", arrows)
+    beside = read(recorded, f"bit_frame/{entity}/label", "Points2D:positions")
     drawn = np.array([sum((vector[0] for vector in vectors), 0.0) for vectors in arrows.values()])
     np.testing.assert_allclose(drawn * scales.newtons_per_metre, run[column], rtol=1e-6)
     forces = dict(zip(arrows, run[column], strict=True))
     assert {tick for tick, vectors in arrows.items() if vectors} == {tick for tick, force in forces.items() if force}
     assert {len(vectors) for vectors in arrows.values()} <= {0, 1}
-    for tick, force in forces.items():
-        shown = [float(label.removesuffix(" kN")) for label in labels[tick]]
-        assert shown == ([pytest.approx(abs(force) / 1000, rel=0.005, abs=0.005)] if force else [])
+    for force, [label], places in zip(forces.values(), labels, beside.values(), strict=True):
+        assert len(places) == (1 if force else 0)
+        assert float(label.removesuffix(" kN")) == pytest.approx(abs(force) / 1000, rel=0.005, abs=0.005)
 
 
 def test_a_contact_force_ends_at_its_contact_point_on_the_wall(recorded: Path, case: Case) -> None:
@@ -200,7 +187,7 @@ def test_a_plot_shows_degrees_and_kilonewtons(
     recorded: Path, run: Trajectory, entity: str, column: str, factor: float
 ) -> None:
     shown = stacked(recorded, f"plots/{entity}", "Scalars:scalars")[:, 0]
-    np.testing.assert_allclose(shown, factor * run[column], rtol=1e-14)
+    np.testing.assert_allclose(shown, factor * run[column], atol=5.1e-5)
 
 
 def test_the_plot_of_the_bit_tilt_shows_its_limits(recorded: Path, case: Case) -> None:
@@ -213,20 +200,17 @@ def test_the_plot_of_the_bit_tilt_shows_its_limits(recorded: Path, case: Case) -
 @pytest.mark.parametrize(
     ("lane", "column", "words"),
     [
-        ("stabilizer_1", "stabilizer_contact[1]", {1: "low", -1: "high", 0: "free"}),
-        ("tilt", "bit_tilt_saturation", {1: "+ψ*", -1: "−ψ*", 0: "free"}),
+        ("stabilizer_1", "stabilizer_contact[1]", {1: "L", -1: "H", 0: "–"}),
+        ("tilt", "bit_tilt_saturation", {1: "+", -1: "−", 0: "–"}),
     ],
 )
 def test_a_lane_changes_where_the_mode_does(
     recorded: Path, run: Trajectory, lane: str, column: str, words: dict[int, str]
 ) -> None:
-    changes = read(recorded, f"modes/{lane}", "StateChange:state")
-    shown, lane_now = [], ""
-    for tick in np.rint(1000 * run["drilled_length"]).astype(int):
-        [lane_now] = changes.get(int(tick), [lane_now])
-        shown.append(lane_now)
-    assert shown == [words[int(mode)] for mode in run[column]]
-    assert 2 < len(changes) < run.row_count
+    ticks = np.rint(1000 * run["drilled_length"]).astype(int).tolist()
+    shown = held(recorded, f"modes/{lane}", "StateChange:state", ticks)
+    assert shown == [[words[int(mode)]] for mode in run[column]]
+    assert 2 < len(read(recorded, f"modes/{lane}", "StateChange:state")) < run.row_count
 
 
 def test_the_ripple_is_shown_as_far_as_its_trend_is_known(recorded: Path, run: Trajectory, case: Case) -> None:
@@ -262,7 +246,7 @@ def test_the_plan_is_drawn_from_where_drilling_starts(run: Trajectory, case: Cas
     start = case.survey.measured_depth[-1]
     plan = Survey((0.0, start + 20.0), (0.0, 0.2))
     record(run, plan=plan, save=tmp_path / "run.rrd")
-    planned = read(tmp_path / "run.rrd", "plots/inclination/planned_inclination", "Scalars:scalars")
+    planned = read(tmp_path / "run.rrd", "plots/inclination/0_plan", "Scalars:scalars")
     slope = np.degrees(0.2) / (start + 20.0)
     for tick, [inclination] in planned.items():
         if tick <= 20000:
@@ -277,6 +261,19 @@ def test_the_plan_is_drawn_from_where_drilling_starts(run: Trajectory, case: Cas
     np.testing.assert_allclose(np.arctan2(*steps[[0, -1]].T), [0.0, 0.2], atol=1e-3)
 
 
+def test_whatever_the_runs_are_called_rerun_does_not_complain(run: Trajectory, tmp_path: Path) -> None:
+    write_trajectory(run, tmp_path / "run.csv")
+    program = """
+import sys
+from boreprop import read_trajectory
+from boreprop_viz.record import record
+run = read_trajectory("run.csv")
+record({"ηΠ = 0.1, first": run, "a/b (2) & " + 200 * "c": run}, save="run.rrd")
+"""
+    done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 def test_a_plan_that_ends_above_the_start_is_refused(run: Trajectory, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"plan: must include 7\.32 m, where drilling starts, got 0 to 5"):
         record(run, plan=Survey((0.0, 5.0), (0.0, 0.0)), save=tmp_path / "run.rrd")
@@ -287,11 +284,19 @@ def test_the_card_names_the_case_and_whether_it_ripples(tmp_path: Path, paper_ca
     ripples = load_case(paper_case)
     more = replace(ripples, active_weight_on_bit=16 * ripples.active_weight_on_bit)
     record({"a": simulate(ripples), "b": simulate(more)}, save=tmp_path / "two.rrd")
-    [[text]] = static(tmp_path / "two.rrd", "case", "TextDocument:text")[-1:]
+    texts = read(tmp_path / "two.rrd", "verdict", "TextDocument:text")
+    [verdicts] = texts[max(texts)]
+    [[text]] = static(tmp_path / "two.rrd", "case", "TextDocument:text")
     assert "| **ηΠ** | **0.01** | **0.16** |" in text
-    assert "| critical ηΠ | 0.1468 | 0.1468 |" in text
-    assert re.search(r"- \*\*a\*\* yes: 5\.0\d m long, ±2\.\d\d °", text)
-    assert "- **b** no" in text
+    assert "| drilling straight, contact | 1 low | none |" in text
+    assert "| drilling straight, roots | unstable, oscillates | stable |" in text
+    assert "| its critical ηΠ | 0.1468 = 23.7 kN | none |" in text
+    assert "| critical ηΠ, all touching | 0.1468 = 23.7 kN | 0.1468 = 23.7 kN |" in text
+    facts = [line.split(" | ")[0].strip("| *") for line in text.splitlines() if line.startswith("| ")]
+    assert facts.index("critical ηΠ, all touching") > facts.index("its critical ηΠ") > facts.index("ηΠ")
+    assert "weight on bit" not in text.replace("active weight on bit", "")
+    assert re.search(r"- \*\*a\*\* rippling since 24 m: waves of 5\.0\d m, ±2\.\d °, ±3\d mm", verdicts)
+    assert "- **b** no ripple" in verdicts
 
 
 def test_several_runs_are_drawn_over_each_other_each_under_its_name(
@@ -301,11 +306,11 @@ def test_several_runs_are_drawn_over_each_other_each_under_its_name(
     record({"first try": run, "other": other}, save=tmp_path / "two.rrd")
     for name, shown in (("first_try", run), ("other", other)):
         tilt = stacked(tmp_path / "two.rrd", f"plots/bit_tilt/{name}/bit_tilt", "Scalars:scalars")[:, 0]
-        np.testing.assert_allclose(tilt, np.degrees(shown["bit_tilt"]), rtol=1e-14)
+        np.testing.assert_allclose(tilt, np.degrees(shown["bit_tilt"]), atol=5.1e-5)
         bit = stacked(tmp_path / "two.rrd", f"vertical_section/{name}/bit", "Points2D:positions")[:, 0]
         np.testing.assert_allclose(bit, bit_positions(shown), atol=1e-5)
-    labels = [read_static[0] for read_static in [static(tmp_path / "two.rrd", "bit_frame/names", "Points2D:labels")]]
-    assert labels == [["first try", "other"]]
+    [key] = static(tmp_path / "two.rrd", "key/names", "Points2D:labels")
+    assert key[:2] == ["first try", "other"]
 
 
 def test_what_is_drawn_does_not_depend_on_the_batches(recorded: Path, run: Trajectory, tmp_path: Path) -> None:
@@ -354,7 +359,7 @@ def test_the_command_draws_a_run_with_the_case_that_stands_beside_it(
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith(f"run.rrd: {run.row_count} rows, ")
     shown = stacked(tmp_path / "run.rrd", "plots/bit_tilt/bit_tilt", "Scalars:scalars")[:, 0]
-    np.testing.assert_array_equal(shown, np.degrees(run["bit_tilt"]))
+    np.testing.assert_allclose(shown, np.degrees(run["bit_tilt"]), atol=5.1e-5)
 
 
 def test_the_command_runs_a_case_file(command: Command, paper_text: str, tmp_path: Path) -> None:
@@ -374,6 +379,8 @@ def test_the_command_runs_a_case_file(command: Command, paper_text: str, tmp_pat
         (["run.csv", "--case", "a.toml", "--fmu", "b.fmu"], "--case, --fmu: at most one must be given, got both"),
         (["run.csv", "--case", "no.toml"], "no.toml: must be a readable TOML file, got: No such file or directory"),
         (["run.csv", "--step", "1"], "--step: must be given with an FMU to run, got run.csv"),
+        (["run.csv", "--pace", "2"], "--pace: must be given with an FMU to run, got run.csv"),
+        (["Borehole.fmu", "--pace", "0"], "Invalid value for '--pace': must be a number > 0, got '0'"),
         (["run.csv", "./run.csv", "run.csv"], "run.csv: must be given once, got it twice"),
         (["a.toml", "--case", "b.toml"], "a.toml: must be a result file with --case or --fmu, got a case file"),
     ],

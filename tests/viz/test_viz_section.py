@@ -7,13 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from boreprop.analysis.hole import bit_positions
 from boreprop.case.case import Case
 from boreprop.case.file import load_case
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
 from boreprop_viz.record import record
 from boreprop_viz.scales import Scales, choose_scales
-from boreprop_viz.scene import Array, bit_positions, section_bounds
+from boreprop_viz.scene import Array, section_bounds
 from boreprop_viz.style import BY_RUN, BY_SEVERITY, GROUND
 from places import EXAMPLES
 from rrd import read, stacked, static
@@ -104,10 +105,10 @@ def test_the_hole_has_the_colour_of_its_largest_dogleg_severity_over_half_the_bh
 
 
 def test_the_key_says_which_dogleg_severity_a_colour_is(recorded: Path) -> None:
-    [labels] = static(recorded, f"{SECTION}/key/labels", "Points2D:labels")
+    [labels] = static(recorded, f"{SECTION}/severities/labels", "Points2D:labels")
     assert labels == ["dogleg °/30 m", "1", "2", "5", "10", "20"]
-    [swatches] = static(recorded, f"{SECTION}/key", STRIPS)
-    [places] = static(recorded, f"{SECTION}/key/labels", POINTS)
+    [swatches] = static(recorded, f"{SECTION}/severities", STRIPS)
+    [places] = static(recorded, f"{SECTION}/severities/labels", POINTS)
     upper = [swatch[1][1] for swatch in swatches[:-1]]  # the values are beside the ends of colours, in their order
     assert np.all(np.diff(upper) > 0.0)
     height = swatches[0][1][1] - swatches[0][0][1]
@@ -138,7 +139,7 @@ def test_several_holes_have_the_colours_of_their_runs(run: Trajectory, tmp_path:
         assert not read(tmp_path / "two.rrd", f"{SECTION}/{name}/drilled_hole", COLOURS)
         [[colour]] = static(tmp_path / "two.rrd", f"{SECTION}/{name}/drilled_hole", COLOURS)
         assert tuple(colour.to_bytes(4, "big")[:3]) == BY_RUN[place]
-    assert not static(tmp_path / "two.rrd", f"{SECTION}/key", STRIPS)
+    assert not static(tmp_path / "two.rrd", f"{SECTION}/severities", STRIPS)
 
 
 def test_the_stabilizers_are_across_the_bha(recorded: Path, case: Case) -> None:

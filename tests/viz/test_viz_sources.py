@@ -18,6 +18,7 @@ from boreprop.run.results import write_trajectory
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
 from boreprop_fmu.pack.build import build_fmu
+from boreprop_viz.source import paced
 from conftest import Command
 from rrd import read, stacked, static
 
@@ -65,6 +66,51 @@ def test_the_command_drills_an_fmu_under_a_schedule(command: Command, fmu: Path,
     assert (done.returncode, done.stderr) == (0, "")
     shown = stacked(tmp_path / "live.rrd", "plots/rss_force/rss_force", "Scalars:scalars")[:, 0]
     np.testing.assert_allclose(shown, [1.0] * 4 + [-3.0] * 5)
+
+
+class Clock:
+    """A clock that stands still but for what one waits and does."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+
+    def tell(self) -> float:
+        return self.now
+
+    def wait(self, seconds: float) -> None:
+        assert seconds > 0.0
+        self.now += seconds
+
+
+def test_a_paced_row_comes_when_it_is_due() -> None:
+    clock = Clock()
+    given = []
+    for row in paced([[7.0, 20.0], [7.0, 21.0], None, [7.0, 21.0], [7.0, 25.0]], 1, 2.0, clock.tell, clock.wait):
+        given.append((clock.now, row))
+        if len(given) == 1:
+            clock.now += 5.0  # the viewer starts
+    assert given == [
+        (100.0, [7.0, 20.0]),
+        (105.5, [7.0, 21.0]),
+        (105.5, None),
+        (105.5, [7.0, 21.0]),
+        (107.5, [7.0, 25.0]),
+    ]
+
+
+def test_who_is_late_does_not_wait_and_catches_up() -> None:
+    clock = Clock()
+    given = []
+    for row in paced([[0.0], [1.0], [2.0], [3.0]], 0, 1.0, clock.tell, clock.wait):
+        given.append((clock.now, row))
+        clock.now += 1.75 * (row == [1.0])  # drilling takes long
+    assert given == [(100.0, [0.0]), (101.0, [1.0]), (102.75, [2.0]), (103.0, [3.0])]
+
+
+def test_the_command_keeps_a_pace(command: Command, fmu: Path, tmp_path: Path) -> None:
+    done = command("boreprop-view", fmu, "--step", "0.5", "--stop", "4", "--pace", "1e3", "--save", "live.rrd")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert list(read(tmp_path / "live.rrd", "vertical_section/bit", "Points2D:positions")) == list(range(0, 4001, 500))
 
 
 def test_ctrl_c_ends_a_live_run_with_130_and_keeps_what_was_drilled(case: Case, tmp_path: Path) -> None:

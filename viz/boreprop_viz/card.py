@@ -1,40 +1,120 @@
-"""The text beside the pictures: the cases, and whether their holes ripple."""
+"""The texts beside the pictures: whether the holes ripple, moment by moment, and the cases side by side."""
 
-from collections.abc import Sequence
+from bisect import bisect
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
+import numpy as np
 import rerun as rr
 
-from boreprop.analysis.rippling import Rippling, State
 from boreprop.analysis.stability.contacts import can_touch
-from boreprop.analysis.stability.roots import critical_eta_pi
+from boreprop.analysis.stability.roots import CriticalEtaPi, critical_eta_pi
+from boreprop.analysis.stability.roots import Verdict as RootsVerdict
+from boreprop.analysis.stability.straight import straight_drilling
 from boreprop.case.case import Case
 from boreprop.core.system import eta_pi
-from boreprop.report.tables.summary import whether_it_ripples
+from boreprop.errors import BorepropError
+from boreprop.report.tables.steering import touching
 from boreprop.units import SMALL_LENGTH, UNITS
 
+from .scales import Scales
 from .source import Source
+from .track import lengths_index, times_index
+from .verdict import Saying, Verdict
 
-CARD = "case"
+VERDICT, CARD = "verdict", "case"
+UNTIL_ITS_END = "as far as recorded: "  # of a run that is being drilled, or of which the end never came
+BY_THE_ROOTS = {
+    RootsVerdict.STABLE: "stable",
+    RootsVerdict.DRIFT: "unstable, drifts",
+    RootsVerdict.OSCILLATORY: "unstable, oscillates",
+    None: "not known",
+}
 
 
-def log_card(rec: rr.RecordingStream, sources: Sequence[Source], findings: Sequence[str]) -> None:
-    """Log whether the hole of each run ripples, in words, and a table of the cases side by side."""
-    names = [source.name for source in sources]
-    facts = [case_facts(source.case) for source in sources]
-    lines = ["Does the hole ripple?", ""]
-    lines += [f"- **{name}** {finding}" for name, finding in zip(names, findings, strict=True)]
-    lines += ["", f"| | {' | '.join(names)} |", "|---" * (len(names) + 1) + "|"]
-    lines += [f"| {what} | {' | '.join(fact[what] for fact in facts)} |" for what in facts[0]]
-    rec.log(CARD, rr.TextDocument("\n".join(lines), media_type=rr.MediaType.MARKDOWN), static=True)
+class Card:
+    """Logs the table of the cases, and a text which at each moment says of each run what holds there.
+
+    The runs are drawn one after the other, so the moments of the earlier ones are logged again after each.
+    """
+
+    def __init__(self, rec: rr.RecordingStream, scales: Scales, sources: Sequence[Source]) -> None:
+        self.rec, self.start = rec, scales.start
+        self.along = "drilled length" if self.start is None else "measured depth"
+        self.names = [source.name for source in sources]
+        self.sayings: list[list[Saying]] = [[] for _ in sources]
+        self.going_on = [source.live for source in sources]
+        cases = table(self.names, [case_facts(source.case) for source in sources])
+        rec.log(CARD, rr.TextDocument(cases, media_type=rr.MediaType.MARKDOWN), static=True)
+
+    def say(self, run: int, sayings: Sequence[Saying]) -> None:
+        """Log what there is to say of a run from some moments on."""
+        self.sayings[run] += sayings
+        self._log(sayings)
+
+    @contextmanager
+    def ending(self, run: int, verdict: Verdict, stopped: str | None) -> Iterator[None]:
+        """When the block ends, log how the run ended, and all moments of all runs again.
+
+        `stopped` is the reason why the run ended early; None if it did not, or if only the block can tell.
+        """
+        how, why = ("stopped", stopped) if stopped else ("", "")
+        try:
+            yield
+        except BorepropError as error:
+            how, why = "stopped", str(error)
+            raise
+        except BaseException:
+            how = "interrupted"
+            raise
+        finally:
+            self.sayings[run] += verdict.end(how, why)
+            self.going_on[run] = False
+            self._log([saying for said in self.sayings for saying in said])
+
+    def _log(self, sayings: Sequence[Saying]) -> None:
+        """Log the text at the moments of some sayings, on each timeline."""
+        lengths = sorted({saying.length for saying in sayings})
+        times = sorted({saying.time for saying in sayings if saying.time is not None})
+        by_length = [[saying.length for saying in said] for said in self.sayings]
+        by_time = [[np.inf if saying.time is None else saying.time for saying in said] for said in self.sayings]
+        self._send(lengths_index(self.start, np.array(lengths)), [self._text(by_length, at) for at in lengths])
+        self._send([times_index(np.array(times))], [self._text(by_time, at) for at in times])
+
+    def _send(self, index: Sequence[rr.TimeColumn], texts: list[str]) -> None:
+        if texts:
+            media_type = [rr.MediaType.MARKDOWN] * len(texts)
+            self.rec.send_columns(VERDICT, index, rr.TextDocument.columns(text=texts, media_type=media_type))
+
+    def _text(self, moments: list[list[float]], at: float) -> str:
+        """The text at a moment; `moments` are those of the sayings of each run on the same timeline."""
+        latest = [bisect(of_run, at) - 1 for of_run in moments]
+        words = [said[last].words if last >= 0 else "" for said, last in zip(self.sayings, latest, strict=True)]
+        marks = [UNTIL_ITS_END if live and word else "" for live, word in zip(self.going_on, words, strict=True)]
+        lines = [f"- **{name}** {mark}{word}" for name, mark, word in zip(self.names, marks, words, strict=True)]
+        return "\n".join([f"Does the hole ripple? In {self.along}:", "", *lines])
+
+
+def table(names: Sequence[str], facts: Sequence[dict[str, str]]) -> str:
+    """The facts about some cases side by side; those that differ come first."""
+    rows = [[what, *(fact[what] for fact in facts)] for what in facts[0]]
+    rows.sort(key=lambda row: len(set(row[1:])) == 1)
+    heading = [["", *names], ["---"] * (len(names) + 1)]
+    return "\n".join(f"| {' | '.join(row)} |" for row in heading + rows)
 
 
 def case_facts(case: Case) -> dict[str, str]:
     """The facts about a case: name → value in the units people use."""
     bha, bit = case.bha, case.bit
-    inclination = case.survey.inclination[-1]
-    contact = can_touch(bha, bit, inclination, case.schedule.rss_force)
-    critical = critical_eta_pi(case, contact=contact)
+    contact = can_touch(bha, bit, case.survey.inclination[-1], case.schedule.rss_force)
+    straight = straight_drilling(case)
     return {
+        "active weight on bit": UNITS["N"].text(case.active_weight_on_bit),
+        "**ηΠ**": f"**{eta_pi(bha, bit, case.active_weight_on_bit):.4g}**",
+        "drilling straight, contact": touching(straight.response) + ", tilt at its limit" * straight.saturated,
+        "drilling straight, roots": BY_THE_ROOTS[straight.verdict],
+        "its critical ηΠ": _limit(straight.critical),
+        "critical ηΠ, all touching": _limit(critical_eta_pi(case, contact=contact)),
         "stabilizers": f"{', '.join(f'{s:.4g}' for s in bha.stabilizer_positions)} m",
         "clearances": f"{', '.join(map(SMALL_LENGTH.number, bha.stabilizer_clearances)) or '–'} {SMALL_LENGTH.shown}",
         "weight": UNITS["N/m"].text(bha.distributed_weight),
@@ -42,14 +122,9 @@ def case_facts(case: Case) -> dict[str, str]:
         "η, χ": f"{bit.lateral_steering_resistance:g}, {bit.angular_steering_resistance:g}",
         "tilt limit ψ*": UNITS["rad"].text(bit.tilt_limit),
         "pads, hole": f"{UNITS['m'].text(bha.rss_position, '.3g')}, {SMALL_LENGTH.text(case.bit_diameter, '.4g')}",
-        "weight on bit": UNITS["N"].text(case.active_weight_on_bit),
-        "critical weight": "none" if critical is None else UNITS["N"].text(critical.active_weight_on_bit),
-        "**ηΠ**": f"**{eta_pi(bha, bit, case.active_weight_on_bit):.4g}**",
-        "critical ηΠ": "none" if critical is None else f"{critical.eta_pi:.4g}",
     }
 
 
-def in_words(wave: Rippling) -> str:
-    """Whether a run ends rippling, and with what wave."""
-    size = f", ±{UNITS['rad'].text(wave.amplitude)}" if wave.state is not State.NONE else ""
-    return whether_it_ripples(wave) + size
+def _limit(critical: CriticalEtaPi | None) -> str:
+    """A critical ηΠ, and the active weight on bit there."""
+    return "none" if critical is None else f"{critical.eta_pi:.4g} = {UNITS['N'].text(critical.active_weight_on_bit)}"

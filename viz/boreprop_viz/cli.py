@@ -1,6 +1,12 @@
 """The command `boreprop-view`: draws runs with Rerun."""
 
+import os
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from types import FrameType
 from typing import Annotated, NoReturn
 
 import typer
@@ -11,12 +17,41 @@ from boreprop.cli.options import positive
 from boreprop.cli.version import Version
 from boreprop.errors import InputError
 
+from .ports import check_free
+
+ENDINGS = ("SIGTERM", "SIGHUP")  # signals that ask a process to end: by another one, by a terminal that is closed
 app = new_app("Show runs in Rerun: vertical section, bit frame, ripple, plots over the drilled length.")
 
 
 def main() -> NoReturn:
     """Run the command `boreprop-view`."""
-    console.execute(app)
+    with endings_like_interrupt():
+        console.execute(app)
+
+
+@contextmanager
+def endings_like_interrupt() -> Iterator[None]:
+    """Let a signal that asks for the end do what Ctrl-C does, which ends viewers and keeps files, and then end us."""
+    received: list[int] = []
+
+    def interrupt(number: int, _: FrameType | None) -> None:
+        if not received:  # another one must not disturb the end
+            received.append(number)
+            raise KeyboardInterrupt
+
+    numbers = [getattr(signal, name) for name in ENDINGS if hasattr(signal, name)]
+    ours = [number for number in numbers if signal.getsignal(number) is signal.SIG_DFL]  # nohup ignores one of them
+    for number in ours:
+        signal.signal(number, interrupt)
+    try:
+        yield
+    finally:
+        for number in ours:
+            signal.signal(number, signal.SIG_DFL)
+        if received:
+            with suppress(OSError):  # the terminal may be gone
+                sys.stdout.flush()
+            os.kill(os.getpid(), received[0])  # so that the exit status says why
 
 
 @app.command()
@@ -48,12 +83,40 @@ def view(
     stop: Annotated[
         float | None, typer.Option(parser=positive, metavar="T", help="Time at the end, s, for an FMU.")
     ] = None,
+    pace: Annotated[
+        float | None,
+        typer.Option(
+            parser=positive,
+            metavar="SECONDS_PER_SECOND",
+            help="Seconds of simulation per second of the clock, for an FMU. Default: as fast as it goes.",
+        ),
+    ] = None,
     save: Annotated[Path | None, typer.Option(metavar="X.rrd", help="The recording to write.")] = None,
     spawn: Annotated[bool, typer.Option("--spawn", help="Show the runs in a new viewer. This is the default.")] = False,
-    serve: Annotated[bool, typer.Option("--serve", help="Show the runs in the browser until Ctrl-C.")] = False,
+    serve: Annotated[
+        bool,
+        typer.Option(
+            "--serve",
+            help="Show the runs in the browser until Ctrl-C. Everything is kept for browsers that come late, in up to "
+            "half of this machine's memory; beyond that the oldest data are dropped.",
+        ),
+    ] = False,
     connect: Annotated[
         str | None,
-        typer.Option(metavar="ADDRESS", help="Show the runs in the viewer at rerun+http://HOST:PORT/proxy."),
+        typer.Option(
+            metavar="ADDRESS",
+            help="Show the runs in the viewer at rerun+http://HOST:PORT/proxy. If it is started again during the run, "
+            "it is sent everything again.",
+        ),
+    ] = None,
+    port: Annotated[
+        int | None,
+        typer.Option(
+            metavar="PORT",
+            help="With --serve, the port of the page; the data are at the next one. To look from another machine: "
+            "ssh -L PORT:localhost:PORT -L PORT+1:localhost:PORT+1. With --spawn, the port at which the viewer takes "
+            "further data. Default: free ports.",
+        ),
     ] = None,
     _version: Version = False,
 ) -> None:
@@ -64,7 +127,8 @@ def view(
         raise InputError("--case, --fmu: at most one must be given, got both")
     if (viewers := spawn + serve + (connect is not None)) > 1:
         raise InputError(f"--spawn, --serve, --connect: at most one must be given, got {viewers}")
-    check_that_one_runs(sources, {"--schedule": schedule, "--step": step, "--stop": stop})
+    check_port(port, spawn, serve)
+    check_that_one_runs(sources, {"--schedule": schedule, "--step": step, "--stop": stop, "--pace": pace})
     from .view import show  # imported here, so that a wrong option is reported before Rerun, which is slow, is imported
 
     show(
@@ -75,11 +139,22 @@ def view(
         schedule=schedule,
         step=step,
         stop=stop,
+        pace=pace,
         save=save,
         spawn=spawn or (save is None and viewers == 0),
         serve=serve,
         connect=connect,
+        port=port,
     )
+
+
+def check_port(port: int | None, spawn: bool, serve: bool) -> None:
+    """Raise `InputError` if a port is given that cannot be used, before a case is simulated."""
+    if port is None:
+        return
+    if not (spawn or serve):
+        raise InputError(f"--port: must be given with --serve or --spawn, got {port} without")
+    check_free(port, *([port + 1] if serve else []))
 
 
 def check_that_one_runs(sources: list[Path], options: dict[str, object]) -> None:

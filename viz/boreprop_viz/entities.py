@@ -15,7 +15,7 @@ from boreprop.units import SMALL_LENGTH, UNITS
 from .scene import AHEAD, Array, Shapes
 from .source import Stretch
 from .style import LANES, PLOTS
-from .track import Track, arrivals, moments, points, send, send_arrows, send_curve, send_strips
+from .track import Track, arrivals, moments, points, send, send_arrows, send_curve, send_strips, send_texts
 
 RIPPLE = "plots/ripple/ripple"
 BIT_LENGTH = 0.04  # length of the drawn bit over that of the BHA
@@ -60,10 +60,11 @@ def log_tilt(track: Track, shapes: Shapes) -> None:
     for thing, angles in directions.items():
         strips = points(track.scales.lateral * angles[..., None] * ahead, ahead)
         send_strips(track, f"bit_frame/tilt/{thing}", at, strips)
-    tilts = [f"ψ {UNITS['rad'].number(tilt, '+.2f')}{UNITS['rad'].shown}" for tilt in shapes.rows["bit_tilt"]]
-    places = points(track.scales.lateral * shapes.bit_turn * reach, (LABEL - LABELS_APART * track.place) * reach)
-    labels = rr.Points2D.columns(positions=places, labels=tilts)
-    send(track, "bit_frame/tilt/label", at, labels)
+    if track.numbered:
+        places = points(track.scales.lateral * shapes.bit_turn * reach, (LABEL - LABELS_APART * track.place) * reach)
+        send(track, "bit_frame/tilt/label", at, rr.Points2D.columns(positions=places))
+        tilts = [f"ψ {UNITS['rad'].number(tilt, '+z.2f')}{UNITS['rad'].shown}" for tilt in shapes.rows["bit_tilt"]]
+        send_texts(track, "bit_frame/tilt/label", at, [tilt.replace("-", "−") for tilt in tilts])
 
 
 def log_stabilizers(track: Track, shapes: Shapes) -> None:
@@ -102,20 +103,26 @@ def curve(plot: str, scalar: str) -> str:
     return f"plots/{plot}/{scalar.replace('[', '_').rstrip(']')}"
 
 
+def planned_curve(plot: str) -> str:
+    """The entity of what is planned in a plot; it comes first, so that all runs are drawn over it."""
+    return f"plots/{plot}/0_plan"
+
+
 def log_plots(track: Track, shapes: Shapes) -> None:
     """The curves of all plots for which the run has columns."""
     rows = shapes.rows
     for name, plot in PLOTS.items():
-        for scalar in plot.names(rows.n):
+        curves = {track.entity(curve(name, scalar)): scalar for scalar in plot.names(rows.n)}
+        for entity, scalar in (curves | {planned_curve(name): plot.planned}).items():
             if scalar in rows.columns:
-                send_curve(track, curve(name, scalar), moments(rows), plot.unit.factor * rows[scalar])
+                send_curve(track, entity, moments(rows), plot.unit.factor * rows[scalar])
 
 
 def log_tilt_limits(track: Track, shapes: Shapes) -> None:
     """±ψ*, from the first row to the last."""
     ends, limit = moments(shapes.rows).where(np.array([0, -1])), UNITS["rad"].factor * track.case.bit.tilt_limit
     for side, sign in (("lower", -1.0), ("upper", 1.0)):
-        send_curve(track, f"plots/bit_tilt/{side}_limit", ends, np.full(2, sign * limit))
+        send_curve(track, track.entity(f"plots/bit_tilt/{side}_limit"), ends, np.full(2, sign * limit))
 
 
 def find_ripple(track: Track, stretch: Stretch, rippled: float) -> tuple[Array, Array]:
@@ -131,7 +138,7 @@ def find_ripple(track: Track, stretch: Stretch, rippled: float) -> tuple[Array, 
 def log_ripple(track: Track, recent: Trajectory, length: Array, ripple: Array, rippled: float) -> None:
     """The ripple at the lengths beyond `rippled`, mm; `recent` are the last rows of the run, back to these lengths."""
     new = (length > rippled) & (length >= 0.0)
-    send_curve(track, RIPPLE, arrivals(recent, length[new]), SMALL_LENGTH.factor * ripple[new])
+    send_curve(track, track.entity(RIPPLE), arrivals(recent, length[new]), SMALL_LENGTH.factor * ripple[new])
 
 
 # The modes

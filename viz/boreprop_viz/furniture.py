@@ -12,25 +12,31 @@ import rerun as rr
 from boreprop.case.case import Case
 from boreprop.units import UNITS
 
-from .entities import RIPPLE, curve, lanes
+from .entities import RIPPLE, curve, lanes, planned_curve
 from .scales import Scales, round_down
-from .scene import Array, HoleAxis
+from .scene import Array
 from .style import (
+    BIT,
     BY_STABILIZER,
+    FAINT,
     FURNITURE,
-    GREEN,
     GREY,
+    HOLE,
     LANES,
-    ORANGE,
+    PLAN,
     PLOTS,
+    RSS,
+    SHADES,
     STROKES,
     WHITE,
     Colour,
     Stroke,
     curve_label,
+    mixed,
 )
-from .track import Track, points
+from .track import DEPTH_TIMELINE, Track, points
 
+PALE = 0.5  # share of white in the colour of a run's text, which is read on the grey ground of a label
 LINE = 0.045  # height of a line of text over that of its view, which is some 20 lines high
 # Other places in a view are parts of its width and height, chosen so that text neither is cut nor covers other text.
 
@@ -41,6 +47,7 @@ def log_furniture(rec: rr.RecordingStream, scales: Scales, cases: Sequence[Case]
         log_stroke(rec, thing, stroke)
     log_places(rec, scales, cases)
     log_scale(rec, scales)
+    log_round_start(rec, scales)
 
 
 def log_styles(track: Track) -> None:
@@ -51,24 +58,38 @@ def log_styles(track: Track) -> None:
     rec.log(track.entity("vertical_section/bit"), _dots(WHITE, 4.0), static=True)
     contacts = rr.Points2D.from_fields(radii=rr.Radius.ui_points(3.0), draw_order=5.0)
     rec.log(track.entity("vertical_section/contacts"), contacts, static=True)
+    forces = {"rss_force": track.colour or RSS, "bit_lateral_force": track.colour or BIT}
     for i, colour in enumerate(track.shades(BY_STABILIZER[: n - 1]), 1):
         rec.log(track.entity(f"bit_frame/contact_point/{i}"), _dots(colour, 5.0), static=True)
-        rec.log(track.entity(f"bit_frame/contact_force/{i}"), _arrows(colour), static=True)
-    for force, colour in (("rss_force", GREEN), ("bit_lateral_force", WHITE)):
-        rec.log(track.entity(f"bit_frame/{force}"), _arrows(track.colour or colour), static=True)
-    rec.log(track.entity("bit_frame/tilt/label"), _text(track.colour or WHITE), static=True)
+        forces[f"contact_force/{i}"] = colour
+    text = _text(mixed(track.colour or WHITE, WHITE, PALE))
+    for force, colour in forces.items():
+        rec.log(track.entity(f"bit_frame/{force}"), _arrows(colour), static=True)
+        rec.log(track.entity(f"bit_frame/{force}/label"), text, static=True)
+    rec.log(track.entity("bit_frame/tilt/label"), text, static=True)
     for name, plot in PLOTS.items():
         scalars = plot.names(n)
         for scalar, colour in zip(scalars, track.shades(plot.colours[: len(scalars)]), strict=True):
-            width = 1.0 if scalar.startswith("planned") else 2.0
-            log_curve_style(track, curve(name, scalar), curve_label(scalar), colour, width)
+            log_curve_style(track, curve(name, scalar), curve_label(scalar, plot.unit), colour, 2.0)
+        if plot.planned:
+            line = curve_style(curve_label(plot.planned, plot.unit), PLAN, 3.0)
+            rec.log(planned_curve(name), line, static=True)
     for side in ("lower", "upper"):
-        log_curve_style(track, f"plots/bit_tilt/{side}_limit", "±ψ*  limit", GREY, 1.0)
-    log_curve_style(track, RIPPLE, "hole axis less its trend", track.colour or ORANGE, 2.0)
+        log_curve_style(track, f"plots/bit_tilt/{side}_limit", f"{side} limit of the bit tilt (°)", GREY, 1.0)
+    log_curve_style(track, RIPPLE, "ripple (mm)", track.colour or HOLE, 2.0)
+    log_lane_styles(track)
+
+
+def log_lane_styles(track: Track) -> None:
+    """The words of the lanes, and their colours: those of the stabilizers and of the bit, or that of the run."""
+    n = len(track.case.bha.stabilizer_positions)
+    own = dict(zip(lanes("stabilizer_contact", n), BY_STABILIZER, strict=False))
     for quantity, states in LANES.items():
-        words, colours = zip(*states.values(), strict=True)
         for lane in lanes(quantity, n):
-            rec.log(track.entity(lane), rr.StateConfiguration(values=words, colors=colours), static=True)
+            colour = track.colour or own.get(lane, BIT)
+            colours = [FAINT if i is None else mixed(colour, GREY, SHADES[i]) for _, i in states.values()]
+            words = [word for word, _ in states.values()]
+            track.rec.log(track.entity(lane), rr.StateConfiguration(values=words, colors=colours), static=True)
 
 
 def log_stroke(rec: rr.RecordingStream, entity: str, stroke: Stroke) -> None:
@@ -79,12 +100,14 @@ def log_stroke(rec: rr.RecordingStream, entity: str, stroke: Stroke) -> None:
 
 
 def log_curve_style(track: Track, thing: str, label: str, colour: Colour, width: float) -> None:
+    """The colour, width and name of a curve of a run."""
+    track.rec.log(track.entity(thing), curve_style(track.label(label), colour, width), static=True)
+
+
+def curve_style(label: str, colour: Colour, width: float) -> rr.SeriesLines:
     """The colour, width and name of a curve of a plot."""
-    shown = track.label(label)
-    line = rr.SeriesLines(
-        colors=colour, names=shown, widths=width, aggregation_policy=rr.components.AggregationPolicy.MinMax
-    )
-    track.rec.log(track.entity(thing), line, static=True)
+    thinned = rr.components.AggregationPolicy.MinMax
+    return rr.SeriesLines(colors=colour, names=label, widths=width, aggregation_policy=thinned)
 
 
 def _dots(colour: Colour, radius: float) -> rr.Points2D:
@@ -92,7 +115,7 @@ def _dots(colour: Colour, radius: float) -> rr.Points2D:
 
 
 def _arrows(colour: Colour) -> rr.Arrows2D:
-    return rr.Arrows2D.from_fields(colors=colour, radii=rr.Radius.ui_points(2.0), draw_order=50.0, show_labels=True)
+    return rr.Arrows2D.from_fields(colors=colour, radii=rr.Radius.ui_points(2.0), draw_order=50.0)
 
 
 def _text(colour: Colour) -> rr.Points2D:
@@ -101,7 +124,7 @@ def _text(colour: Colour) -> rr.Points2D:
 
 def log_labels(rec: rr.RecordingStream, entity: str, places: Array, labels: Sequence[str]) -> None:
     """Text at fixed places of a view."""
-    text = rr.Points2D(places, labels=labels, colors=GREY, radii=rr.Radius.ui_points(0.0), show_labels=True)
+    text = rr.Points2D(places, labels=labels, colors=WHITE, radii=rr.Radius.ui_points(0.0), show_labels=True)
     rec.log(entity, text, static=True)
 
 
@@ -118,9 +141,18 @@ def log_grid(rec: rr.RecordingStream, scales: Scales) -> None:
     log_labels(rec, "vertical_section/grid/displacement", points(x, bottom), [f"{round(value)} m" for value in x])
 
 
-def log_plan(rec: rr.RecordingStream, plan: HoleAxis) -> None:
-    """The planned path."""
-    rec.log("vertical_section/plan", rr.LineStrips2D.from_fields(strips=[plan.position]), static=True)
+def log_round_start(rec: rr.RecordingStream, scales: Scales) -> None:
+    """Nothing at a round measured depth, in every plot: the viewer counts the axis from the first tick."""
+    if scales.start is None:
+        return
+    tick = rr.TimeColumn(DEPTH_TIMELINE, sequence=[round(1000 * scales.round_start)])
+    for plot in (*PLOTS, "ripple"):
+        rec.send_columns(f"plots/{plot}/0_start", [tick], rr.Scalars.columns(scalars=np.full(1, np.nan)))
+
+
+def log_plan(rec: rr.RecordingStream, plan: Array) -> None:
+    """The planned path through points (N, 2)."""
+    rec.log("vertical_section/plan", rr.LineStrips2D.from_fields(strips=[plan]), static=True)
 
 
 def log_places(rec: rr.RecordingStream, scales: Scales, cases: Sequence[Case]) -> None:
@@ -135,9 +167,9 @@ def log_places(rec: rr.RecordingStream, scales: Scales, cases: Sequence[Case]) -
     (left, right), up = scales.frame.x, -np.array(list(names))
     lines = list(points(np.array([left, right]), up[:, None]))
     rec.log("bit_frame/places", rr.LineStrips2D.from_fields(strips=lines), static=True)
-    above = up + LINE * scales.frame.y[0]
-    labels = [f"{name}  {s:.4g} m" for s, name in names.items()]
-    log_labels(rec, "bit_frame/places/labels", points(0.74 * left, above), labels)
+    beside = up + LINE * scales.frame.y[0] * np.where(up < 0.0, 1.0, -1.0)  # the bit's are below, clear of the pads'
+    log_labels(rec, "bit_frame/places/names", points(0.74 * left, beside), list(names.values()))
+    log_labels(rec, "bit_frame/places/distances", points(0.85 * right, beside), [f"{s:.4g} m" for s in names])
 
 
 def log_scale(rec: rr.RecordingStream, scales: Scales) -> None:
@@ -149,23 +181,8 @@ def log_scale(rec: rr.RecordingStream, scales: Scales) -> None:
     bars = [points(0.9 * left + np.array([0.0, across]), at), points(0.9 * right - np.array([0.0, force]), at)]
     rec.log("bit_frame/scale", rr.LineStrips2D.from_fields(strips=bars), static=True)
     places = points(
-        np.array([0.8 * left, 0.8 * right, 0.9 * left + across / 2, 0.9 * right - force / 2]),
+        np.array([0.8 * left, 0.6 * right, 0.9 * left + across / 2, 0.9 * right - force / 2]),
         np.array([top, top, at, at]),
     )
     labels = ["low side", "high side", "100 mm", UNITS["N"].text(newtons, "g")]
     log_labels(rec, "bit_frame/scale/labels", places, labels)
-
-
-def log_names(rec: rr.RecordingStream, scales: Scales, tracks: Sequence[Track]) -> None:
-    """The names of the runs in their colours, at the top of both pictures."""
-    for view, bounds, side in (("vertical_section", scales.section, 0.9), ("bit_frame", scales.frame, 0.5)):
-        (left, right), (top, bottom) = bounds.x, bounds.y
-        down = top + LINE * (bottom - top) * np.arange(1.0, len(tracks) + 1)
-        names = rr.Points2D(
-            points(left + side * (right - left), down),
-            labels=[track.name for track in tracks],
-            colors=[track.colour or GREY for track in tracks],
-            radii=rr.Radius.ui_points(0.0),
-            show_labels=True,
-        )
-        rec.log(f"{view}/names", names, static=True)

@@ -1,23 +1,33 @@
-"""The blueprint: the arrangement of the views, what each shows, and over which ranges."""
+"""The blueprint: the arrangement of the views, what each shows, and over which ranges.
+
+All plots over the whole run share one range of the horizontal axis: to zoom in one is to zoom in all. The plots of the
+last waves follow the cursor.
+"""
 
 from collections.abc import Sequence
 
 import rerun as rr
 import rerun.blueprint as rrb
 
-from .card import CARD
+from .card import CARD, VERDICT
+from .key import KEY, LINE, WIDTH, Entry, line_count
+from .listing import STATIONS
 from .scales import Scales
 from .scene import Bounds
 from .style import GROUND, PLOTS, TABS
-from .track import DEPTH_TIMELINE, TIME_TIMELINE, TIMELINE, Track
+from .track import DEPTH_TIMELINE, TIMELINE, TIMELINES, Track
 
 INFINITE = rr.TimeRangeBoundary.infinite()
-MOST_LANES = 5  # lanes for which the view has room; with more, one scrolls
+PLAYED_IN = 30.0  # s that a run takes when it is played
 HERE = rr.TimeRangeBoundary.cursor_relative(seq=0)
+WHOLE_RUN = rr.TimeRange(start=INFINITE, end=INFINITE)
+SHARED_AXIS = "view/5c0dca6a-e63f-9cf7-f657-2602590474cc/TimeAxis"  # where a viewer looks for the range of linked axes
+# pixels of a small window, 1280 × 720: the height of a lane, of the lanes' title and axis, and of what is below the key
+LANE, LANES_FRAME, TAB = 40, 60, 590
 
 
-def blueprint(scales: Scales, tracks: Sequence[Track]) -> rrb.Blueprint:
-    """Four columns: vertical section above the case; strip; bit frame; plots above the ripple and the modes.
+def blueprint(scales: Scales, tracks: Sequence[Track], key: Sequence[Entry]) -> rrb.Blueprint:
+    """Four columns: the vertical section above the verdict; the strip; the bit frame; the key above the plots.
 
     Parameters
     ----------
@@ -25,31 +35,58 @@ def blueprint(scales: Scales, tracks: Sequence[Track]) -> rrb.Blueprint:
         The scales and ranges of the views.
     tracks
         The entities of each run.
+    key
+        The entries of the key.
     """
-    tabs = {
-        name: [plot(entity, scales, legend=len(tracks) == 1) for entity in plots if entity in scales.ranges]
-        for name, plots in TABS.items()
-    }
-    lanes = min(sum(track.lanes for track in tracks), MOST_LANES)
+    tabs = [tab(name, [plot(entity, scales) for entity in plots if entity in scales.ranges]) for name, plots in TABS]
+    tabs[1:1] = [waves("Ripple", scales, tracks, whole=True), waves("Last waves", scales, tracks, whole=False)]
+    high = LINE * line_count(key)
     return rrb.Blueprint(
         rrb.Horizontal(
-            rrb.Vertical(vertical_section(scales, tracks), card(), row_shares=[0.6, 0.4]),
+            rrb.Vertical(vertical_section(scales, tracks), verdict(), row_shares=[0.7, 0.3]),
             strip(scales, tracks),
             bit_frame(scales),
             rrb.Vertical(
-                rrb.Tabs(*(rrb.Vertical(*plots, name=name) for name, plots in tabs.items() if plots), active_tab=0),
-                ripple(scales),
-                modes(scales),
-                row_shares=[500, 170, 55 + 40 * lanes],
+                rrb.Spatial2DView(origin=KEY, titlebar=False, background=GROUND, visual_bounds=key_bounds(high)),
+                rrb.Tabs(*(one for one in tabs if one), card(), stations(), active_tab=2 if scales.rippling else 0),
+                row_shares=[high, TAB],
             ),
-            column_shares=[0.21, 0.105, 0.325, 0.36],
+            column_shares=[0.21, 0.105, 0.265, 0.42],
         ),
-        rrb.TimePanel(state="collapsed", timeline=TIMELINE, play_state="following"),
+        TimePanel(scales),
         rrb.BlueprintPanel(state="hidden"),
         rrb.SelectionPanel(state="hidden"),
         auto_views=False,
         auto_layout=False,
     )
+
+
+class TimePanel(rrb.TimePanel):
+    """The time panel, which plays a run in half a minute, and the range of the axes that are linked.
+
+    Rerun plays `playback_speed` seconds of time, and `playback_speed` × `fps` ticks of a length, per second. For the
+    linked axes it has no part of its own.
+    """
+
+    def __init__(self, scales: Scales) -> None:
+        speed = (scales.duration or PLAYED_IN) / PLAYED_IN
+        ticks = max(1000 * scales.length, 1.0) / PLAYED_IN
+        super().__init__(
+            state="collapsed",
+            timeline=first_timeline(scales),
+            playback_speed=speed,
+            fps=ticks / speed,
+            play_state="following",
+        )
+
+    def _log_to_stream(self, stream: rr.RecordingStream) -> None:
+        super()._log_to_stream(stream)
+        stream.log(SHARED_AXIS, rrb.archetypes.TimeAxis(view_range=WHOLE_RUN))
+
+
+def first_timeline(scales: Scales) -> str:
+    """The timeline that a viewer shows first."""
+    return TIMELINE if scales.start is None else DEPTH_TIMELINE
 
 
 def _bounds(bounds: Bounds) -> rrb.VisualBounds2D:
@@ -58,8 +95,7 @@ def _bounds(bounds: Bounds) -> rrb.VisualBounds2D:
 
 def _so_far() -> rrb.VisibleTimeRanges:
     """All that was logged up to the cursor, on any timeline."""
-    timelines = (TIMELINE, DEPTH_TIMELINE, TIME_TIMELINE)
-    return rrb.VisibleTimeRanges([rr.VisibleTimeRange(name, start=INFINITE, end=HERE) for name in timelines])
+    return rrb.VisibleTimeRanges([rrb.VisibleTimeRange(timeline, start=INFINITE, end=HERE) for timeline in TIMELINES])
 
 
 def vertical_section(scales: Scales, tracks: Sequence[Track]) -> rrb.Spatial2DView:
@@ -84,52 +120,74 @@ def strip(scales: Scales, tracks: Sequence[Track]) -> rrb.Spatial2DView:
     )
 
 
+def verdict() -> rrb.TextDocumentView:
+    """Whether the holes ripple, at the cursor."""
+    return rrb.TextDocumentView(origin=VERDICT, name="Verdict at the cursor")
+
+
 def card() -> rrb.TextDocumentView:
-    """The cases, and whether their holes ripple."""
+    """The cases side by side."""
     return rrb.TextDocumentView(origin=CARD, name="Case")
+
+
+def stations() -> rrb.TextDocumentView:
+    """The holes at survey stations."""
+    return rrb.TextDocumentView(origin=STATIONS, name="Stations")
 
 
 def bit_frame(scales: Scales) -> rrb.Spatial2DView:
     """Hole, BHA and forces around the BHA."""
     return rrb.Spatial2DView(
         origin="bit_frame",
-        name=f"Bit frame, lateral axis × {scales.lateral:g} (m)",
+        name=f"Bit frame (m), lateral axis enlarged × {scales.lateral:g}",
         background=GROUND,
         visual_bounds=_bounds(scales.frame),
     )
 
 
-def plot(entity: str, scales: Scales, legend: bool) -> rrb.TimeSeriesView:
+def tab(name: str, views: Sequence[rrb.View]) -> rrb.Vertical | None:
+    """A tab of some views; None if there are none."""
+    return rrb.Vertical(*views, name=name) if views else None
+
+
+def plot(entity: str, scales: Scales) -> rrb.TimeSeriesView:
     """One plot over the whole run."""
-    shown = PLOTS[entity]
-    span = scales.ranges[entity]
+    return series(entity, PLOTS[entity].unit.heading(PLOTS[entity].title), scales, scales.ranges[entity], whole=True)
+
+
+def waves(name: str, scales: Scales, tracks: Sequence[Track], *, whole: bool) -> rrb.Vertical:
+    """A tab of ripple, bit tilt and modes, over the whole run or over the last waves up to the cursor."""
+    views = [series("ripple", "Ripple: hole axis less its trend (mm)", scales, scales.ripple, whole=whole)]
+    lanes = LANES_FRAME + LANE * sum(track.lanes for track in tracks)
+    if lanes <= TAB / 2:
+        views.append(series("bit_tilt", "Bit tilt (°)", scales, scales.ranges["bit_tilt"], whole=whole))
+    modes = rrb.StateTimelineView(
+        origin="modes", name="Contacts: low, high side; saturated tilt: +, −", time_view=_time_axis(scales, whole)
+    )
+    plots = max(TAB - lanes, lanes / 2) / len(views)
+    return rrb.Vertical(*views, modes, name=name, row_shares=[*[plots] * len(views), lanes])
+
+
+def series(
+    entity: str, title: str, scales: Scales, span: tuple[float, float] | None, *, whole: bool
+) -> rrb.TimeSeriesView:
+    """A plot, over the whole run or over the last waves up to the cursor."""
     return rrb.TimeSeriesView(
         origin=f"plots/{entity}",
-        name=f"{shown.unit.heading(shown.title)} over drilled length (mm)",
-        axis_x=rrb.TimeAxis(view_range=rr.TimeRange(start=INFINITE, end=INFINITE)),
-        axis_y=None if span is None else rrb.ScalarAxis(range=span),
-        plot_legend=rrb.PlotLegend(rrb.Corner2D.LeftTop, visible=legend and len(shown.colours) > 1),
+        name=f"{title} over {scales.along}",
+        axis_x=_time_axis(scales, whole),
+        axis_y=None if span is None else rrb.ScalarAxis(range=span, zoom_lock=True),
+        plot_legend=rrb.PlotLegend(visible=False),
     )
 
 
-def _last_waves(scales: Scales) -> rrb.TimeAxis:
-    """The range of hole, up to the cursor, that both ripple and modes show."""
+def _time_axis(scales: Scales, whole: bool) -> rrb.TimeAxis:
+    if whole:
+        return rrb.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
     before = rr.TimeRangeBoundary.cursor_relative(seq=-round(1000 * scales.window))
     return rrb.TimeAxis(view_range=rr.TimeRange(start=before, end=HERE))
 
 
-def ripple(scales: Scales) -> rrb.TimeSeriesView:
-    """The axis of the hole less its trend."""
-    depth = "drilled length" if scales.start is None else f"measured depth less {scales.start:g} m"
-    return rrb.TimeSeriesView(
-        origin="plots/ripple",
-        name=f"Ripple: hole axis less its trend (mm) over {depth} (mm)",
-        axis_x=_last_waves(scales),
-        axis_y=rrb.ScalarAxis(range=(-scales.ripple, scales.ripple)),
-        plot_legend=rrb.PlotLegend(rrb.Corner2D.LeftTop, visible=False),
-    )
-
-
-def modes(scales: Scales) -> rrb.StateTimelineView:
-    """Contacts and saturation as lanes."""
-    return rrb.StateTimelineView(origin="modes", name="Modes over drilled length (mm)", time_view=_last_waves(scales))
+def key_bounds(high: float) -> rrb.VisualBounds2D:
+    """The range of the key, of a height of `high` pixels."""
+    return rrb.VisualBounds2D(x_range=(0.0, WIDTH), y_range=(0.0, high))

@@ -3,12 +3,20 @@
 Rerun, and the modules that draw with it, are imported only when needed, so `import boreprop_viz` works without them.
 """
 
+import io
 from collections.abc import Mapping
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
+from boreprop.cli.console import warn
 from boreprop.core.survey import Survey
 from boreprop.errors import InputError
 from boreprop.run.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from .record import Drawing
+
+STILL_WIDTH = 1600  # pixels, of the picture of a viewer that is as wide as its cell
+COLOURS = 128  # in the picture: as many as one can tell apart in it, at a third of the bytes
 
 
 def show(
@@ -16,13 +24,18 @@ def show(
     plan: Survey | None = None,
     width: int | Literal["auto"] = "auto",
     height: int | Literal["auto"] = 720,
+    still: bool = False,
 ) -> None:
     """Show runs in a Rerun viewer below the cell of a Jupyter notebook.
 
-    The runs are sent from the notebook's kernel to the page and nowhere else. The program of the viewer is loaded from
-    app.rerun.io. If the environment variable RERUN_NOTEBOOK_ASSET is "serve-local" before the first call, the kernel
-    serves it on this machine, which needs no internet. After the page is reloaded, or the notebook reopened, the viewer
-    is empty: run the cell again.
+    The runs are sent from the notebook's kernel to the page and nowhere else. The page loads the viewer's program from
+    app.rerun.io, unless the environment variable RERUN_NOTEBOOK_ASSET says otherwise before the first call. Two of its
+    values need no internet: with "serve-local" the kernel serves the program to a browser on the same machine, and with
+    "inline" it sends the program, 23 MB, with each viewer, wherever the browser is.
+
+    A viewer lives as long as its kernel. After the page is reloaded, or the notebook reopened, it is empty: run the
+    cell again. On a web page made from the notebook, by nbconvert or by GitHub, it shows nothing at all: there a still
+    picture helps.
 
     Parameters
     ----------
@@ -32,6 +45,9 @@ def show(
         The planned hole, with measured depths as in the survey.
     width, height
         Size of the viewer, pixels. "auto" is the width of the cell, and 9/16 of the width as height.
+    still
+        Whether a picture of the viewer, with all runs at their end, is left below it for pages without a kernel. This
+        takes a few seconds. If it fails, for want of a graphics driver for one, there is a warning.
 
     Raises
     ------
@@ -41,25 +57,54 @@ def show(
 
     Examples
     --------
-    ``show(run)`` and ``show({"ripples": run, "more weight": heavier}, height=800)``.
+    ``show(run)``, ``show({"ripples": run, "more weight": heavier}, height=800)`` and ``show(run, still=True)``.
     """
     named = by_name(runs)
     try:
-        import rerun as rr
+        import rerun  # noqa: F401
         import rerun_notebook  # noqa: F401  # Rerun imports it only when it shows something
         from rerun.notebook import Viewer
     except ModuleNotFoundError as error:
         message = f"show: {error.name} must be installed for this: pip install 'boreprop[viz]', got: {error}"
         raise InputError(message) from error
     from .record import Drawing, find_sources
+    from .sinks import new_recording
 
     drawing = Drawing.of(find_sources(named, plan), plan)
-    rec = rr.RecordingStream(drawing.application)
-    rec.set_log_time_enabled(False)
+    rec = new_recording(drawing.application)
     viewer = Viewer(recording=rec, width=width, height=height)
     drawing.draw(rec)
     rec.flush()
     viewer.display()
+    if still:
+        display_still(Drawing.of(find_sources(named, plan), plan), *picture_size(width, height))
+
+
+def picture_size(width: int | Literal["auto"], height: int | Literal["auto"]) -> tuple[int, int]:
+    """Width and height in pixels of the picture of a viewer of that size."""
+    wide = STILL_WIDTH if width == "auto" else width
+    return wide, wide * 9 // 16 if height == "auto" else height
+
+
+def display_still(drawing: "Drawing", width: int, height: int) -> None:
+    """Display a picture of the viewer of a drawing; warn if none can be taken."""
+    from IPython.display import Image, display
+
+    from .picture import viewer
+    from .sinks import recording_to, scratch_file
+
+    try:
+        with scratch_file() as path:
+            with recording_to(path, drawing.application) as rec:
+                drawing.draw(rec)
+            with viewer(path, width, height) as shown:
+                picture = shown.picture()
+    except (RuntimeError, OSError) as error:
+        warn(f"show: no still picture is left, {error}")
+        return
+    png = io.BytesIO()
+    picture.quantize(COLOURS).save(png, "PNG", optimize=True)
+    display(Image(png.getvalue()))  # type: ignore[no-untyped-call]
 
 
 def by_name(runs: tuple[Trajectory | Mapping[str, Trajectory], ...]) -> dict[str, Trajectory]:

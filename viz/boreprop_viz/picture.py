@@ -1,7 +1,8 @@
 """Takes pictures of a recording without a screen, with Rerun's viewer under remote control.
 
 On Linux it draws with Mesa's software Vulkan driver where that is installed (Debian: mesa-vulkan-drivers and
-libvulkan1), so that no graphics card is needed and the pictures are the same on every machine.
+libvulkan1), so that no graphics card is needed and the pictures are the same on every machine. Pictures in the light
+theme need a virtual screen (Debian: xvfb), since only a viewer with a window reads that setting.
 """
 
 import io
@@ -9,7 +10,8 @@ import os
 import subprocess
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
+from importlib.metadata import version
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TypeVar
@@ -17,12 +19,15 @@ from typing import TypeVar
 from PIL import Image
 from rerun.experimental import View, ViewerClient, ViewReport
 
-from .sinks import LOOPBACK, PROGRAM, free_port
+from .feeder import PROGRAM
+from .ports import LOOPBACK, free_port
 
 T = TypeVar("T")
 
 SOFTWARE_DRIVERS = sorted(Path("/usr/share/vulkan/icd.d").glob("lvp_icd*.json"))
 LOG = "warn,re_renderer=error,egui_wgpu=error"  # without warnings that the software driver is slow
+# the settings of a viewer in the light theme; those of another version it would not read
+LIGHT = f'{{"egui": "(options:(theme_preference:Light))", "rerun.version": "{version("rerun-sdk")}"}}'
 GREETING = 30  # frames drawn first, since a note of the viewer's covers the first 16
 PATIENCE = 60.0  # s to wait for an answer: a viewer on a busy machine may take half of it to start
 
@@ -73,22 +78,28 @@ class Viewer:
 
 
 @contextmanager
-def viewer(recording: Path, width: int = 1600, height: int = 1000) -> Iterator[Viewer]:
+def viewer(recording: Path, width: int = 1600, height: int = 1000, *, light: bool = False) -> Iterator[Viewer]:
     """Start a viewer of that size, in pixels, on a recording. It does not read or change any of the user's settings.
+
+    Its theme is dark or `light`.
 
     Raises
     ------
     RuntimeError
         If the viewer does not start.
     FileNotFoundError
-        If there is no such recording.
+        If there is no such recording, or for the light theme no program Xvfb.
     """
     port = free_port()
-    arguments = f"--headless --hide-welcome-screen --bind {LOOPBACK} --port {port} --window-size {width}x{height}"
-    with TemporaryDirectory() as folder:
+    arguments = f"--hide-welcome-screen --bind {LOOPBACK} --port {port} --window-size {width}x{height}"
+    with TemporaryDirectory() as folder, screen(width, height) if light else nullcontext("") as display:
+        if light:
+            settings = Path(folder, "rerun", "app.ron")
+            settings.parent.mkdir()
+            settings.write_text(LIGHT)
         process = subprocess.Popen(
-            [PROGRAM, *arguments.split()],
-            env=environment(folder),
+            [PROGRAM, *arguments.split(), "--persist-state" if light else "--headless"],
+            env=environment(folder) | {"DISPLAY": display},
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
@@ -96,11 +107,27 @@ def viewer(recording: Path, width: int = 1600, height: int = 1000) -> Iterator[V
             client = wait_for(lambda: connected(process, port), "the viewer must answer")
             client.open(str(recording.resolve(strict=True)))
             wait_for(lambda: not client.get_state().loading, f"{recording}: must load")
-            client.capture_profile_trace(str(Path(folder, "profile")), num_frames=GREETING)  # draws as many
+            if light:  # a window is drawn anew for a picture only
+                for _ in range(GREETING):
+                    client.take_screenshot()
+            else:
+                client.capture_profile_trace(str(Path(folder, "profile")), num_frames=GREETING)  # draws as many
             yield Viewer(client)
         finally:
             process.terminate()
             process.wait(10.0)
+
+
+@contextmanager
+def screen(width: int, height: int) -> Iterator[str]:
+    """Start a virtual screen of that size, in pixels; yields its name, as in the environment variable DISPLAY."""
+    command = ["Xvfb", "-displayfd", "1", "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
+        assert process.stdout
+        try:
+            yield f":{process.stdout.readline().strip()}"
+        finally:
+            process.terminate()
 
 
 def environment(folder: str) -> dict[str, str]:

@@ -1,5 +1,6 @@
 """Draws runs into a recording, which goes to a file, to a viewer, or to both."""
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
@@ -16,17 +17,21 @@ from boreprop.case.parameters import parameters
 from boreprop.core.survey import Survey
 from boreprop.run.trajectory import Trajectory
 
-from .card import log_card
-from .furniture import log_furniture, log_grid, log_names, log_plan
+from .card import Card
+from .furniture import log_furniture, log_grid, log_plan
+from .key import entries, log_key
 from .layout import blueprint
+from .listing import Listing
 from .scales import Scales, choose_scales
-from .scene import HoleAxis, planned_hole
-from .section import log_key
+from .scene import planned_path
+from .section import log_severities
 from .sinks import flush, open_recording
 from .source import LiveRun, Source, live, stored
 from .stream import RunStream
 from .strip import log_strip_grid
-from .track import Track, make_tracks
+from .track import make_tracks
+
+LONGEST_NAME = 100  # letters of the name of an application: Rerun allows some 150
 
 Runs = Trajectory | Mapping[str, Trajectory | LiveRun]
 
@@ -39,6 +44,7 @@ def record(
     spawn: bool = False,
     serve: bool = False,
     connect: str | None = None,
+    port: int | None = None,
     progress: Callable[[float], None] = lambda _: None,
 ) -> None:
     """Draw runs into a file, a viewer, or both.
@@ -54,6 +60,9 @@ def record(
         The .rrd file to write. An existing file is replaced only at the end, or at Ctrl-C by the data up to then.
     spawn, serve, connect
         Show the runs in a new viewer, in the browser, or in the viewer at an address rerun+http://HOST:PORT/proxy.
+    port
+        With `serve`, the port of the page; the data are at the next one. With `spawn`, the port at which the viewer
+        takes further data.
     progress
         Called with the number of rows done.
 
@@ -68,7 +77,7 @@ def record(
         If the file cannot be written.
     """
     drawing = Drawing.of(find_sources(runs, plan), plan)
-    with open_recording(drawing.application, save=save, spawn=spawn, serve=serve, connect=connect) as rec:
+    with open_recording(drawing.application, save=save, spawn=spawn, serve=serve, connect=connect, port=port) as rec:
         drawing.draw(rec, progress)
 
 
@@ -86,28 +95,29 @@ class Drawing:
     ----------
     sources
         The runs.
-    planned
-        The planned hole, if there is one.
+    plan
+        The planned hole, if there is one, with measured depths as in the survey.
     scales
         The scales and ranges of the views that suit all of them.
     """
 
     sources: Sequence[Source]
-    planned: HoleAxis | None
+    plan: Survey | None
     scales: Scales
 
     @classmethod
     def of(cls, sources: Iterable[Source], plan: Survey | None = None) -> Self:
         """Choose the scales; `InputError` if the plan does not reach the start of the first run."""
         sources = list(sources)
-        planned = None if plan is None else planned_hole(plan, sources[0].case.survey.measured_depth[-1])
-        ahead = [source.likely_positions() for source in sources] + ([] if planned is None else [planned.position])
+        ahead = [source.likely_positions() for source in sources]
+        if plan is not None:
+            ahead.append(planned_path(plan, sources[0].case))
         scales = choose_scales(
             [source.beginning for source in sources],
             whole=not any(source.live for source in sources),
             section=np.concatenate(ahead),
         )
-        return cls(sources, planned, scales)
+        return cls(sources, plan, scales)
 
     @property
     def name(self) -> str:
@@ -122,10 +132,10 @@ class Drawing:
         must have different applications. How a live run will look in the end is not known, so its application is its
         own.
         """
-        look = [repr((self.scales, [(source.name, source.case) for source in self.sources])), version("boreprop")]
         if any(source.live for source in self.sources):
-            look.append(token_hex())
-        return f"boreprop: {self.name} {sha256(' '.join(look).encode()).hexdigest()[:8]}"
+            return application_of_its_own(self.name)
+        look = repr((self.scales, [(source.name, source.case) for source in self.sources], version("boreprop")))
+        return application(self.name, sha256(look.encode()).hexdigest()[:8])
 
     def draw(self, rec: rr.RecordingStream, progress: Callable[[float], None] = lambda _: None) -> None:
         """Log the runs and the blueprint into an open recording.
@@ -148,37 +158,50 @@ class Drawing:
         rec.send_recording_name(self.name)
         log_cases(rec, sources)
         log_furniture(rec, scales, [source.case for source in sources])
-        if self.planned is not None:
-            log_plan(rec, self.planned)
+        log_frames(rec, scales)
+        if self.plan is not None:
+            log_plan(rec, planned_path(self.plan, sources[0].case))
         tracks = make_tracks(rec, scales, sources)
-        log_frames(rec, scales, tracks)
-        rec.send_blueprint(blueprint(scales, tracks))
-        findings = ["drilling" if source.live else "" for source in sources]
-        log_card(rec, sources, findings)
+        key = entries(tracks, planned=self.plan is not None)
+        log_key(rec, key)
+        rec.send_blueprint(blueprint(scales, tracks, key))
+        card, listing = Card(rec, scales, sources), Listing(rec, self.plan)
         done = 0
         for i, (source, track) in enumerate(zip(sources, tracks, strict=True)):
             stream = RunStream(track)
-            for stretch in source.stretches:
-                if not scales.hold(stretch.rows):
-                    scales = scales.widened(stretch.rows)
-                    log_frames(rec, scales, tracks)
-                    rec.send_blueprint(blueprint(scales, tracks))
-                flush(rec)  # the stretch before this one, which would else pile up in memory if the disk is slow
-                stream.send(stretch)
-                done += stretch.rows.row_count
-                progress(done)
-            findings[i] = stream.finding()
-            log_card(rec, sources, findings)
+            with (
+                listing.listed(source, stream.verdict) as follow,
+                card.ending(i, stream.verdict, source.beginning.stopped),
+            ):
+                for stretch in source.stretches:
+                    if not scales.hold(stretch.rows):
+                        scales = scales.widened(stretch.rows)
+                        log_frames(rec, scales)
+                        rec.send_blueprint(blueprint(scales, tracks, key))
+                    flush(rec)  # the stretch before this one, which would else pile up in memory if the disk is slow
+                    card.say(i, stream.send(stretch))
+                    follow(stretch.rows)
+                    done += stretch.rows.row_count
+                    progress(done)
 
 
-def log_frames(rec: rr.RecordingStream, scales: Scales, tracks: Sequence[Track]) -> None:
-    """What is at fixed places of the section and the strip: their grids, the names of the runs, the key."""
+def application_of_its_own(name: str) -> str:
+    """What Rerun calls the application of a recording that shares its look with no other."""
+    return application(name, token_hex(4))
+
+
+def application(name: str, digest: str) -> str:
+    """What Rerun calls the application of a recording: of another spelling it would say that it has changed it."""
+    spelt = re.sub("[^A-Za-z0-9_ -]", "-", name)[:LONGEST_NAME]
+    return f"boreprop: {spelt} {digest}"
+
+
+def log_frames(rec: rr.RecordingStream, scales: Scales) -> None:
+    """What is at fixed places of the section and the strip."""
     log_grid(rec, scales)
     log_strip_grid(rec, scales)
-    if len(tracks) > 1:
-        log_names(rec, scales, tracks)
-    else:
-        log_key(rec, scales)
+    if len(scales.strip.lanes) == 1:  # the holes of several runs have the colours of the runs
+        log_severities(rec, scales)
 
 
 def log_cases(rec: rr.RecordingStream, sources: Sequence[Source]) -> None:

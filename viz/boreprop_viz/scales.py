@@ -2,10 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import floor, log10
+from math import ceil, floor, log10
 
 import numpy as np
 
+from boreprop.analysis.hole import bit_positions
 from boreprop.analysis.rippling import find_rippling
 from boreprop.case.case import Case
 from boreprop.core.quantities import BY_NAME
@@ -13,7 +14,7 @@ from boreprop.run.completion import case_of
 from boreprop.run.trajectory import Trajectory
 from boreprop.units import UNITS
 
-from .scene import Array, Bounds, bit_positions, frame_bounds, section_bounds
+from .scene import Array, Bounds, frame_bounds, section_bounds
 from .style import BY_SEVERITY, PLOTS, Plot
 
 WAVES = 11.0  # waves that ripple and modes show: more are too narrow to see, fewer do not show whether they last
@@ -22,9 +23,12 @@ STRIP_SHAPE = 0.2  # width of the strip over its height: it is narrow
 STRIP_TOP, STRIP_BOTTOM, STRIP_LEFT = 0.08, 0.02, 0.38  # of its height, of its width: room for text
 TREND = 0.75  # wavelengths, at most half the BHA: width of the trend, see `axis_ripple`, of which a wave leaves < 0.1 %
 FULL_RIPPLE = 0.25  # ψ* times the wavelength: the ripple of a hole whose bit tilts from limit to limit
-ROOM_FOR_LEGEND = 0.35  # of the span of all curves, above them, for each line of the legend
-MARGIN = 0.1  # of that span, above and below the curves, so that they do not run along the edge
+MARGIN = 0.1  # of the span of all curves, above and below them, so that they do not run along the edge
+MOST_STEPS = 7.5  # powers of ten in the range of a plot for which it has room, in a small window, to number each
+SMALLEST_SPAN = 0.01  # of its largest value, which a plot shows to either side of a curve without a change
+EDGE = 0.1  # of such a power, between a number and the edge of the plot
 TILTS = 1.15  # tilt limits to either side in the plot of the tilt, so that a tilt at its limit does not lie on the edge
+RIPPLES = 1.15  # ripples to either side in their plot
 WALLS_APART = 0.6  # lengths of the BHA at most, in the bit frame: the factor that enlarges them is rounded down
 LONGEST_ARROW = 7  # parts into which the BHA is divided for the longest arrow to be one
 ARROWS = ("stabilizer_force", "bit_lateral_force", "rss_force")
@@ -51,10 +55,25 @@ class Scales:
     newtons_per_metre: float  # force over the length of its arrow
     severities: tuple[float, ...]  # dogleg severities between the colours of the vertical section, in the unit shown
     window: float  # length of hole up to the cursor that ripple and modes show, m
-    ripple: float  # the largest ripple that its plot shows, mm
+    rippling: bool  # whether a run is known to ripple
+    ripple: tuple[float, float]  # the range of the plot of the ripple, mm
     trend: float  # width of the trend from which the ripple is measured, m
+    length: float  # drilled length from the first row to the last, m
+    duration: float | None  # time from the first row to the last, s; None if the runs have no time
     start: float | None  # measured depth at which drilling starts, m; None if the runs differ
     ranges: dict[str, tuple[float, float] | None]  # plot → its range in the unit shown; None: the viewer chooses it
+
+    @property
+    def round_start(self) -> float:
+        """A round measured depth, m, at the start or above it by at most a tenth of the length of the run."""
+        unit = 10.0 ** ceil(log10(max(self.length, 1.0) / 100.0))
+        return unit * floor((self.start or 0.0) / unit)
+
+    @property
+    def along(self) -> str:
+        """What the horizontal axis of the plots shows."""
+        place = "drilled length (mm)" if self.start is None else "measured depth (mm)"
+        return place if self.duration is None else f"{place} or time"
 
     def hold(self, rows: Trajectory) -> bool:
         """Whether vertical section and strip show the bit at all rows."""
@@ -87,38 +106,50 @@ def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) ->
         Positions that the vertical section should show, (N, 2).
     """
     cases = [case_of(run) for run in runs]
-    wavelength = likely_wavelength(runs, cases, whole)
+    waves = [wave for wave in map(find_rippling, runs) if wave.ripples] if whole else []
+    # the longest wave with which one of the runs ripples, else the longest to be expected
+    wavelength = max([wave.wavelength for wave in waves] or [USUAL_WAVELENGTH * case.bha.half_length for case in cases])
     reach = max(case.bha.stabilizer_positions[-1] for case in cases)
     largest = max(largest_force(run) for run in runs) if whole else max(likely_force(case) for case in cases)
     curves = {name: plot.curves(runs) for name, plot in PLOTS.items()}
-    room = ROOM_FOR_LEGEND if len(runs) == 1 else 0.0
-    ranges = {name: plot_range(PLOTS[name], found, room) if whole else None for name, found in curves.items() if found}
+    ranges = {name: plot_range(PLOTS[name], some) if whole else None for name, some in curves.items() if some}
     starts = {case.survey.measured_depth[-1] for case in cases}
-    limit = TILTS * UNITS["rad"].factor * max(case.bit.tilt_limit for case in cases)
+    ripples = [RIPPLES * wave.axis_amplitude for wave in waves] or [
+        FULL_RIPPLE * wavelength * max(case.bit.tilt_limit for case in cases)
+    ]
+    length, duration = extent(runs, cases, whole)
+    limit = TILTS * max(case.bit.tilt_limit for case in cases)
     start = starts.pop() if len(starts) == 1 else None
-    ripple = 1000 * FULL_RIPPLE * wavelength * max(case.bit.tilt_limit for case in cases)
-    ends = [run["drilled_length"][-1] if whole else case.length for run, case in zip(runs, cases, strict=True)]
-    drilled = min(float(run["drilled_length"][0]) for run in runs), float(max(ends))
+    begin = min(float(run["drilled_length"][0]) for run in runs)
     return Scales(
         section=section_bounds(section, around=2 * reach),
-        strip=strip_scales(drilled, start or 0.0, ripple / 1000, len(runs)),
+        strip=strip_scales((start or 0.0) + begin, length, start or 0.0, max(ripples), len(runs)),
         frame=frame_bounds(reach),
         lateral=max(1.0, round_down(WALLS_APART * reach / max(case.bit_diameter for case in cases))),
         newtons_per_metre=max(largest, 1.0) / (reach / LONGEST_ARROW),
         severities=severities(cases),
         window=WAVES * wavelength,
-        ripple=ripple,
+        rippling=bool(waves),
+        ripple=with_ticks(-1000 * max(ripples), 1000 * max(ripples)),
         trend=min(TREND * wavelength, *(case.bha.half_length for case in cases)),
+        length=length,
+        duration=duration,
         start=start,
-        ranges=ranges | {"bit_tilt": (-limit, limit)},
+        ranges=ranges | {"bit_tilt": with_ticks(-UNITS["rad"].factor * limit, UNITS["rad"].factor * limit)},
     )
 
 
-def likely_wavelength(runs: Sequence[Trajectory], cases: Sequence[Case], whole: bool) -> float:
-    """The longest wave with which one of the runs, if they are whole, ripples; else the longest to be expected, m."""
-    waves = [find_rippling(run) for run in runs] if whole else []
-    found = [wave.wavelength for wave in waves if wave.ripples]
-    return max(found or [USUAL_WAVELENGTH * case.bha.half_length for case in cases])
+def extent(runs: Sequence[Trajectory], cases: Sequence[Case], whole: bool) -> tuple[float, float | None]:
+    """Drilled length, m, and time, s, from the first row to the last; if not all rows are there, those of the cases."""
+    lengths = [length for run in runs for length in run["drilled_length"][[0, -1]]]
+    times = [time for run in runs if "time" in run for time in run["time"][[0, -1]]]
+    if whole:
+        return float(np.ptp(lengths)), float(np.ptp(times)) if times else None
+    rates = [float(run["rate_of_penetration"][-1]) if "rate_of_penetration" in run else 0.0 for run in runs]
+    return (
+        max(case.length for case in cases),
+        max(case.length / (rate or 1.0) for case, rate in zip(cases, rates, strict=True)) if times else None,
+    )
 
 
 def largest_force(run: Trajectory) -> float:
@@ -142,10 +173,10 @@ def severities(cases: Sequence[Case]) -> tuple[float, ...]:
     return tuple(reversed(found))
 
 
-def strip_scales(drilled: tuple[float, float], start: float, ripple: float, count: int) -> StripScales:
-    """The scales of a strip of `count` runs over some drilled lengths, m, that can show a ripple, m, of each."""
-    height = max(drilled[1] - drilled[0], 1.0) / (1 - STRIP_TOP - STRIP_BOTTOM)
-    top, width = start + drilled[0] - STRIP_TOP * height, STRIP_SHAPE * height
+def strip_scales(begin: float, length: float, start: float, ripple: float, count: int) -> StripScales:
+    """The scales of a strip, from `begin` on, of `count` runs, m, that can show a ripple, m, of each."""
+    height = max(length, 1.0) / (1 - STRIP_TOP - STRIP_BOTTOM)
+    top, width = begin - STRIP_TOP * height, STRIP_SHAPE * height
     lane = (1 - STRIP_LEFT) * width / count
     return StripScales(
         bounds=Bounds((-STRIP_LEFT * width, (1 - STRIP_LEFT) * width), (top, top + height)),
@@ -155,12 +186,24 @@ def strip_scales(drilled: tuple[float, float], start: float, ripple: float, coun
     )
 
 
-def plot_range(plot: Plot, curves: Sequence[Array], room: float) -> tuple[float, float]:
-    """The range of a plot of some curves, with room above them for each line of the legend."""
-    low = plot.unit.factor * min(float(np.nanmin(curve)) for curve in curves)
-    high = plot.unit.factor * max(float(np.nanmax(curve)) for curve in curves)
-    span = (high - low) or 1.0
-    return low - MARGIN * span, high + (MARGIN + room * len(curves)) * span
+def plot_range(plot: Plot, curves: Sequence[Array]) -> tuple[float, float]:
+    """The range of a plot of some curves, in the unit shown."""
+    values = plot.unit.factor * np.concatenate(curves)
+    values = values[np.isfinite(values)] if np.isfinite(values).any() else np.zeros(1)
+    low, high = float(values.min()), float(values.max())
+    margin = max(MARGIN * (high - low), SMALLEST_SPAN * max(abs(low), abs(high))) or 1.0
+    return with_ticks(low - margin, high + margin)
+
+
+def with_ticks(low: float, high: float) -> tuple[float, float]:
+    """A range of a plot, widened as little as possible until two of the values that the viewer numbers lie in it.
+
+    The viewer numbers multiples of a power of ten, the smallest for which there is room.
+    """
+    step = 10.0 ** ceil(log10((high - low) / MOST_STEPS))
+    pairs = [(step * k, step * (k + 1)) for k in range(floor(low / step), ceil(high / step))]
+    first, second = min(pairs, key=lambda pair: max(low - pair[0], 0.0) + max(pair[1] - high, 0.0))
+    return min(low, first - EDGE * step * (first < low)), max(high, second + EDGE * step * (second > high))
 
 
 def first_digit(value: float) -> float:

@@ -14,12 +14,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from boreprop.analysis.hole import HoleAxis, bit_positions
+from boreprop.analysis.plan import planned_hole
 from boreprop.case.case import Case
 from boreprop.core.beam import Beam
 from boreprop.core.survey import Survey
 from boreprop.core.system import scale
-from boreprop.errors import InputError
-from boreprop.run.completion import axis_of
 from boreprop.run.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -33,77 +33,17 @@ SECTION_LEFT, SECTION_RIGHT = 0.22, 0.9  # parts of its width between which hole
 FRAME_WIDTH = 0.9  # lengths of the BHA: room for the walls, and for arrows and names beside them
 
 
-@dataclass(frozen=True)
-class HoleAxis:
-    """The axis of the hole in the vertical plane, straight between points."""
-
-    length: Array  # drilled length of each point, negative in the existing hole, increasing, (N,)
-    position: Array  # x and z, (N, 2)
-
-    def at(self, length: Array) -> Array:
-        """Positions at the given lengths, shape (..., 2)."""
-        return np.stack([np.interp(length, self.length, self.position[:, axis]) for axis in (0, 1)], axis=-1)
-
-    def followed_by(self, length: Array, position: Array) -> "HoleAxis":
-        """The hole extended through further points, without those that are not ahead of its end."""
-        ahead = length > self.length[-1]
-        return HoleAxis(np.append(self.length, length[ahead]), np.concatenate((self.position, position[ahead])))
-
-    def chord_inclination(self, length: Array, chord: float) -> Array:
-        """Inclination of the chord over the last `chord` metres before each of the given lengths, (m,)."""
-        x, z = (self.at(length) - self.at(length - chord)).T
-        inclination: Array = np.arctan2(x, z)
-        return inclination
-
-    def until(self, length: float) -> "HoleAxis":
-        """The part of this hole up to the last point at or before `length`."""
-        end = int(np.searchsorted(self.length, length, side="right"))
-        return HoleAxis(self.length[:end], self.position[:end])
-
-    def since(self, length: float) -> "HoleAxis":
-        """The part of this hole from the last point at or before `length` on."""
-        first = max(int(np.searchsorted(self.length, length, side="right")) - 1, 0)
-        return HoleAxis(self.length[first:], self.position[first:])
-
-
-def existing_hole(survey: Survey, reach: float, spacing: float) -> HoleAxis:
-    """The existing hole, above the survey straight until it is `reach` long, with a point every `spacing` metres."""
-    station = np.asarray(survey.measured_depth) - survey.measured_depth[-1]
-    top = min(float(station[0]), -reach)
-    length = np.union1d(station, np.linspace(top, 0.0, int(np.ceil(-top / spacing)) + 1))
-    position = axis_of(length, np.interp(length, station, np.asarray(survey.inclination)))
-    return HoleAxis(length, position - position[-1])
-
-
-def planned_hole(plan: Survey, start: float) -> HoleAxis:
-    """The planned hole, moved so that it passes through the bit at the start of the run.
+def planned_path(plan: Survey, case: Case) -> Array:
+    """Points along the planned hole, one of them where drilling starts, (N, 2).
 
     Raises
     ------
     InputError
-        If the plan does not include the measured depth `start`, m, at which drilling starts.
+        If the plan does not include the measured depth at which drilling starts.
     """
-    depth = np.asarray(plan.measured_depth)
-    if not depth[0] <= start <= depth[-1]:
-        raise InputError(
-            f"measured_depth of the plan: must include {start:g} m, where drilling starts, "
-            f"got {depth[0]:g} to {depth[-1]:g}"
-        )
-    length = np.union1d(depth - start, np.linspace(depth[0] - start, depth[-1] - start, POINTS_OF_PLAN))
-    length = np.union1d(length, 0.0)
-    hole = HoleAxis(length, axis_of(length, np.interp(length, depth - start, np.asarray(plan.inclination))))
-    return HoleAxis(length, hole.position - hole.at(np.array(0.0)))
-
-
-def turning(hole: HoleAxis, length: Array, over: float, chord: float) -> Array:
-    """Change of inclination over the last `over` metres, per length, rad/m, (m,); inclinations are those of chords."""
-    change = hole.chord_inclination(length, chord) - hole.chord_inclination(length - over, chord)
-    return change / over
-
-
-def bit_positions(rows: Trajectory) -> Array:
-    """Positions of the bit in the vertical plane, (m, 2)."""
-    return np.column_stack((rows["displacement"], rows["true_vertical_depth"]))
+    hole = planned_hole(plan, case.survey.measured_depth[-1])
+    even = np.linspace(hole.length[0], hole.length[-1], POINTS_OF_PLAN)
+    return hole.at(np.unique(np.concatenate((hole.length, [0.0], even))))
 
 
 class BitFrame:

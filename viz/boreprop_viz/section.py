@@ -9,12 +9,13 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
+from boreprop.analysis.hole import HoleAxis, bit_positions
 from boreprop.run.trajectory import Trajectory
 from boreprop.units import UNITS
 
 from .furniture import log_labels
 from .scales import Scales
-from .scene import REACH_ABOVE_BHA, Array, HoleAxis, Shapes, bit_positions
+from .scene import REACH_ABOVE_BHA, Array, Shapes
 from .source import Stretch
 from .style import BY_SEVERITY, BY_STABILIZER
 from .track import Track, arrivals, moments, points, send, send_paths, send_strips
@@ -86,7 +87,7 @@ def severity_colours(track: Track, rows: Trajectory, ends: Array) -> NDArray[np.
     return np.array(BY_SEVERITY, dtype=np.uint8)[of_key]
 
 
-def log_key(rec: rr.RecordingStream, scales: Scales) -> None:
+def log_severities(rec: rr.RecordingStream, scales: Scales) -> None:
     """The colours of the dogleg severity at the top right, and the values between them."""
     (left, right), (top, bottom) = scales.section.x, scales.section.y
     width, height = right - left, bottom - top
@@ -95,11 +96,11 @@ def log_key(rec: rr.RecordingStream, scales: Scales) -> None:
     swatches = rr.LineStrips2D(
         list(points(right - 0.17 * width, ends)), colors=BY_SEVERITY, radii=rr.Radius.ui_points(4.0), draw_order=1.0
     )
-    rec.log("vertical_section/key", swatches, static=True)
+    rec.log("vertical_section/severities", swatches, static=True)
     labels = [f"dogleg {UNITS['rad/m'].shown}"] + [f"{severity:g}" for severity in scales.severities]
     above = height * SWATCH * np.array([1.3] + [0.5] * len(scales.severities))
     aside = width * np.array([0.22] + [0.07] * len(scales.severities))  # the heading is wider than the numbers
-    log_labels(rec, "vertical_section/key/labels", points(right - aside, down[:-1] - above), labels)
+    log_labels(rec, "vertical_section/severities/labels", points(right - aside, down[:-1] - above), labels)
 
 
 def log_bha_in_section(track: Track, shapes: Shapes) -> None:

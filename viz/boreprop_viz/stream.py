@@ -2,10 +2,6 @@
 
 import numpy as np
 
-from boreprop.analysis.rippling import find_rippling
-from boreprop.run.trajectory import Trajectory
-
-from .card import in_words
 from .entities import (
     find_ripple,
     log_bha,
@@ -23,11 +19,10 @@ from .entities import (
 from .furniture import log_styles
 from .scene import BitFrame
 from .section import DrilledHole, log_bha_in_section, log_existing_hole
-from .source import Stretch
+from .source import Stretch, joined
 from .strip import log_strip
 from .track import Track
-
-RECENT = 32.0  # half lengths of the BHA up to the bit that decide whether the hole ripples: five of the longest waves
+from .verdict import Saying, Verdict
 
 
 class RunStream:
@@ -39,17 +34,16 @@ class RunStream:
         self.hole: DrilledHole | None = None  # from the first rows on
         self.rippled = -np.inf  # drilled length up to which its ripple is drawn, m
         self.modes: dict[str, float] = {}  # the last value of each lane
-        self.recent: Trajectory | None = None  # the last rows, which decide whether the hole ripples
+        self.verdict = Verdict(track.case, track.scales.start or 0.0)
         log_styles(track)
 
-    def send(self, stretch: Stretch) -> None:
-        """Log the next rows of the run."""
+    def send(self, stretch: Stretch) -> list[Saying]:
+        """Log the next rows of the run; returns what there is to say of its ripple."""
         if self.hole is None:
             start = float(stretch.rows["drilled_length"][0])
             log_existing_hole(self.track, stretch.hole, start)
             self.hole = DrilledHole(self.track, start)
-        rows = stretch.rows if self.recent is None else _joined(self.recent, stretch.rows)
-        self.recent = _last(rows, RECENT * self.track.case.bha.half_length)
+        rows = stretch.rows if self.verdict.rows is None else joined(self.verdict.rows, stretch.rows)
         self.hole.log(stretch, rows)
         shapes = self.frame.shapes(stretch.rows, stretch.hole)
         for log in (
@@ -70,19 +64,4 @@ class RunStream:
             log_along(self.track, rows, length, ripple, self.rippled)
         self.rippled = max([self.rippled, *length[-1:]])
         self.modes = log_modes(self.track, stretch, self.modes)
-
-    def finding(self) -> str:
-        """Whether the hole ripples near the bit, in words; empty before the first rows."""
-        return in_words(find_rippling(self.recent)) if self.recent else ""
-
-
-def _joined(before: Trajectory, after: Trajectory) -> Trajectory:
-    """Rows of a run and those that follow."""
-    columns = {name: np.concatenate((before.columns[name], values)) for name, values in after.columns.items()}
-    return Trajectory(columns, after.case)
-
-
-def _last(rows: Trajectory, length: float) -> Trajectory:
-    """The last rows of a run, over `length` m."""
-    first = int(np.searchsorted(rows["drilled_length"], rows["drilled_length"][-1] - length))
-    return Trajectory({name: values[first:] for name, values in rows.columns.items()}, rows.case)
+        return self.verdict.follow(stretch.rows)

@@ -46,7 +46,7 @@ def log_strip_grid(rec: rr.RecordingStream, scales: Scales) -> None:
     (left, right), (top, bottom) = scales.strip.bounds.x, scales.strip.bounds.y
     step = round_down((bottom - top) / 6)
     depth = step * np.arange(np.ceil(scales.strip.start / step), (bottom - TEXT * (bottom - top)) / step)
-    aside = round_down(scales.ripple) / SMALL_LENGTH.factor
+    aside = round_down(scales.ripple[1]) / SMALL_LENGTH.factor
     across = np.array(scales.strip.lanes)[:, None] + scales.strip.lateral * aside * np.array([-1.0, 0.0, 1.0])
     down = points(across.ravel()[:, None], np.array([top + STRIP_TOP * (bottom - top), bottom]))
     lines = [*points(np.array([0.0, right]), depth[:, None]), *down]

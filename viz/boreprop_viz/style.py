@@ -11,19 +11,27 @@ from boreprop.units import BUILD_LENGTH, UNITS, Unit
 from .scene import Array
 
 Colour = tuple[int, int, int]
-# the colours of Okabe and Ito, which can be told apart with any colour vision
-ORANGE, SKY_BLUE, GREEN, YELLOW = (230, 159, 0), (86, 180, 233), (0, 158, 115), (240, 228, 66)
-VERMILION, PURPLE = (213, 94, 0), (204, 121, 167)
+# the colours of Okabe and Ito, which can be told apart with any colour vision, less their yellow: each of these shows
+# on white and on black
+ORANGE, SKY_BLUE, GREEN = (230, 159, 0), (86, 180, 233), (0, 158, 115)
+VERMILION, PURPLE, BLUE = (213, 94, 0), (204, 121, 167), (0, 114, 178)
+OLIVE, VIOLET, BROWN = (150, 145, 50), (140, 115, 220), (165, 115, 90)
+CRIMSON, TEAL = (200, 60, 110), (0, 150, 160)
 WHITE, GREY, FAINT, GROUND = (240, 240, 240), (150, 155, 160), (52, 58, 66), (20, 23, 28)
-BY_STABILIZER = (VERMILION, PURPLE, YELLOW, SKY_BLUE, ORANGE)
+# one colour, one meaning, in all views
+HOLE, BIT, PLAN, RSS = ORANGE, SKY_BLUE, PURPLE, GREEN
+BY_STABILIZER = (VERMILION, VIOLET, BROWN, CRIMSON, TEAL)
 # from the smallest to the largest dogleg severity, lighter and lighter, so that they can be told apart with any vision
 BY_SEVERITY = ((140, 92, 10), (176, 116, 0), (208, 142, 8), (234, 170, 34), (250, 204, 90), (255, 240, 180))
-BY_RUN = (ORANGE, SKY_BLUE, GREEN, PURPLE, YELLOW, VERMILION)
+BY_RUN = (ORANGE, SKY_BLUE, GREEN, VERMILION, BLUE, VIOLET)
 
 
-def shade(colour: Colour, lightness: float) -> Colour:
-    """`colour` mixed with white: 0 is the colour itself, 1 is white."""
-    red, green, blue = (round(c + lightness * (w - c)) for c, w in zip(colour, WHITE, strict=True))
+SHADES = (0.0, 0.5, 0.65, 0.75, 0.8)  # of a run's colour, the first is the colour itself, the others are greyer
+
+
+def mixed(colour: Colour, other: Colour, share: float) -> Colour:
+    """`colour` with a share of another one."""
+    red, green, blue = (round(c + share * (o - c)) for c, o in zip(colour, other, strict=True))
     return red, green, blue
 
 
@@ -38,12 +46,12 @@ class Stroke:
 
     def of(self, run: Colour) -> "Stroke":
         """The stroke for one of several runs."""
-        return replace(self, colour=shade(run, self.lightness))
+        return replace(self, colour=mixed(run, WHITE, self.lightness))
 
 
 FURNITURE = {  # lines that are common to all runs
     "vertical_section/grid": Stroke(FAINT, 1.0, 0.0),
-    "vertical_section/plan": Stroke(WHITE, 1.5, 1.5),
+    "vertical_section/plan": Stroke(PLAN, 1.5, 1.5),
     "strip/grid": Stroke(FAINT, 1.0, 0.0),
     "bit_frame/places": Stroke(FAINT, 1.0, 0.0),
     "bit_frame/scale": Stroke(GREY, 2.0, 0.0),
@@ -52,20 +60,26 @@ STROKES = {
     "vertical_section/existing_hole": Stroke(GREY, 3.0, 1.0, lightness=0.6),
     "vertical_section/drilled_hole": Stroke(None, 3.0, 2.0),
     "vertical_section/newly_drilled": Stroke(None, 3.0, 2.0),
-    "vertical_section/bha": Stroke(SKY_BLUE, 4.0, 3.0, lightness=0.4),
-    "vertical_section/stabilizers": Stroke(SKY_BLUE, 6.0, 4.0, lightness=0.4),
-    "strip/hole": Stroke(ORANGE, 1.0, 1.0),
-    "bit_frame/walls": Stroke(ORANGE, 3.0, 2.0),
-    "bit_frame/bha": Stroke(SKY_BLUE, 4.0, 3.0, lightness=0.4),
-    "bit_frame/stabilizers": Stroke(SKY_BLUE, 6.0, 4.0, lightness=0.4),
-    "bit_frame/bit": Stroke(WHITE, 3.0, 5.0, lightness=0.7),
+    "vertical_section/bha": Stroke(BIT, 4.0, 3.0, lightness=0.4),
+    "vertical_section/stabilizers": Stroke(BIT, 6.0, 4.0, lightness=0.4),
+    "strip/hole": Stroke(HOLE, 1.0, 1.0),
+    "bit_frame/walls": Stroke(HOLE, 3.0, 2.0),
+    "bit_frame/bha": Stroke(BIT, 4.0, 3.0, lightness=0.4),
+    "bit_frame/stabilizers": Stroke(BIT, 6.0, 4.0, lightness=0.4),
+    "bit_frame/bit": Stroke(BIT, 3.0, 5.0, lightness=0.7),
     "bit_frame/tilt/limits": Stroke(GREY, 1.0, 1.0),
-    "bit_frame/tilt/hole_axis": Stroke(ORANGE, 2.0, 2.0),
-    "bit_frame/tilt/bit_axis": Stroke(WHITE, 3.0, 3.0, lightness=0.7),
+    "bit_frame/tilt/hole_axis": Stroke(HOLE, 2.0, 2.0),
+    "bit_frame/tilt/bit_axis": Stroke(BIT, 3.0, 3.0, lightness=0.7),
 }
 
 
-SI_OF_HOLE = {"build_rate": "rad/m", "dogleg_severity": "rad/m"}  # SI units of `source.hole_columns`
+SI_OF_HOLE = {  # SI units of `source.hole_columns`, …
+    "build_rate": "rad/m",
+    "dogleg_severity": "rad/m",
+    "distance_from_plan": "m",
+    "inclination_less_plan": "rad",
+}
+OVER = {"build_rate": f"over {BUILD_LENGTH:g} m", "dogleg_severity": "over half the BHA"}  # … and over what they are
 
 
 @dataclass(frozen=True)
@@ -75,6 +89,7 @@ class Plot:
     title: str
     columns: tuple[str, ...]
     colours: tuple[Colour, ...]
+    planned: str = ""  # the column with what is planned, which all runs share
 
     @property
     def unit(self) -> Unit:
@@ -89,45 +104,36 @@ class Plot:
 
     def curves(self, runs: Sequence[Trajectory]) -> list[Array]:
         """The values of all columns that some runs have, in SI units."""
-        return [run.columns[name] for run in runs for name in self.names(run.n) if name in run.columns]
+        return [run.columns[name] for run in runs for name in [*self.names(run.n), self.planned] if name in run.columns]
 
 
 PLOTS = {
-    "inclination": Plot(
-        "Inclination",
-        ("borehole_inclination", "bit_inclination", "planned_inclination"),
-        (ORANGE, SKY_BLUE, WHITE),
-    ),
-    "build_rate": Plot(
-        f"Build rate over {BUILD_LENGTH:g} m, dogleg severity over half the BHA",
-        ("dogleg_severity", "build_rate"),
-        (GREY, GREEN),
-    ),
-    "bit_tilt": Plot("Bit tilt and its limits", ("bit_tilt",), (SKY_BLUE,)),
+    "inclination": Plot("Inclination", ("borehole_inclination", "bit_inclination"), (HOLE, BIT), "planned_inclination"),
+    "build_rate": Plot("Build rate, dogleg severity", ("build_rate", "dogleg_severity"), (HOLE, OLIVE)),
+    "distance_from_plan": Plot("Distance from the plan, + on its high side", ("distance_from_plan",), (HOLE,)),
+    "inclination_less_plan": Plot("Inclination less that of the plan", ("inclination_less_plan",), (HOLE,)),
+    "bit_tilt": Plot("Bit tilt", ("bit_tilt",), (BIT,)),
+    "bit_lateral_force": Plot("Bit side force", ("bit_lateral_force",), (BIT,)),
     "stabilizer_force": Plot("Contact forces, + from the low side", ("stabilizer_force",), BY_STABILIZER),
-    "bit_lateral_force": Plot("Bit side force", ("bit_lateral_force",), (SKY_BLUE,)),
-    "rss_force": Plot("RSS force, + builds", ("rss_force",), (GREEN,)),
-    "active_weight_on_bit": Plot("Active weight on bit", ("active_weight_on_bit",), (YELLOW,)),
-    "rate_of_penetration": Plot("Rate of penetration", ("rate_of_penetration",), (PURPLE,)),
+    "rss_force": Plot("RSS force, + builds", ("rss_force",), (RSS,)),
+    "active_weight_on_bit": Plot("Active weight on bit", ("active_weight_on_bit",), (BLUE,)),
+    "rate_of_penetration": Plot("Rate of penetration", ("rate_of_penetration",), (BLUE,)),
 }
-TABS = {
-    "Hole": ("inclination", "build_rate", "bit_tilt"),
-    "Forces": ("stabilizer_force", "bit_lateral_force", "rss_force"),
-    "Drilling": ("active_weight_on_bit", "rate_of_penetration"),
+TABS = (  # names of tabs and the plots in each
+    ("Hole", ("inclination", "build_rate")),
+    ("Plan", ("distance_from_plan", "inclination_less_plan")),
+    ("Forces", ("stabilizer_force", "rss_force", "bit_lateral_force")),
+    ("Drilling", ("active_weight_on_bit", "rate_of_penetration")),
+)
+
+# value → the word in a lane, short enough for a narrow one, and which shade of the lane's colour; None is faint
+LANES: dict[str, dict[int, tuple[str, int | None]]] = {
+    "stabilizer_contact": {1: ("L", 0), -1: ("H", 1), 0: ("–", None)},
+    "bit_tilt_saturation": {1: ("+", 0), -1: ("−", 1), 0: ("–", None)},
 }
 
-Lane = dict[int, tuple[str, Colour]]  # value → its name and colour
-LANES: dict[str, Lane] = {
-    "stabilizer_contact": {1: ("low", ORANGE), -1: ("high", SKY_BLUE), 0: ("free", FAINT)},
-    "bit_tilt_saturation": {1: ("+ψ*", VERMILION), -1: ("−ψ*", PURPLE), 0: ("free", FAINT)},
-}
 
-
-def curve_label(name: str) -> str:
-    """The label of a curve: the symbol, with its index, and the name in words; without a symbol, the name alone."""
+def curve_label(name: str, unit: Unit) -> str:
+    """The label of a curve: the name in words, with its index, and the unit."""
     column, _, index = name.rstrip("]").partition("[")
-    words = column.replace("_", " ")
-    if column not in BY_NAME:
-        return words
-    symbol = BY_NAME[column].symbol
-    return f"{symbol.replace('i', index) if index else symbol}  {words}"
+    return unit.heading(f"{column.replace('_', ' ')} {OVER.get(column, index)}".rstrip())

@@ -22,11 +22,16 @@ from boreprop.units import UNITS
 from .scales import Scales
 from .scene import Array
 from .source import Source
-from .style import BY_RUN, Colour, shade
+from .style import BY_RUN, GREY, SHADES, Colour, mixed
 
 TIMELINE = "drilled_length_mm"  # the one that a viewer shows first
 DEPTH_TIMELINE = "measured_depth_mm"
 TIME_TIMELINE = "simulation_time"
+TIMELINES = (TIMELINE, DEPTH_TIMELINE, TIME_TIMELINE)
+MODES = "modes"  # the lanes
+MOST_NUMBERED = 2  # runs
+DECIMALS = 4  # of a curve
+LABEL_APART = 0.09  # of the width of the bit frame, from the tail of an arrow to the middle of its number
 
 
 @dataclass(frozen=True)
@@ -43,6 +48,8 @@ class Track:
         What is drilled.
     name, colour, place
         The name of the run, its own colour and its number, from 0. The defaults are for a single run.
+    numbered
+        Whether its forces and its tilt are shown in numbers, too: with more than two runs they would cover each other.
     """
 
     rec: rr.RecordingStream
@@ -51,13 +58,18 @@ class Track:
     name: str = ""
     colour: Colour | None = None
     place: int = 0
+    numbered: bool = True
 
     def entity(self, thing: str) -> str:
-        """The entity of a thing, named view/thing; with several runs it contains the run's name, too."""
+        """The entity of a thing, named view/thing; with several runs it contains the run's name, too.
+
+        Those of the lanes begin with the number of the run, since they are shown in the order of their names.
+        """
         if not self.name:
             return thing
         view, _, name = thing.rpartition("/")
-        return f"{view}/{rr.escape_entity_path_part('_'.join(self.name.split()))}/{name}"
+        number = f"{self.place + 1}_" if view == MODES else ""
+        return f"{view}/{rr.escape_entity_path_part(number + '_'.join(self.name.split()))}/{name}"
 
     @property
     def lanes(self) -> int:
@@ -72,7 +84,7 @@ class Track:
         """`colours`; with several runs, as many shades of the run's own colour."""
         if self.colour is None:
             return colours
-        return tuple(shade(self.colour, i / (len(colours) + 1)) for i in range(len(colours)))
+        return tuple(mixed(self.colour, GREY, share) for share in SHADES[: len(colours)])
 
 
 def make_tracks(rec: rr.RecordingStream, scales: Scales, sources: Sequence[Source]) -> list[Track]:
@@ -80,7 +92,7 @@ def make_tracks(rec: rr.RecordingStream, scales: Scales, sources: Sequence[Sourc
     if len(sources) == 1:
         return [Track(rec, scales, sources[0].case)]
     return [
-        Track(rec, scales, source.case, source.name, BY_RUN[place % len(BY_RUN)], place)
+        Track(rec, scales, source.case, source.name, BY_RUN[place % len(BY_RUN)], place, len(sources) <= MOST_NUMBERED)
         for place, source in enumerate(sources)
     ]
 
@@ -110,16 +122,32 @@ def arrivals(rows: Trajectory, length: Array) -> Moments:
 
 
 def send(track: Track, thing: str, at: Moments, columns: rr.ComponentColumnList) -> None:
-    """Send components of a thing at some moments. Nothing is sent if there are none, since viewers fail on that."""
+    """Send components of a thing at some moments."""
+    send_to(track, track.entity(thing), at, columns)
+
+
+def send_to(track: Track, entity: str, at: Moments, columns: rr.ComponentColumnList) -> None:
+    """Send components of an entity at some moments. Nothing is sent if there are none, since viewers fail on that."""
     if not len(at.length):
         return
-    millimetres = np.rint(1000 * at.length).astype(np.int64)
-    index = [rr.TimeColumn(TIMELINE, sequence=millimetres)]
-    if track.scales.start is not None:
-        index.append(rr.TimeColumn(DEPTH_TIMELINE, sequence=millimetres + round(1000 * track.scales.start)))
+    index = lengths_index(track.scales.start, at.length)
     if at.time is not None:
-        index.append(rr.TimeColumn(TIME_TIMELINE, duration=at.time))
-    track.rec.send_columns(track.entity(thing), index, columns)
+        index.append(times_index(at.time))
+    track.rec.send_columns(entity, index, columns)
+
+
+def lengths_index(start: float | None, length: Array) -> list[rr.TimeColumn]:
+    """Drilled lengths, m, on their timeline and, given the measured depth of the start, m, on that of depths."""
+    millimetres = np.rint(1000 * length).astype(np.int64)
+    index = [rr.TimeColumn(TIMELINE, sequence=millimetres)]
+    if start is not None:
+        index.append(rr.TimeColumn(DEPTH_TIMELINE, sequence=millimetres + round(1000 * start)))
+    return index
+
+
+def times_index(time: Array) -> rr.TimeColumn:
+    """Simulation times, s, on their timeline."""
+    return rr.TimeColumn(TIME_TIMELINE, duration=time)
 
 
 def points(x: Array | float, y: Array | float) -> Array:
@@ -150,12 +178,24 @@ def send_arrows(track: Track, thing: str, at: Moments, tip: Array, force: Array)
     """Send lateral forces (rows,), N, as arrows that end at `tip` (rows, 2), with their values; none where zero."""
     there = force != 0.0
     vectors = points(force[there] / track.scales.newtons_per_metre, 0.0)
-    unit = UNITS["N"]
-    labels = [f"{round(unit.factor * newtons, 2):.3g} {unit.shown}" for newtons in np.abs(force[there])]
-    columns = rr.Arrows2D.columns(vectors=vectors, origins=tip[there] - vectors, labels=labels)
-    send(track, thing, at, columns.partition(there))
+    tails = tip[there] - vectors
+    send(track, thing, at, rr.Arrows2D.columns(vectors=vectors, origins=tails).partition(there))
+    if track.numbered:
+        left, right = track.scales.frame.x
+        beside = tails - points(LABEL_APART * (right - left) * np.sign(force[there]), 0.0)
+        send(track, f"{thing}/label", at, rr.Points2D.columns(positions=beside).partition(there))
+        unit = UNITS["N"]
+        texts = [f"{round(unit.factor * newtons, 2):.3g} {unit.shown}" for newtons in np.abs(force).tolist()]
+        send_texts(track, f"{thing}/label", at, texts)
 
 
-def send_curve(track: Track, thing: str, at: Moments, values: Array) -> None:
-    """Send a curve of a plot, in the unit of the plot."""
-    send(track, thing, at, rr.Scalars.columns(scalars=values))
+def send_texts(track: Track, thing: str, at: Moments, texts: Sequence[str]) -> None:
+    """Send the text of a label where it changes."""
+    changes = [i for i, text in enumerate(texts) if i == 0 or text != texts[i - 1]]
+    labels = rr.Points2D.columns(labels=[texts[i] for i in changes])
+    send(track, thing, at.where(np.array(changes)), labels)
+
+
+def send_curve(track: Track, entity: str, at: Moments, values: Array) -> None:
+    """Send a curve of a plot, in the unit of the plot, rounded for those who read its values under the mouse."""
+    send_to(track, entity, at, rr.Scalars.columns(scalars=np.round(values, DECIMALS)))

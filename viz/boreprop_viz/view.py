@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from boreprop.case.file import load_case
+from boreprop.case.packed import read_packed_case
 from boreprop.case.tables import read_schedule, read_survey
 from boreprop.cli import console
 from boreprop.core.survey import Survey
@@ -12,7 +13,6 @@ from boreprop.errors import InputError
 from boreprop.run.results import SUFFIXES, read_trajectory
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Stopped, Trajectory
-from boreprop_fmu.packed_case import read_packed_case
 
 from .record import Drawing
 from .sinks import open_recording
@@ -34,6 +34,8 @@ class Opener:
         The force schedule for an FMU. None: the one packed in it.
     step, stop
         Communication step and end, s, for an FMU. None: those of its default experiment.
+    pace
+        Seconds of an FMU's simulation per second of the clock. None: as fast as it goes.
     """
 
     case: Path | None
@@ -42,6 +44,7 @@ class Opener:
     schedule: Path | None
     step: float | None
     stop: float | None
+    pace: float | None
     stopped: list[Stopped] = field(default_factory=list)  # from runs that ended early; they are drawn all the same
 
     def open(self, name: str, path: Path) -> Source:
@@ -50,7 +53,7 @@ class Opener:
             from boreprop_fmu.host.drive import FmuRun  # imported here, since importing fmpy takes long
 
             forces = None if self.schedule is None else read_schedule(self.schedule)
-            return live(name, FmuRun(path, forces, step=self.step, stop=self.stop), self.plan)
+            return live(name, FmuRun(path, forces, step=self.step, stop=self.stop), self.plan, pace=self.pace)
         try:
             run = self._run(path)
         except Stopped as error:
@@ -90,20 +93,22 @@ def show(
     schedule: Path | None,
     step: float | None,
     stop: float | None,
+    pace: float | None,
     save: Path | None,
     spawn: bool,
     serve: bool,
     connect: str | None,
+    port: int | None,
 ) -> None:
     """Draw runs, see the options of the command."""
     skip_pandas_check()
     planned = None if plan is None else read_survey(plan)
-    opener = Opener(case, fmu, planned, schedule, step, stop)
+    opener = Opener(case, fmu, planned, schedule, step, stop, pace)
     opened = [opener.open(name, path) for name, path in zip(names(sources), sources, strict=True)]
     drawing = Drawing.of(opened, planned)
-    rows = sum(source.row_count for source in opened)
+    rows = sum(source.row_count or 0 for source in opened)
     with (
-        open_recording(drawing.application, save=save, spawn=spawn, serve=serve, connect=connect) as rec,
+        open_recording(drawing.application, save=save, spawn=spawn, serve=serve, connect=connect, port=port) as rec,
         console.progress("drawing", rows) as done,
     ):
         drawing.draw(rec, done)

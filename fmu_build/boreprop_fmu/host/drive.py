@@ -10,12 +10,12 @@ import numpy as np
 from fmpy.fmi1 import FMICallException
 
 from boreprop.case.case import Schedule
+from boreprop.case.packed import read_packed_case
 from boreprop.core.checks import check_number
 from boreprop.core.quantities import INPUTS, OUTPUTS
 from boreprop.errors import InputError
 from boreprop.run.trajectory import Stopped, Trajectory
 
-from ..packed_case import read_packed_case
 from .instance import open_instance, read_description, uninterrupted
 
 MAX_ROWS = 10_000_000  # more would need gigabytes of memory

@@ -11,8 +11,8 @@
 
    First derivatives of inputs act over the next step that is completed, and are zero after it: FMI 2.0 sets inputs and
    their derivatives with respect to the beginning of a communication step. Over the step the rate of penetration is
-   linear in time; the force and the weight on bit are linear in the drilled length, between the values that they have
-   at its two ends in time. After the step an input has the value that it had at the end.
+   linear in time; the force and the active weight on bit are linear in the drilled length, between the values that they
+   have at its two ends in time. After the step an input has the value that it had at the end.
 
    There are no globals but constants: any number of instances may live in any threads. */
 #if defined _MSC_VER && !defined _CRT_SECURE_NO_WARNINGS

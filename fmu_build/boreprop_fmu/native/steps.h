@@ -7,8 +7,8 @@
 #define MOST_STAIRS 1000.0
 
 /* Drill to a length while the inputs go from their present values to those at its end. The force is linear in the
-   length. The kernel keeps the weight on bit constant over a stretch, so it goes up or down in stairs of equal length,
-   each by a thousandth of its larger value at most. If one stair fails, nothing has moved. */
+   length. The kernel keeps the active weight on bit constant over a stretch, so it goes up or down in stairs of equal
+   length, each by a thousandth of its larger value at most. If one stair fails, nothing has moved. */
 static int drill_on(Component *c, double to, const double end[INPUT_COUNT], char why[LINE]) {
     Drilling *drilling = &c->run->drilling;
     double from = drilling_length(drilling), force = c->value[IN_RSS_FORCE], weight = c->value[IN_ACTIVE_WEIGHT_ON_BIT];

@@ -5,10 +5,10 @@ from importlib.resources import files
 
 from boreprop.case.case import Case
 from boreprop.case.file import dump_case
+from boreprop.case.packed import CASE_FILE
 from boreprop.case.parameters import parameters
 from boreprop.core.quantities import INPUTS, PARAMETERS
 
-from ..packed_case import CASE_FILE
 from .description import model_description
 from .documentation import documents
 

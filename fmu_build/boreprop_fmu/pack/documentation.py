@@ -50,7 +50,7 @@ needed. On Linux, a host that is not Python itself must preload libpython. All t
     "native": {
         "inputs": """ A derivative of an input (fmi2SetRealInputDerivatives, first order) acts over the next step that
 is completed; a discarded step does not use it up. After that step the input keeps the value that it has reached. Over
-the step the rate of penetration is linear in time, force and weight on bit are linear in the drilled length.
+the step the rate of penetration is linear in time, force and active weight on bit are linear in the drilled length.
 fmi2GetDirectionalDerivative gives the change of any Real output with any input, as long as contacts and tilt saturation
 stay as they are. fmi2GetRealOutputDerivatives, first order, gives the change in time of the outputs that cannot jump:
 drilled_length, bit_inclination, average_inclination, displacement and true_vertical_depth.""",

@@ -41,7 +41,7 @@ class SlaveError(BorepropError):
 
 
 class Borehole(Fmi2Slave):  # type: ignore[misc]
-    """A borehole being drilled: the RSS force, the weight on bit and the rate of penetration in, `OUTPUTS` out.
+    """A borehole being drilled: the RSS force, the active weight on bit and the rate of penetration in, `OUTPUTS` out.
 
     Value references count the scalar names of `VARIABLES`. ``resources/fmu.json`` gives the start value of every input
     and parameter, the packed survey and the FMU's guid.

@@ -195,8 +195,8 @@ def find_rippling(
         Contact of each stabilizer and saturation of the bit tilt, whole numbers, shape (rows, k). Only without a run.
         If they are not given, a wave that dies out very slowly counts as lasting.
     inputs
-        Steering force and weight on bit, shape (rows,) each. Only without a run. If they are not given, they are taken
-        to be constant.
+        Steering force and active weight on bit, shape (rows,) each. Only without a run. If they are not given, they are
+        taken to be constant.
 
     Returns
     -------
@@ -222,8 +222,7 @@ def find_rippling(
     if np.shape(run) != np.shape(inclination):
         shapes = f"{np.shape(inclination)} for {np.shape(run)}"
         raise InputError(f"inclination: must have a value for each drilled length, got the shapes {shapes}")
-    found = _find(run, inclination, inf if longest is None else longest, modes, inputs)
-    return _with_course(found)
+    return _with_course(_find(run, inclination, inf if longest is None else longest, modes, inputs))
 
 
 def last_wave(run: Trajectory) -> Rippling:
@@ -303,7 +302,8 @@ def _with_course(found: _Found) -> Rippling:
     """The wave that was found, with the fields since and inclination_drift."""
     if found.waves is None or found.rows is None:
         return found.rippling
-    least = HALF * float(found.waves.sizes[-AT_THE_END:].min())
+    few = 1 if found.rippling.state is State.GROWING else AT_THE_END  # waves: of several that grow one is too small
+    least = HALF * float(found.waves.sizes[-few:].min())
     return replace(
         found.rippling,
         since=large_since(found.rows.length, found.rows.inclination, found.waves.wavelength, least),

@@ -12,10 +12,10 @@ from ..core.system import BottomHoleAssembly
 from ..run.completion import case_of
 from ..run.trajectory import Trajectory
 from ..units import BUILD_LENGTH
+from .hole import chord_inclination, hole_of
 from .rippling import Rippling, State, find_rippling, visible_waves
 
 SHORT_WAVE, LONG_WAVE = 0.25, 1.8  # half lengths of the BHA: the usual wavelengths of ripples lie in between
-CHORD = np.linspace(-1.0, 0.0, 200)  # points of the existing hole below a chord: close enough to miss no more than mm
 
 
 @dataclass(frozen=True)
@@ -148,14 +148,6 @@ def mean_inclination(run: Trajectory, survey: Survey, over: float) -> Floats:
 
     The run starts at the end of the survey; above the first station of the survey the hole is straight.
     """
-    before = over * CHORD
-    stations = np.array(survey.measured_depth) - survey.measured_depth[-1]
-    turns = np.interp(before[1:] + before[-2] / 2, stations, survey.inclination)
-    existing = np.cumsum(np.exp(1j * turns)) * (over / (len(before) - 1))  # positions: depth + i displacement
-    length, drilled = run["drilled_length"], run["true_vertical_depth"] + 1j * run["displacement"]
-    at = np.concatenate((before, length))
-    axis = np.concatenate(([0.0], existing, existing[-1] + drilled))
-    chord = axis[-len(length) :] - np.interp(length - over, at, axis)
-    inclination: Floats = np.arctan2(chord.imag, chord.real)
+    inclination = chord_inclination(hole_of(run, survey, over), run["drilled_length"], over)
     turns = np.abs(inclination[1:] - inclination[:-1])
     return np.unwrap(inclination) if turns.max(initial=0.0) > pi else inclination  # unwrap only a hole past vertical

@@ -189,8 +189,8 @@ def critical_dogleg(
     Parameters
     ----------
     case
-        The system, its weight on bit, its first steering force, and the inclination of its hole behind the bit. The
-        length has no influence.
+        The system, its active weight on bit, its first steering force, and the inclination of its hole behind the bit.
+        The length has no influence.
     side
         1 if the hole turns up (builds), −1 if it turns down (drops).
     limit
@@ -253,7 +253,7 @@ def check_limits(side: int, limit: float, tolerance: float) -> None:
 
 @dataclass(frozen=True, eq=False)
 class DoglegMap:
-    """Critical doglegs over weight on bit and clearance, see `CriticalDogleg`.
+    """Critical doglegs over active weight on bit and clearance, see `CriticalDogleg`.
 
     Parameters
     ----------
@@ -315,7 +315,7 @@ def dogleg_map(
     case
         The system.
     eta_pi
-        ηΠ, shape (m,), reached by the weight on bit.
+        ηΠ, shape (m,), reached by the active weight on bit.
     clearance
         Clearances, m, shape (k,).
     side, limit, tolerance, relative_tolerance

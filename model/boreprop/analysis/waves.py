@@ -148,11 +148,26 @@ def mean_over(x: Floats, y: NDArray[Any], width: float) -> tuple[slice, NDArray[
 
 def large_since(x: Floats, y: Floats, wavelength: float, least: float) -> float:
     """The x from which on the root mean square of a wave over one wavelength is at least `least`."""
+    at, square = _square(x, y, wavelength)
+    small = np.flatnonzero(square < least**2)
+    return float(at[small[-1]] + wavelength / 2 if len(small) else x[0])
+
+
+def large_until(x: Floats, y: Floats, wavelength: float, least: float) -> float:
+    """The x up to which, last of all, the root mean square of a wave over one wavelength is at least `least`."""
+    at, square = _square(x, y, wavelength)
+    large = np.flatnonzero(square >= least**2)
+    if not len(large):
+        return float(x[0])
+    return float(at[large[-1]] - wavelength / 2 if large[-1] < len(at) - 1 else x[-1])
+
+
+def _square(x: Floats, y: Floats, wavelength: float) -> tuple[Floats, Floats]:
+    """Where there are data for it, the mean square of a wave about its trend, over one wavelength."""
     inside, trend = mean_over(x, y, wavelength)
     at = x[inside]
     inside, square = mean_over(at, (y[inside] - trend) ** 2, wavelength)
-    small = np.flatnonzero(square < least**2)
-    return float(at[inside][small[-1]] + wavelength / 2 if len(small) else x[0])
+    return at[inside], square
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""A case: the drilling system, the existing hole, the weight on bit, the steering force and the length to drill."""
+"""A case: the drilling system, the existing hole, the active weight on bit, the steering force and the length."""
 
 from dataclasses import dataclass
 
@@ -47,7 +47,7 @@ class Schedule:
 
 @dataclass(frozen=True)
 class Case:
-    """What is drilled: the drilling system, the existing hole, the weight on bit, the steering force and the length.
+    """What is drilled: the drilling system, the existing hole, active weight on bit, steering force and length.
 
     Parameters
     ----------

@@ -5,11 +5,17 @@ from typing import Annotated
 
 import typer
 
+from ..analysis.hole import SurveyedHole
+from ..analysis.plan import deviation_of, planned_hole
+from ..analysis.stations import list_stations
 from ..analysis.summary import summarize
 from ..case.file import load_case
+from ..case.tables import read_survey
 from ..errors import InputError
+from ..report.tables import stations as tables
 from ..report.tables.summary import lines
 from ..run.results import read_trajectory
+from .options import positive
 from .printing import print_table
 
 
@@ -19,6 +25,18 @@ def summary_command(
         Path | None,
         typer.Option("--case", metavar="CASE.toml", help="The case of the run. Default: the one stored with it."),
     ] = None,
+    stations: Annotated[
+        float | None,
+        typer.Option(parser=positive, metavar="M", help="List the hole, too, at each M metres of measured depth."),
+    ] = None,
+    plan_file: Annotated[
+        Path | None,
+        typer.Option(
+            "--plan",
+            metavar="PLAN.csv",
+            help="Say how far the hole is off this plan: columns measured_depth, inclination_deg.",
+        ),
+    ] = None,
 ) -> None:
     """Print a run in a dozen numbers, and whether it ripples."""
     trajectory = read_trajectory(run_file, load_case(case_file) if case_file else None)
@@ -26,4 +44,20 @@ def summary_command(
         raise InputError(f"{run_file}: must come with its case, got none: give it with --case")
     if trajectory.row_count < 2:
         raise InputError(f"{run_file}: must have at least 2 rows, got {trajectory.row_count}")
-    print_table(lines(summarize(trajectory)), (str(run_file), ""))
+    plan = None if plan_file is None else _planned(plan_file, trajectory.case.survey.measured_depth[-1])
+    summary = summarize(trajectory)
+    over = summary.averaging_length
+    off_plan = [] if plan is None else tables.plan_lines(trajectory, deviation_of(trajectory, plan, over))
+    print_table([*lines(summary), *off_plan], (str(run_file), ""))
+    if stations is not None:
+        listed = list_stations(trajectory, stations, plan, averaged_over=over)
+        print_table(tables.lines(listed), tables.headings(listed), caption=tables.caption(listed))
+
+
+def _planned(path: Path, start: float) -> SurveyedHole:
+    """The planned hole in a file; `InputError` if it does not include the measured depth of the start, m."""
+    plan = read_survey(path)
+    try:
+        return planned_hole(plan, start)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error

@@ -49,13 +49,35 @@ def complete(run: Trajectory) -> Trajectory:
         If the run lacks its case, drilled_length, or one of the `INDISPENSABLE` that nothing determines.
     """
     columns = Columns(run, case_of(run))
-    while columns.add(ROW_BY_ROW):
-        pass
+    columns.add_row_by_row()
     columns.add(ALONG_THE_HOLE)
     completed = replace(run, columns=columns.by_name)
     for name in INDISPENSABLE:
         completed.stack(name)  # raises if it is missing
     return completed
+
+
+def complete_rows(rows: Trajectory) -> Trajectory:
+    """Add the columns that some rows of a run lack and that each row alone determines.
+
+    Parameters
+    ----------
+    rows
+        Any rows of a run, with its case and drilled_length.
+
+    Returns
+    -------
+    Trajectory
+        The columns of `rows` as they are, then the new ones.
+
+    Raises
+    ------
+    InputError
+        If the run lacks its case or drilled_length.
+    """
+    columns = Columns(rows, case_of(rows))
+    columns.add_row_by_row()
+    return replace(rows, columns=columns.by_name)
 
 
 def case_of(run: Trajectory) -> Case:
@@ -99,6 +121,11 @@ class Columns:
                     for scalar, column in zip(self._scalars(formula.gives), np.atleast_2d(values.T), strict=True):
                         self.by_name.setdefault(scalar, column)
         return len(self.by_name) > before
+
+    def add_row_by_row(self) -> None:
+        """Add all that the formulas of `ROW_BY_ROW` give, one from another."""
+        while self.add(ROW_BY_ROW):
+            pass
 
 
 class Formula(NamedTuple):

@@ -161,7 +161,7 @@ def critical_eta_pi(
     Parameters
     ----------
     case
-        The drilling system. Its weight on bit has no influence.
+        The drilling system. Its active weight on bit has no influence.
     contact
         Numbers of the stabilizers that touch; without it all non-ideal ones, the mode that makes a hole ripple.
     saturated
@@ -172,7 +172,7 @@ def critical_eta_pi(
     Returns
     -------
     CriticalEtaPi or None
-        That ηΠ, as a weight on bit too, and the wave at it; None if the mode oscillates at no ηΠ >= 1e-4.
+        That ηΠ, as an active weight on bit too, and the wave at it; None if the mode oscillates at no ηΠ >= 1e-4.
 
     Raises
     ------

@@ -30,9 +30,9 @@ def vary(case: Case, values: Mapping[str, float]) -> Case:
         The case to start from.
     values
         Name → value in SI units. The names are those of the inputs and parameters in the table of quantities, such as
-        "active_weight_on_bit" or "stabilizer_clearance[1]". "eta_pi" stands for the weight on bit that gives this ηΠ
-        with the other values in place. An angle may be given in degrees: "bit_tilt_limit_deg". An "rss_force" replaces
-        the schedule by a constant force.
+        "active_weight_on_bit" or "stabilizer_clearance[1]". "eta_pi" stands for the active weight on bit that gives
+        this ηΠ with the other values in place. An angle may be given in degrees: "bit_tilt_limit_deg". An "rss_force"
+        replaces the schedule by a constant force.
 
     Returns
     -------
@@ -73,7 +73,7 @@ def with_varied(case: Case, values: Mapping[str, float]) -> Case:
 
 
 def parameter_of(name: str) -> str:
-    """The parameter for which a name stands: the weight on bit for "eta_pi", the angle for an angle in degrees."""
+    """The parameter for which a name stands: active weight on bit for "eta_pi", the angle for an angle in degrees."""
     if name == "eta_pi":
         return "active_weight_on_bit"
     angle = BY_NAME.get(name.removesuffix("_deg"))

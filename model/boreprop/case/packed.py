@@ -1,11 +1,11 @@
-"""The case file inside the FMUs of this package, which is written when a case is packed."""
+"""The case file inside the FMUs of boreprop-fmu, which writes it when it packs a case."""
 
 import zipfile
 from pathlib import Path
 
-from boreprop.case.case import Case
-from boreprop.case.file import parse_case
-from boreprop.errors import InputError
+from ..errors import InputError
+from .case import Case
+from .file import parse_case
 
 CASE_FILE = "resources/case.toml"
 

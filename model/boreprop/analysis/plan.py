@@ -1,0 +1,84 @@
+"""How far a hole is off its plan.
+
+The distance is to the nearest point of the plan: a hole that is only shorter or longer than planned is not beside it.
+Inclinations are compared at equal measured depth, by which a plan is read.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Floats
+from ..core.survey import Survey
+from ..errors import InputError
+from ..run.completion import case_of
+from ..run.trajectory import Trajectory
+from .hole import HoleAxis, SurveyedHole, chord_inclination, hole_of
+
+ROUNDING = 1e-6  # m of measured depth: a hole that goes on this little beyond its plan ends with it
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """How far a hole is off its plan at some lengths along it; nan where the plan does not reach.
+
+    Parameters
+    ----------
+    distance
+        Distance from the nearest point of the plan, m, positive to the high side of the plan, shape (m,).
+    inclination
+        Mean inclination of the hole less that of the plan, rad, shape (m,).
+    planned_inclination
+        Mean inclination of the plan, rad, shape (m,).
+    """
+
+    distance: Floats
+    inclination: Floats
+    planned_inclination: Floats
+
+
+def planned_hole(plan: Survey, start: float) -> SurveyedHole:
+    """The planned hole, moved so that it passes through the bit at the start of the run.
+
+    Raises
+    ------
+    InputError
+        If the plan does not include the measured depth `start`, m, at which drilling starts.
+    """
+    first, last = plan.measured_depth[0], plan.measured_depth[-1]
+    if not first <= start <= last:
+        raise InputError(
+            f"measured_depth of the plan: must include {start:g} m, where drilling starts, got {first:g} to {last:g}"
+        )
+    return SurveyedHole.of(plan, start)
+
+
+def deviation_from(plan: SurveyedHole, hole: HoleAxis, length: Floats, over: float) -> Deviation:
+    """How far a hole is off its plan.
+
+    Parameters
+    ----------
+    plan
+        The `planned_hole` of the run.
+    hole
+        The hole, from `over` metres behind the first of the lengths on.
+    length
+        Lengths from the start of the run, m, shape (m,).
+    over
+        The length of hole over which inclinations, those of the plan too, are averaged, m. They are means over the
+        `over` metres before each of the lengths, since the inclination at a point of a rippling hole says little.
+    """
+    position = hole.at(length)
+    _, distance = plan.away(position, plan.nearest(position, length))
+    planned = chord_inclination(plan, length, over)
+    outside = (length < plan.length[0] - ROUNDING) | (length > plan.length[-1] + ROUNDING)
+    return Deviation(
+        distance=np.where(outside, np.nan, distance),
+        inclination=np.where(outside, np.nan, chord_inclination(hole, length, over) - planned),
+        planned_inclination=np.where(outside, np.nan, planned),
+    )
+
+
+def deviation_of(run: Trajectory, plan: SurveyedHole, over: float) -> Deviation:
+    """How far each row of a run is off its plan, see `deviation_from`; `InputError` if the run lacks its case."""
+    return deviation_from(plan, hole_of(run, case_of(run).survey, over), run["drilled_length"], over)

@@ -1,0 +1,76 @@
+"""A run at survey stations, and how far it is off its plan, in tables."""
+
+from math import isnan
+
+import numpy as np
+
+from ...analysis.plan import Deviation
+from ...analysis.stations import Stations
+from ...arrays import Floats
+from ...run.completion import case_of
+from ...run.trajectory import Trajectory
+from ...units import UNITS
+
+SIGNED = "+z.2f"
+NONE = "–"  # below the end of the plan
+
+
+def headings(stations: Stations) -> tuple[str, ...]:
+    """The headings of the columns of `lines`, with their units; `caption` says what they mean."""
+    named = [("MD", "m"), ("incl.", "rad"), ("TVD", "m"), ("displ.", "m"), ("DLS", "rad/m")]
+    if stations.deviation is not None:
+        named += [("planned", "rad"), ("off plan", "rad"), ("off plan", "m")]
+    return tuple(f"{name}\n({UNITS[unit].shown})" for name, unit in named)
+
+
+def lines(stations: Stations) -> list[tuple[str, ...]]:
+    """A line for each station, with a cell for each of `headings`."""
+    columns = [
+        _cells("m", stations.measured_depth),
+        _cells("rad", stations.inclination),
+        _cells("m", stations.true_vertical_depth, ".2f"),
+        _cells("m", stations.displacement, ".2f"),
+        _cells("rad/m", stations.dogleg_severity, ".2f"),
+    ]
+    if (off := stations.deviation) is not None:
+        columns += [
+            _cells("rad", off.planned_inclination),
+            _cells("rad", off.inclination, SIGNED),
+            _cells("m", off.distance, SIGNED),
+        ]
+    return list(zip(*columns, strict=True))
+
+
+def _cells(unit: str, values: Floats, digits: str = "") -> list[str]:
+    return [NONE if isnan(value) else UNITS[unit].number(value, digits) for value in values.tolist()]
+
+
+def caption(stations: Stations) -> str:
+    """What the columns of `lines` mean."""
+    over = f"{stations.averaging_length:.3g} m"
+    text = (
+        "MD: measured depth. TVD, displ.: vertical and horizontal distance from the bit at the start. "
+        f"Inclinations: means over the last {over} of hole. "
+        f"DLS: dogleg severity since the station before, at least over {over}."
+    )
+    return text if stations.deviation is None else f"{text} Off plan: + to the high side of its nearest point."
+
+
+def plan_lines(run: Trajectory, off: Deviation) -> list[tuple[str, str]]:
+    """Two lines for the summary of a run with its case: how far its rows are off the plan at the end, and at most."""
+    measured_depth = case_of(run).survey.measured_depth[-1] + run["drilled_length"]
+    known = np.flatnonzero(~np.isnan(off.distance))
+    last, most = known[-1], known[np.argmax(np.abs(off.distance[known]))]
+    where = (
+        "at the end" if last == len(measured_depth) - 1 else f"where it ends, {UNITS['m'].text(measured_depth[last])}"
+    )
+    inclination = UNITS["rad"].text(off.inclination[last], SIGNED)
+    return [
+        (f"off the plan {where}", f"{beside(off.distance[last])}, {inclination}"),
+        ("off the plan at most", f"{beside(off.distance[most])} at {UNITS['m'].text(measured_depth[most])}"),
+    ]
+
+
+def beside(distance: float, digits: str = ".2f") -> str:
+    """A distance from the plan, m, and its side, in words."""
+    return f"{UNITS['m'].text(abs(distance), digits)} {'high' if distance > 0 else 'low'}"

@@ -1,0 +1,78 @@
+"""The key: what each colour means, in a row of its own above the plots.
+
+A legend inside a plot would cover the curves, so the plots have none. The key is drawn as a picture: its unit of length
+is a pixel of a small window, and in a larger window it grows.
+"""
+
+from collections.abc import Iterator, Sequence
+from itertools import zip_longest
+
+import rerun as rr
+
+from .style import BIT, BY_STABILIZER, GREY, HOLE, PLAN, RSS, WHITE, Colour
+from .track import Track
+
+KEY = "key"
+WIDTH, LINE = 600.0, 26.0  # of the key and of one of its lines
+ABOVE = 13.0  # by which a viewer draws a text below its place
+SWATCH, GAP, LETTER, MARGIN = 18.0, 14.0, 7.0, 12.0  # width of a coloured line, of what is between two, of a letter, …
+
+Entry = tuple[str, Colour]
+
+
+def entries(tracks: Sequence[Track], planned: bool) -> list[Entry]:
+    """What the colours of a recording mean: name → colour."""
+    n = max(len(track.case.bha.stabilizer_positions) for track in tracks)
+    plan = [("plan", PLAN)] if planned else []
+    if len(tracks) == 1:
+        parts = [("hole", HOLE), ("BHA, bit", BIT), *plan, ("RSS", RSS)]
+        return [*parts, *((f"stabilizer {i}", colour) for i, colour in enumerate(BY_STABILIZER[: n - 1], 1))]
+    runs = [(track.name, track.colour or GREY) for track in tracks]
+    stabilizers = [f"stabilizer {i}" for i in range(1, n)]
+    firsts = zip_longest(("hole, build rate", "bit, dogleg severity"), stabilizers, ("low, +", "high, −"))
+    kinds = [", ".join(filter(None, first)) for first in firsts]
+    return [*runs, *plan, *zip(kinds, tracks[0].shades(BY_STABILIZER[: len(kinds)]), strict=True)]
+
+
+def places(entries: Sequence[Entry]) -> Iterator[tuple[float, float]]:
+    """Where each entry begins: one after the other, in as many lines as they need."""
+    x, y = MARGIN, LINE / 2
+    for name, _ in entries:
+        if x > MARGIN and x + width(name) > WIDTH:
+            x, y = MARGIN, y + LINE
+        yield x, y
+        x += width(name) + GAP
+
+
+def width(name: str) -> float:
+    """The width of an entry."""
+    return SWATCH + MARGIN + LETTER * len(name)
+
+
+def line_count(entries: Sequence[Entry]) -> int:
+    """The number of lines of a key."""
+    return round(max(y for _, y in places(entries)) / LINE + 0.5)
+
+
+def log_key(rec: rr.RecordingStream, entries: Sequence[Entry]) -> None:
+    """A coloured line for each entry, and its name."""
+    starts = list(places(entries))
+    rec.log(
+        f"{KEY}/lines",
+        rr.LineStrips2D(
+            [[(x, y), (x + SWATCH, y)] for x, y in starts],
+            colors=[colour for _, colour in entries],
+            radii=rr.Radius.ui_points(2.0),
+        ),
+        static=True,
+    )
+    widths = [width(name) - SWATCH for name, _ in entries]
+    middles = [(x + SWATCH + wide / 2, y - ABOVE) for (x, y), wide in zip(starts, widths, strict=True)]
+    names = rr.Points2D(
+        middles,
+        labels=[name for name, _ in entries],
+        colors=WHITE,
+        radii=rr.Radius.ui_points(0.0),
+        show_labels=True,
+    )
+    rec.log(f"{KEY}/names", names, static=True)

@@ -1,0 +1,175 @@
+"""What is true of a hole at each drilled length, in words: its ripple, where it began and ended, and its plan.
+
+A run is checked at points that its drilled length decides, so the words do not depend on how its rows come.
+"""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from boreprop.analysis.rippling import Rippling, State, find_rippling, last_wave
+from boreprop.analysis.waves import large_until
+from boreprop.case.case import Case
+from boreprop.report.tables.stations import beside
+from boreprop.run.trajectory import Trajectory
+from boreprop.units import SMALL_LENGTH, UNITS, Unit
+
+from .source import between, joined
+
+RECENT = 32.0  # half lengths of the BHA up to the bit that decide whether the hole ripples: five of the longest waves
+EVERY = 1.0  # half lengths of the BHA from check to check: a ripple comes and goes over several
+SELDOM = 4  # times as far to the next check while a ripple lasts: these checks cost most, and most find nothing new
+NOTICEABLE = 0.15  # of an amplitude or a distance: a smaller change is not told
+FADED = 0.5  # of an amplitude: a wave that dies out swings while it does, and is told again when it has fallen to this
+STILL = 0.5  # of an amplitude: a ripple that is at least this large goes on while force or weight change
+NEAR = 0.1  # m: a smaller change of the distance from the plan is not told
+SO_FAR = "no ripple so far"
+
+
+class Saying(NamedTuple):
+    """Words that hold from a row of a run on: its drilled length, m, its time, s (None if it has none), the words."""
+
+    length: float
+    time: float | None
+    words: str
+
+
+class Verdict:
+    """Follows a run, and says what is true of it.
+
+    A new state of the ripple is told once two checks running have found it, or at the end of the run. While force or
+    weight change too often to tell, a ripple counts as going on. Places are drilled lengths from an `origin`, m: with
+    the measured depth of the start they are measured depths.
+    """
+
+    def __init__(self, case: Case, origin: float = 0.0) -> None:
+        self.origin = origin
+        self.every, self.reach = EVERY * case.bha.half_length, RECENT * case.bha.half_length
+        self.rows: Trajectory | None = None  # the last rows, as far back as a check needs
+        self.start, self.steps = 0.0, 1  # where the run starts, m, and how many steps from there the next check is
+        self.checked = -np.inf  # the last row that was checked, m
+        self.state = State.NONE  # at the last check
+        self.told = Rippling()  # the wave that was told last
+        self.began: float | None = None  # from where on the present ripple has had half its size, m
+        self.ended: tuple[float, Rippling] | None = None  # a ripple that is over, until it is known where it ended
+        self.past = ""  # the last ripple that is over, in words
+        self.off_plan = 0.0  # the distance from the plan that was told last, m
+        self.ripple, self.plan, self.said = SO_FAR, "", ""  # in words
+
+    @property
+    def next(self) -> float:
+        """The drilled length of the next check, m."""
+        return self.start + self.steps * self.every
+
+    def follow(self, rows: Trajectory) -> list[Saying]:
+        """Take the next rows of the run, at least one; returns what there is to say up to the last of them."""
+        sayings = []
+        if self.rows is None:
+            self.start = float(rows["drilled_length"][0])
+            first = between(rows, self.start, self.start)
+            self._see_plan(first)
+            sayings += self._say(first)
+        else:
+            rows = joined(self.rows, rows)
+        length = rows["drilled_length"]
+        while self.next < length[-1]:  # so that no further row will come at the length of the check
+            recent = between(rows, self.next - self.reach, self.next)
+            if recent.row_count and recent["drilled_length"][-1] > self.checked:
+                self._check(recent)
+                sayings += self._say(recent)
+            self.steps += SELDOM if self.state is self.told.state is State.LASTING else 1
+        self.rows = between(rows, length[-1] - self.reach, np.inf)
+        return sayings
+
+    def end(self, how: str = "", why: str = "") -> list[Saying]:
+        """Check the last rows, and say where, `how` and `why` the run ended, if early; returns what else is to say."""
+        if self.rows is None:
+            return []
+        self._check(self.rows, sure=True)
+        if self.ripple == SO_FAR:
+            self.ripple = "no ripple"
+        return self._say(
+            self.rows, f"; {how} at {UNITS['m'].text(self.origin + self.checked)}{': ' * bool(why)}{why}" if how else ""
+        )
+
+    def _say(self, recent: Trajectory, end: str = "") -> list[Saying]:
+        """What is to be said from the last of some rows on: nothing if it was said already."""
+        words = f"{self.ripple}{self.plan}{end}"
+        if words == self.said:
+            return []
+        self.said = words
+        time = float(recent["time"][-1]) if "time" in recent else None
+        return [Saying(float(recent["drilled_length"][-1]), time, words)]
+
+    def _check(self, recent: Trajectory, sure: bool = False) -> None:
+        """Look at the last rows, and find words for what has changed noticeably."""
+        wave = last_wave(recent)
+        going_on = self.began is not None and wave.amplitude > STILL * self.told.amplitude
+        if wave.state is State.STEERED and going_on:
+            wave = replace(wave, state=State.LASTING)
+        self.checked = float(recent["drilled_length"][-1])
+        confirmed, self.state = sure or wave.state is self.state, wave.state
+        if confirmed and (wave.state is not self.told.state or _changed(wave, self.told)):
+            self._tell(replace(find_rippling(recent), state=wave.state), recent)
+        self._see_plan(recent, sure)
+
+    def _tell(self, wave: Rippling, recent: Trajectory) -> None:
+        """Put a wave into words that was found in the last rows."""
+        size = f"±{rounded(wave.amplitude, UNITS['rad'])}, ±{rounded(wave.axis_amplitude, SMALL_LENGTH)}"
+        waves = f"waves of {rounded(wave.wavelength, UNITS['m'], digits=3)}, {size}"
+        before, self.told = self.told, wave
+        if wave.ripples:
+            all_along = wave.since <= recent["drilled_length"][0] + wave.wavelength
+            if self.began is None or not all_along:
+                self.began = wave.since
+            what = "growing" if wave.state is State.GROWING else "rippling"
+            self.ripple = f"{what} since {self._place(self.began)}: {waves}"
+            return
+        if self.began is not None:
+            self.ended, self.past = (self.began, before), f"; rippling from {self._place(self.began)}"
+            self.began = None
+        if self.ended is not None and (end := _end(recent, *self.ended)) is not None:
+            self.ended, self.past = None, f"{self.past} to {self._place(end)}"
+        now = {
+            State.NONE: "no ripple" if self.past else SO_FAR,
+            State.DYING: f"dying out: {waves}",
+            State.STEERED: f"{waves}, but force or weight change too often to tell",
+        }
+        self.ripple = now[wave.state] + self.past
+
+    def _place(self, length: float) -> str:
+        """A drilled length, m, in words."""
+        return UNITS["m"].text(self.origin + length, ".0f")
+
+    def _see_plan(self, recent: Trajectory, sure: bool = False) -> None:
+        """Look how far the last of some rows is off the plan, and put it into words if that has changed noticeably."""
+        distance = float(recent["distance_from_plan"][-1]) if "distance_from_plan" in recent else np.nan
+        if np.isnan(distance):
+            self.plan = ""
+        elif sure or not self.plan or abs(distance - self.off_plan) > max(NEAR, NOTICEABLE * abs(self.off_plan)):
+            self.off_plan = distance
+            self.plan = f"; {beside(distance, '.1f')} of the plan" if abs(distance) > NEAR / 2 else "; on the plan"
+
+
+def _end(recent: Trajectory, began: float, ripple: Rippling) -> float | None:
+    """Where a ripple that is over fell to half its size, m; None if it has not yet."""
+    rows = between(recent, began + 2 * ripple.wavelength, np.inf)
+    length = rows["drilled_length"]
+    if not len(length):
+        return None
+    least = ripple.amplitude / 2 / 2**0.5  # as a root mean square
+    end = large_until(length, rows["borehole_inclination"], ripple.wavelength, least)
+    return end if end < length[-1] else None
+
+
+def _changed(wave: Rippling, told: Rippling) -> bool:
+    """Whether the amplitude of a wave is noticeably another than was told of it; without a wave it is nan."""
+    if wave.state is State.DYING:
+        return wave.amplitude < FADED * told.amplitude
+    return abs(wave.amplitude - told.amplitude) > NOTICEABLE * told.amplitude
+
+
+def rounded(value: float, unit: Unit, digits: int = 2) -> str:
+    """A value with some digits in the unit in which it is shown, and the unit."""
+    return f"{float(f'{unit.factor * value:.{digits}g}'):.15g} {unit.shown}"
