@@ -1,6 +1,5 @@
 """Draws runs into a recording, which goes to a file, to a viewer, or to both."""
 
-import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
@@ -191,9 +190,8 @@ def application_of_its_own(name: str) -> str:
 
 
 def application(name: str, digest: str) -> str:
-    """What Rerun calls the application of a recording: of another spelling it would say that it has changed it."""
-    spelt = re.sub("[^A-Za-z0-9_ -]", "-", name)[:LONGEST_NAME]
-    return f"boreprop: {spelt} {digest}"
+    """What Rerun calls the application of a recording: the name of the recording, as far as allowed, and a digest."""
+    return f"boreprop: {name[:LONGEST_NAME]} {digest}"
 
 
 def log_frames(rec: rr.RecordingStream, scales: Scales) -> None:
