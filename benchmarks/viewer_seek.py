@@ -14,6 +14,7 @@ from boreprop.case.file import load_case
 from boreprop.run.simulate import simulate
 from boreprop_viz.picture import Viewer, viewer
 from boreprop_viz.record import record
+from boreprop_viz.track import TIMELINE
 
 LENGTH, INTERVAL = 3000.0, 0.1  # m: 30 001 rows
 PLACES = (0.9, 0.1, 0.5, 0.98, 0.3, 0.75, 0.02, 0.6, 0.999)  # of the length, to and fro
@@ -50,7 +51,7 @@ def long_runs(folder: Path) -> list[Path]:
 def jump(shown: Viewer, place: float) -> float:
     """Seconds from a jump of the cursor to the first picture that does not change any more."""
     begin = time.perf_counter()
-    shown.seek(round(1000 * place * LENGTH))
+    shown.client.set_time(TIMELINE, sequence=round(1000 * place * LENGTH), play_state="paused")
     pictures, ends = [b""], [0.0]
     while len(pictures) < 3 or pictures[-1] != pictures[-2]:
         pictures.append(shown.client.take_screenshot())
