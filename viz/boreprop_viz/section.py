@@ -3,8 +3,6 @@
 The view is in metres with y down the screen.
 """
 
-from itertools import pairwise
-
 import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
@@ -18,7 +16,7 @@ from .scales import Scales
 from .scene import REACH_ABOVE_BHA, Array, Shapes
 from .source import Stretch
 from .style import BY_SEVERITY, BY_STABILIZER
-from .track import Track, arrivals, moments, points, send, send_paths, send_strips
+from .track import Indices, Track, arrivals, consecutive, moments, points, send, send_paths, send_strips
 
 POINTS_IN_HALF = 20  # of the drawn hole over half the length of the BHA, at most: a wave shows no corners
 POINTS_IN_PIECE = 20  # of it: the fewer pieces, the sooner the view is drawn, see benchmarks/viewer_seek.py
@@ -56,22 +54,23 @@ class DrilledHole:
         drawn = np.flatnonzero(np.diff(interval, prepend=-1))  # the first points in each interval
         ends = np.flatnonzero(np.diff(interval // POINTS_IN_PIECE, prepend=-1))
         at_ends = np.searchsorted(drawn, ends)
-        pieces = [drawn[first : last + 1] for first, last in pairwise(at_ends)]
-        self._send("drilled_hole", hole, pieces, recent)
+        count = np.diff(at_ends) + 1
+        self._send("drilled_hole", hole, drawn[consecutive(at_ends[:-1], count)], count, recent)
 
         new = np.flatnonzero(hole.length > self.drilled)
         first = at_ends[np.searchsorted(ends, new, side="right") - 1]
-        last = np.searchsorted(drawn, new)
-        parts = [np.append(drawn[i:j], end) for i, j, end in zip(first, last, new, strict=True)]
-        self._send("newly_drilled", hole, parts, recent)
+        count = np.searchsorted(drawn, new) - first + 1
+        through = np.append(drawn, 0)[consecutive(first, count)]
+        through[np.cumsum(count) - 1] = new  # each row ends where its bit is
+        self._send("newly_drilled", hole, through, count, recent)
         self.begun, self.drilled = hole.length[ends[-1]], hole.length[-1]
 
-    def _send(self, thing: str, hole: HoleAxis, paths: list[NDArray[np.int64]], recent: Trajectory) -> None:
-        """Send strips through points of the hole, where the last of them is drilled."""
-        ends = hole.length[[path[-1] for path in paths]]
+    def _send(self, thing: str, hole: HoleAxis, through: Indices, count: Indices, recent: Trajectory) -> None:
+        """Send strips through points of the hole, `count` of them each, where the last of these is drilled."""
+        ends = hole.length[through[np.cumsum(count) - 1]]
         colours = None if self.track.colour else severity_colours(self.track, recent, ends)
-        at = arrivals(recent, ends)
-        send_paths(self.track, f"vertical_section/{thing}", at, [hole.position[path] for path in paths], colours)
+        at, path = arrivals(recent, ends), hole.position[through]
+        send_paths(self.track, f"vertical_section/{thing}", at, path, count, colours)
 
 
 def severity_colours(track: Track, rows: Trajectory, ends: Array) -> NDArray[np.uint8]:

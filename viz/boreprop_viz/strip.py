@@ -14,10 +14,10 @@ from boreprop.units import SMALL_LENGTH
 from .furniture import log_labels
 from .scales import STRIP_TOP, Scales, round_down
 from .scene import Array
-from .track import Track, arrivals, points, send_paths
+from .track import Track, arrivals, consecutive, points, send_paths
 
 PIECE = AXIS_POINTS // 2  # points of the ripple in one piece of the hole: half a width of the trend
-DRAWN = PIECE // 4  # of these every so manieth is drawn, and the crests of the waves
+DRAWN = PIECE // 4  # every so many of these one is drawn, and the crests of the waves
 TEXT = 0.03  # height of a line of text over that of the view
 
 
@@ -37,8 +37,8 @@ def log_strip(track: Track, recent: Trajectory, length: Array, ripple: Array, ri
     first, last = np.searchsorted(drawn, [ends - PIECE, ends])
     strip = track.scales.strip
     path = points(strip.lanes[track.place] + strip.lateral * ripple, strip.start + length)
-    pieces = [path[drawn[i : j + 1]] for i, j in zip(first, last, strict=True)]
-    send_paths(track, "strip/hole", arrivals(recent, length[ends]), pieces)
+    count = last - first + 1
+    send_paths(track, "strip/hole", arrivals(recent, length[ends]), path[drawn[consecutive(first, count)]], count)
 
 
 def log_strip_grid(rec: rr.RecordingStream, scales: Scales) -> None:

@@ -33,6 +33,8 @@ MOST_NUMBERED = 2  # runs
 DECIMALS = 4  # of a curve
 LABEL_APART = 0.09  # of the width of the bit frame, from the tail of an arrow to the middle of its number
 
+Indices = NDArray[np.int64]
+
 
 @dataclass(frozen=True)
 class Track:
@@ -162,14 +164,21 @@ def send_strips(track: Track, thing: str, at: Moments, strips: Array) -> None:
     send(track, thing, at, columns.partition([per_row] * rows))
 
 
+def consecutive(first: Indices, count: Indices) -> Indices:
+    """The indices from each `first` on, `count` of them each, all in one array."""
+    index: Indices = np.arange(count.sum()) + np.repeat(first - np.cumsum(count) + count, count)
+    return index
+
+
 def send_paths(
-    track: Track, thing: str, at: Moments, paths: list[Array], colours: NDArray[np.uint8] | None = None
+    track: Track, thing: str, at: Moments, path: Array, count: Indices, colours: NDArray[np.uint8] | None = None
 ) -> None:
-    """Send one line strip of any number of points (k, 2) at each moment, in colours (rows, 3) or as the thing is."""
-    if not paths:
-        return
-    offsets = np.cumsum([0] + [len(path) for path in paths], dtype=np.int32)
-    through = Vec2DBatch(np.concatenate(paths).astype(np.float32)).as_arrow_array()
+    """Send one line strip at each moment, in colours (rows, 3) or that of the thing.
+
+    `path` has the points of all strips one after the other, (N, 2), and `count` how many each of them has, (rows,).
+    """
+    offsets = np.append(0, np.cumsum(count)).astype(np.int32)
+    through = Vec2DBatch(path.astype(np.float32)).as_arrow_array()
     strips = pa.ListArray.from_arrays(offsets, through, type=LineStrip2DBatch([]).as_arrow_array().type)
     send(track, thing, at, rr.LineStrips2D.columns(strips=strips, colors=colours))
 
