@@ -4,7 +4,7 @@ from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from signal import SIGINT, raise_signal, signal
+from signal import Signals, getsignal, raise_signal, signal
 from tempfile import TemporaryDirectory
 from threading import current_thread, main_thread
 from typing import Any
@@ -15,6 +15,8 @@ from fmpy.fmi2 import FMU2Slave, defaultCallbacks, fmi2CallbackFunctions, fmi2Ca
 
 from boreprop.errors import InputError
 from boreprop.kernel.compiler import host_platform
+
+INTERRUPTIONS = [number for number in Signals if number.name in ("SIGINT", "SIGTERM", "SIGHUP")]
 
 
 def read_description(fmu: Path) -> Any:
@@ -108,18 +110,25 @@ def _library(directory: str, identifier: str, platform: str | None) -> str | Non
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Delay Ctrl-C until the end of a call, since an FMU with Python in it would take it for an error of its own."""
+    """Delay Ctrl-C, and other signals that Python handles, until the end of a call.
+
+    An FMU with Python in it would take what a handler raises for an error of its own.
+    """
     if current_thread() is not main_thread():  # only the main thread is interrupted
         yield
         return
-    pressed: list[int] = []
-    before = signal(SIGINT, lambda number, _: pressed.append(number))
+    received: list[int] = []
+    before = {number: getsignal(number) for number in INTERRUPTIONS}
+    handled = [number for number, handler in before.items() if callable(handler)]
+    for number in handled:
+        signal(number, lambda number, _: received.append(number))
     try:
         yield
     finally:
-        signal(SIGINT, before)
-    if pressed:
-        raise_signal(SIGINT)
+        for number in handled:
+            signal(number, before[number])
+    if received:
+        raise_signal(received[0])
 
 
 def _check_readable(directory: str) -> None:
