@@ -59,6 +59,7 @@ def log_styles(track: Track) -> None:
     contacts = rr.Points2D.from_fields(radii=rr.Radius.ui_points(3.0), draw_order=5.0)
     rec.log(track.entity("vertical_section/contacts"), contacts, static=True)
     forces = {"rss_force": track.colour or RSS, "bit_lateral_force": track.colour or BIT}
+    rec.log(track.entity("vertical_section/depths"), _text(WHITE), static=True)
     for i, colour in enumerate(track.shades(BY_STABILIZER[: n - 1]), 1):
         rec.log(track.entity(f"bit_frame/contact_point/{i}"), _dots(colour, 5.0), static=True)
         forces[f"contact_force/{i}"] = colour
@@ -131,7 +132,7 @@ def log_labels(rec: rr.RecordingStream, entity: str, places: Array, labels: Sequ
 def log_grid(rec: rr.RecordingStream, scales: Scales) -> None:
     """Lines at round numbers of metres, labelled along the left and the bottom edge, except in the corners."""
     (left, right), (top, bottom) = scales.section.x, scales.section.y
-    step = round_down(max(right - left, bottom - top) / 4)
+    step = scales.grid_step
     x, z = (step * np.arange(np.ceil(low / step), high / step) for low, high in (scales.section.x, scales.section.y))
     lines = [*points(x[:, None], np.array([top, bottom])), *points(np.array([left, right]), z[:, None])]
     rec.log("vertical_section/grid", rr.LineStrips2D.from_fields(strips=lines), static=True)

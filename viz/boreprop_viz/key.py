@@ -15,7 +15,7 @@ from .track import Track
 KEY = "key"
 WIDTH, LINE = 600.0, 26.0  # of the key and of one of its lines
 ABOVE = 13.0  # by which a viewer draws a text below its place
-SWATCH, GAP, LETTER, MARGIN = 18.0, 14.0, 7.0, 12.0  # width of a coloured line, of what is between two, of a letter, …
+SWATCH, GAP, LETTER, MARGIN = 18.0, 8.0, 7.0, 20.0  # width of a coloured line, of what is between two, of a letter, …
 
 Entry = tuple[str, Colour]
 

@@ -51,7 +51,7 @@ def blueprint(scales: Scales, tracks: Sequence[Track], key: Sequence[Entry]) -> 
                 rrb.Tabs(*(one for one in tabs if one), card(), stations(), active_tab=2 if scales.rippling else 0),
                 row_shares=[high, TAB],
             ),
-            column_shares=[0.21, 0.105, 0.265, 0.42],
+            column_shares=[0.19, 0.095, 0.235, 0.48],
         ),
         TimePanel(scales),
         rrb.BlueprintPanel(state="hidden"),
@@ -102,10 +102,14 @@ def vertical_section(scales: Scales, tracks: Sequence[Track]) -> rrb.Spatial2DVi
     """Existing, planned and drilled hole, BHA and bit at true scale; the hole only as far as the cursor."""
     return rrb.Spatial2DView(
         origin="vertical_section",
-        name="Vertical section, true scale (m)",
+        name="Vertical section (m)",
         background=GROUND,
         visual_bounds=_bounds(scales.section),
-        overrides={track.entity("vertical_section/drilled_hole"): _so_far() for track in tracks},
+        overrides={
+            track.entity(f"vertical_section/{thing}"): _so_far()
+            for track in tracks
+            for thing in ("drilled_hole", "depths")
+        },
     )
 
 
@@ -114,6 +118,7 @@ def strip(scales: Scales, tracks: Sequence[Track]) -> rrb.Spatial2DView:
     return rrb.Spatial2DView(
         origin="strip",
         name=f"Ripple × {scales.strip.lateral:g}",
+        titlebar=False,  # of which the view is too narrow to show more than the buttons
         background=GROUND,
         visual_bounds=_bounds(scales.strip.bounds),
         overrides={track.entity("strip/hole"): _so_far() for track in tracks},
@@ -139,7 +144,7 @@ def bit_frame(scales: Scales) -> rrb.Spatial2DView:
     """Hole, BHA and forces around the BHA."""
     return rrb.Spatial2DView(
         origin="bit_frame",
-        name=f"Bit frame (m), lateral axis enlarged × {scales.lateral:g}",
+        name=f"Bit frame, lateral × {scales.lateral:g} (m)",
         background=GROUND,
         visual_bounds=_bounds(scales.frame),
     )

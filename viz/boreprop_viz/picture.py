@@ -120,8 +120,9 @@ def viewer(recording: Path, width: int = 1600, height: int = 1000, *, light: boo
 
 @contextmanager
 def screen(width: int, height: int) -> Iterator[str]:
-    """Start a virtual screen of that size, in pixels; yields its name, as in the environment variable DISPLAY."""
-    command = ["Xvfb", "-displayfd", "1", "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp"]
+    """Start a virtual screen for a window of that size, pixels; yields its name, as in the variable DISPLAY."""
+    outside = f"{2 * width + 2}x{2 * height + 2}x24"  # so that its pointer, which is in the middle, points at nothing
+    command = ["Xvfb", "-displayfd", "1", "-screen", "0", outside, "-nolisten", "tcp"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
         assert process.stdout
         try:

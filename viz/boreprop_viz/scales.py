@@ -64,6 +64,12 @@ class Scales:
     ranges: dict[str, tuple[float, float] | None]  # plot → its range in the unit shown; None: the viewer chooses it
 
     @property
+    def grid_step(self) -> float:
+        """The length between two lines of the grid of the vertical section, m."""
+        (left, right), (top, bottom) = self.section.x, self.section.y
+        return round_down(max(right - left, bottom - top) / 4)
+
+    @property
     def round_start(self) -> float:
         """A round measured depth, m, at the start or above it by at most a tenth of the length of the run."""
         unit = 10.0 ** ceil(log10(max(self.length, 1.0) / 100.0))

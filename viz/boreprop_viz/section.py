@@ -20,6 +20,7 @@ from .track import Indices, Track, arrivals, consecutive, moments, points, send,
 
 POINTS_IN_HALF = 20  # of the drawn hole over half the length of the BHA, at most: a wave shows no corners
 POINTS_IN_PIECE = 20  # of it: the fewer pieces, the sooner the view is drawn, see benchmarks/viewer_seek.py
+DEPTH_ASIDE = 0.22  # of the width of the view, from the hole to the middle of a measured depth beside it
 SWATCH = 0.055  # height of a colour of the key over that of the view, which is a line of text with some room
 
 
@@ -63,6 +64,7 @@ class DrilledHole:
         through = np.append(drawn, 0)[consecutive(first, count)]
         through[np.cumsum(count) - 1] = new  # each row ends where its bit is
         self._send("newly_drilled", hole, through, count, recent)
+        log_depths(self.track, hole, self.drilled, recent)
         self.begun, self.drilled = hole.length[ends[-1]], hole.length[-1]
 
     def _send(self, thing: str, hole: HoleAxis, through: Indices, count: Indices, recent: Trajectory) -> None:
@@ -71,6 +73,18 @@ class DrilledHole:
         colours = None if self.track.colour else severity_colours(self.track, recent, ends)
         at, path = arrivals(recent, ends), hole.position[through]
         send_paths(self.track, f"vertical_section/{thing}", at, path, count, colours)
+
+
+def log_depths(track: Track, hole: HoleAxis, drilled: float, recent: Trajectory) -> None:
+    """The round measured depths in the hole drilled beyond the length `drilled`, m, beside it; of one run alone."""
+    start, step = track.scales.start, track.scales.grid_step
+    if start is None or track.place:
+        return
+    depth = step * np.arange(np.floor((start + drilled) / step) + 1, np.floor((start + hole.length[-1]) / step) + 1)
+    left, right = track.scales.section.x
+    beside = hole.at(depth - start) - np.array([DEPTH_ASIDE * (right - left), 0.0])
+    labels = rr.Points2D.columns(positions=beside, labels=[f"MD {round(value)} m" for value in depth])
+    send(track, "vertical_section/depths", arrivals(recent, depth - start), labels)
 
 
 def severity_colours(track: Track, rows: Trajectory, ends: Array) -> NDArray[np.uint8]:

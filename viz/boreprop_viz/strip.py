@@ -53,5 +53,6 @@ def log_strip_grid(rec: rr.RecordingStream, scales: Scales) -> None:
     rec.log("strip/grid", rr.LineStrips2D.from_fields(strips=lines), static=True)
     above = TEXT * (bottom - top)
     log_labels(rec, "strip/grid/depth", points(left / 2, depth - above / 2), [f"{round(value)} m" for value in depth])
-    places = points(right / 2, top + above * np.array([0.2, 1.3]))
-    log_labels(rec, "strip/grid/ripple", places, [f"× {scales.strip.lateral:g}", f"±{SMALL_LENGTH.text(aside)}"])
+    places = points((left + right) / 2, top + above * np.array([0.2, 1.3]))
+    heading = [f"ripple × {scales.strip.lateral:g}", f"lines ±{SMALL_LENGTH.text(aside)}"]
+    log_labels(rec, "strip/grid/ripple", places, heading)

@@ -31,7 +31,8 @@ TIMELINES = (TIMELINE, DEPTH_TIMELINE, TIME_TIMELINE)
 MODES = "modes"  # the lanes
 MOST_NUMBERED = 2  # runs
 DECIMALS = 4  # of a curve
-LABEL_APART = 0.09  # of the width of the bit frame, from the tail of an arrow to the middle of its number
+LABEL_APART = 0.09  # of the width of the bit frame, from the tail of an arrow to the middle of its number, which …
+LABEL_AT_MOST = 0.8  # … is at most so far from the middle of the frame, parts of its half width
 
 Indices = NDArray[np.int64]
 
@@ -192,6 +193,7 @@ def send_arrows(track: Track, thing: str, at: Moments, tip: Array, force: Array)
     if track.numbered:
         left, right = track.scales.frame.x
         beside = tails - points(LABEL_APART * (right - left) * np.sign(force[there]), 0.0)
+        beside[:, 0] = np.clip(beside[:, 0], LABEL_AT_MOST * left, LABEL_AT_MOST * right)
         send(track, f"{thing}/label", at, rr.Points2D.columns(positions=beside).partition(there))
         unit = UNITS["N"]
         texts = [f"{round(unit.factor * newtons, 2):.3g} {unit.shown}" for newtons in np.abs(force).tolist()]
