@@ -43,6 +43,7 @@ bench: .venv/bench.installed  # speed, side by side with something else
 	$(BIN)/python benchmarks/whole_process.py
 	$(BIN)/python benchmarks/fmu_cost.py
 	$(BIN)/python benchmarks/viewer_cost.py
+	$(BIN)/python benchmarks/viewer_seek.py
 	$(BIN)/python benchmarks/stability_chart.py
 	$(BIN)/python benchmarks/study.py
 	$(BIN)/python benchmarks/native.py

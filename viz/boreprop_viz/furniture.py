@@ -137,7 +137,7 @@ def log_grid(rec: rr.RecordingStream, scales: Scales) -> None:
     lines = [*points(x[:, None], np.array([top, bottom])), *points(np.array([left, right]), z[:, None])]
     rec.log("vertical_section/grid", rr.LineStrips2D.from_fields(strips=lines), static=True)
     left, right, bottom = 0.9 * left + 0.1 * right, 0.9 * right + 0.1 * left, 0.95 * bottom + 0.05 * top
-    x, z = x[(x > left) & (x < right)], z[z < bottom]
+    x, z = x[(x > left) & (x < right)], z[z < bottom - 0.055 * (bottom - top)]  # a line of text above the lowest
     log_labels(rec, "vertical_section/grid/depth", points(left, z), [f"{round(value)} m" for value in z])
     log_labels(rec, "vertical_section/grid/displacement", points(x, bottom), [f"{round(value)} m" for value in x])
 
