@@ -4,6 +4,7 @@ import subprocess
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from shutil import which
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ from boreprop_viz.feeder import PROGRAM
 from boreprop_viz.picture import SOFTWARE_DRIVERS, Viewer, viewer
 from boreprop_viz.record import record
 from boreprop_viz.scene import Array
-from boreprop_viz.style import BY_SEVERITY, HOLE, Colour
+from boreprop_viz.style import BIT, BY_SEVERITY, HOLE, Colour
 from boreprop_viz.track import DEPTH_TIMELINE, TIMELINE
 
 LENGTH = 60.0
@@ -66,6 +67,27 @@ def test_every_view_draws_something_and_complains_of_nothing(shown: Viewer) -> N
         assert drawn(view, shown.picture(view)) > BLANK, view.name
         assert not shown.reports(view), view.name
     assert not shown.warnings()
+
+
+@pytest.mark.parametrize("size", [(1280, 720), (1600, 900)])
+@pytest.mark.parametrize("light", [False, True])
+def test_by_day_and_by_night_a_window_of_either_size_shows_all_views(
+    recorded: Path, size: tuple[int, int], light: bool
+) -> None:
+    if light and not which("Xvfb"):
+        pytest.skip("no virtual screen (Debian: xvfb)")
+    with viewer(recorded, *size, light=light) as shown:
+        assert not [view.name for view in shown.views() if shown.reports(view)]
+        picture = np.asarray(shown.picture(), dtype=int)
+    assert picture.shape[:2] == size[::-1]
+    left, middle, right = np.split(picture, [round(0.29 * size[0]), round(0.52 * size[0])], axis=1)
+    assert coloured(left, [HOLE]) > 100  # section and strip
+    assert coloured(middle, [HOLE]) > 500  # walls
+    assert coloured(middle, [BIT]) > 1000  # BHA and stabilizers
+    assert coloured(right, [HOLE]) > 1000  # ripple
+    assert coloured(right, [BIT]) > 1000  # tilt
+    ground = np.median(right.reshape(-1, 3), axis=0)
+    assert np.all(ground > 230) if light else np.all(ground < 25)
 
 
 def test_a_view_that_cannot_draw_complains(tmp_path: Path) -> None:

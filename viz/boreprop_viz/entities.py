@@ -154,13 +154,15 @@ def lanes(quantity: str, n: int) -> list[str]:
 def log_modes(track: Track, stretch: Stretch, shown: dict[str, float]) -> dict[str, float]:
     """The changes of the wall that each stabilizer touches, and of the saturation of the bit tilt.
 
+    Once in a while a value is logged again though it is the same: a server that is short of memory drops what is oldest.
     `shown` has the value that each lane shows before these rows; the values after them are returned.
     """
     rows, last = stretch.rows, {}
+    again = np.diff(rows["drilled_length"] // track.scales.window, prepend=0.0) != 0.0
     for quantity, states in LANES.items():
         for lane, scalar in zip(lanes(quantity, rows.n), BY_NAME[quantity].names(rows.n), strict=True):
             values = rows[scalar]
-            changed = np.flatnonzero(np.diff(values, prepend=shown.get(lane, np.nan)) != 0.0)
+            changed = np.flatnonzero((np.diff(values, prepend=shown.get(lane, np.nan)) != 0.0) | again)
             words = [states[int(value)][0] for value in values[changed]]
             send(track, lane, moments(rows).where(changed), rr.StateChange.columns(state=words))
             last[lane] = values[-1]

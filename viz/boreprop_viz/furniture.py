@@ -169,8 +169,8 @@ def log_places(rec: rr.RecordingStream, scales: Scales, cases: Sequence[Case]) -
     lines = list(points(np.array([left, right]), up[:, None]))
     rec.log("bit_frame/places", rr.LineStrips2D.from_fields(strips=lines), static=True)
     beside = up + LINE * scales.frame.y[0] * np.where(up < 0.0, 1.0, -1.0)  # the bit's are below, clear of the pads'
-    log_labels(rec, "bit_frame/places/names", points(0.74 * left, beside), list(names.values()))
-    log_labels(rec, "bit_frame/places/distances", points(0.85 * right, beside), [f"{s:.4g} m" for s in names])
+    log_labels(rec, "bit_frame/places/names", points(0.72 * left, beside), list(names.values()))
+    log_labels(rec, "bit_frame/places/distances", points(0.82 * right, beside), [f"{s:.4g} m" for s in names])
 
 
 def log_scale(rec: rr.RecordingStream, scales: Scales) -> None:

@@ -51,7 +51,7 @@ def blueprint(scales: Scales, tracks: Sequence[Track], key: Sequence[Entry]) -> 
                 rrb.Tabs(*(one for one in tabs if one), card(), stations(), active_tab=2 if scales.rippling else 0),
                 row_shares=[high, TAB],
             ),
-            column_shares=[0.19, 0.095, 0.235, 0.48],
+            column_shares=[0.19, 0.1, 0.23, 0.48],
         ),
         TimePanel(scales),
         rrb.BlueprintPanel(state="hidden"),

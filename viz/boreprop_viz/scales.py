@@ -20,7 +20,7 @@ from .style import BY_SEVERITY, PLOTS, Plot
 WAVES = 11.0  # waves that ripple and modes show: more are too narrow to see, fewer do not show whether they last
 USUAL_WAVELENGTH = 1.4  # half lengths of the BHA: the wavelength assumed before there is a ripple
 STRIP_SHAPE = 0.2  # width of the strip over its height: it is narrow
-STRIP_TOP, STRIP_BOTTOM, STRIP_LEFT = 0.08, 0.02, 0.38  # of its height, of its width: room for text
+STRIP_TOP, STRIP_BOTTOM, STRIP_LEFT = 0.1, 0.02, 0.38  # of its height, of its width: room for text
 TREND = 0.75  # wavelengths, at most half the BHA: width of the trend, see `axis_ripple`, of which a wave leaves < 0.1 %
 FULL_RIPPLE = 0.25  # ψ* times the wavelength: the ripple of a hole whose bit tilts from limit to limit
 MARGIN = 0.1  # of the span of all curves, above and below them, so that they do not run along the edge

@@ -82,7 +82,9 @@ def log_depths(track: Track, hole: HoleAxis, drilled: float, recent: Trajectory)
         return
     depth = step * np.arange(np.floor((start + drilled) / step) + 1, np.floor((start + hole.length[-1]) / step) + 1)
     left, right = track.scales.section.x
-    beside = hole.at(depth - start) - np.array([DEPTH_ASIDE * (right - left), 0.0])
+    beside = hole.at(depth - start)
+    side = np.where(beside[:, 0] < 0.6 * left + 0.4 * right, 1.0, -1.0)  # that on which there is room
+    beside[:, 0] += side * DEPTH_ASIDE * (right - left)
     labels = rr.Points2D.columns(positions=beside, labels=[f"MD {round(value)} m" for value in depth])
     send(track, "vertical_section/depths", arrivals(recent, depth - start), labels)
 

@@ -52,7 +52,8 @@ def log_strip_grid(rec: rr.RecordingStream, scales: Scales) -> None:
     lines = [*points(np.array([0.0, right]), depth[:, None]), *down]
     rec.log("strip/grid", rr.LineStrips2D.from_fields(strips=lines), static=True)
     above = TEXT * (bottom - top)
-    log_labels(rec, "strip/grid/depth", points(left / 2, depth - above / 2), [f"{round(value)} m" for value in depth])
-    places = points((left + right) / 2, top + above * np.array([0.2, 1.3]))
-    heading = [f"ripple × {scales.strip.lateral:g}", f"lines ±{SMALL_LENGTH.text(aside)}"]
+    log_labels(rec, "strip/grid/depth", points(left / 2, depth - above / 2), [f"{round(value)}" for value in depth])
+    places = points((left + right) / 2, top + above * np.array([-0.3, 0.8, 1.9]))
+    along = "drilled length (m)" if scales.start is None else "MD (m)"
+    heading = [f"ripple × {scales.strip.lateral:g}", f"lines ±{SMALL_LENGTH.text(aside)}", along]
     log_labels(rec, "strip/grid/ripple", places, heading)
