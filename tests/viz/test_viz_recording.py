@@ -210,7 +210,8 @@ def test_a_lane_changes_where_the_mode_does(
     ticks = np.rint(1000 * run["drilled_length"]).astype(int).tolist()
     shown = held(recorded, f"modes/{lane}", "StateChange:state", ticks)
     assert shown == [[words[int(mode)]] for mode in run[column]]
-    assert 2 < len(read(recorded, f"modes/{lane}", "StateChange:state")) < run.row_count
+    logged = read(recorded, f"modes/{lane}", "StateChange:state")
+    assert 2 < len(logged) < run.row_count
 
 
 def test_the_ripple_is_shown_as_far_as_its_trend_is_known(recorded: Path, run: Trajectory, case: Case) -> None:

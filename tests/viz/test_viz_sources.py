@@ -18,6 +18,7 @@ from boreprop.run.results import write_trajectory
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
 from boreprop_fmu.pack.build import build_fmu
+from boreprop_viz.record import record
 from boreprop_viz.source import paced
 from conftest import Command
 from rrd import read, stacked, static
@@ -27,6 +28,7 @@ import sys
 from boreprop_fmu.host.drive import FmuRun
 from boreprop_viz.record import Drawing
 from boreprop_viz.sinks import open_recording
+from boreprop_viz.record import record
 from boreprop_viz.source import live, stored
 
 fmu, now, then = sys.argv[1:]
@@ -202,3 +204,11 @@ def test_a_run_without_what_a_picture_needs_is_refused(
     assert done.stderr.startswith("error: run.csv: ")
     assert missing.partition("[")[0] in done.stderr
     assert not (tmp_path / "run.rrd").exists()
+
+
+def test_a_lane_that_does_not_change_is_logged_again_now_and_then(case: Case, tmp_path: Path) -> None:
+    heavy = simulate(replace(case, active_weight_on_bit=16 * case.active_weight_on_bit), length=200.0)
+    record(heavy, save=tmp_path / "heavy.rrd")
+    logged = read(tmp_path / "heavy.rrd", "modes/tilt", "StateChange:state")
+    assert {word for [word] in logged.values()} == {"–"}
+    assert max(np.diff([*sorted(logged), 200_000])) <= 10_000 * case.bha.half_length + 100

@@ -19,6 +19,7 @@ from .track import Track, arrivals, moments, points, send, send_arrows, send_cur
 
 RIPPLE = "plots/ripple/ripple"
 BIT_LENGTH = 0.04  # length of the drawn bit over that of the BHA
+AGAIN = 10.0  # half lengths of the BHA after which lanes are logged again
 LABEL, LABELS_APART = 1.1, 0.2  # places of the labels of ψ over the length of the drawn directions: the first one just
 # ahead of these, those of further runs nearer to the bit, each clear of the one before
 
@@ -151,19 +152,16 @@ def lanes(quantity: str, n: int) -> list[str]:
     return [f"modes/stabilizer_{i}" for i, _ in enumerate(BY_NAME[quantity].names(n), 1)]
 
 
-def log_modes(track: Track, stretch: Stretch, shown: dict[str, float]) -> dict[str, float]:
-    """The changes of the wall that each stabilizer touches, and of the saturation of the bit tilt.
+def log_modes(track: Track, rows: Trajectory, new: int) -> None:
+    """Where the wall that each stabilizer touches, and the saturation of the bit tilt, change in the `new` last rows.
 
-    Once in a while a value is logged again though it is the same: a server that is short of memory drops what is oldest.
-    `shown` has the value that each lane shows before these rows; the values after them are returned.
+    `rows` are these and at least the row before. Once in a while what has not changed is logged again: a server that is
+    short of memory drops what is oldest.
     """
-    rows, last = stretch.rows, {}
-    again = np.diff(rows["drilled_length"] // track.scales.window, prepend=0.0) != 0.0
+    again = np.diff(rows["drilled_length"] // (AGAIN * track.case.bha.half_length), prepend=np.nan) != 0.0
     for quantity, states in LANES.items():
         for lane, scalar in zip(lanes(quantity, rows.n), BY_NAME[quantity].names(rows.n), strict=True):
-            values = rows[scalar]
-            changed = np.flatnonzero((np.diff(values, prepend=shown.get(lane, np.nan)) != 0.0) | again)
-            words = [states[int(value)][0] for value in values[changed]]
+            changed = np.flatnonzero((np.diff(rows[scalar], prepend=np.nan) != 0.0) | again)
+            changed = changed[changed >= rows.row_count - new]
+            words = [states[int(value)][0] for value in rows[scalar][changed]]
             send(track, lane, moments(rows).where(changed), rr.StateChange.columns(state=words))
-            last[lane] = values[-1]
-    return last

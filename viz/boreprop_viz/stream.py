@@ -33,7 +33,6 @@ class RunStream:
         self.frame = BitFrame(track.case)
         self.hole: DrilledHole | None = None  # from the first rows on
         self.rippled = -np.inf  # drilled length up to which its ripple is drawn, m
-        self.modes: dict[str, float] = {}  # the last value of each lane
         self.verdict = Verdict(track.case, track.scales.start or 0.0)
         log_styles(track)
 
@@ -63,5 +62,5 @@ class RunStream:
         for log_along in (log_ripple, log_strip):
             log_along(self.track, rows, length, ripple, self.rippled)
         self.rippled = max([self.rippled, *length[-1:]])
-        self.modes = log_modes(self.track, stretch, self.modes)
+        log_modes(self.track, rows, stretch.rows.row_count)
         return self.verdict.follow(stretch.rows)
