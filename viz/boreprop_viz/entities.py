@@ -15,7 +15,7 @@ from boreprop.units import SMALL_LENGTH, UNITS
 from .scene import AHEAD, Array, Shapes
 from .source import Stretch
 from .style import LANES, PLOTS
-from .track import Track, arrivals, moments, points, send, send_arrows, send_curve, send_strips, send_texts
+from .track import Track, arrivals, moments, points, send, send_arrows, send_curve, send_numbers, send_strips
 
 RIPPLE = "plots/ripple/ripple"
 BIT_LENGTH = 0.04  # length of the drawn bit over that of the BHA
@@ -64,8 +64,11 @@ def log_tilt(track: Track, shapes: Shapes) -> None:
     if track.numbered:
         places = points(track.scales.lateral * shapes.bit_turn * reach, (LABEL - LABELS_APART * track.place) * reach)
         send(track, "bit_frame/tilt/label", at, rr.Points2D.columns(positions=places))
-        tilts = [f"ψ {UNITS['rad'].number(tilt, '+z.2f')}{UNITS['rad'].shown}" for tilt in shapes.rows["bit_tilt"]]
-        send_texts(track, "bit_frame/tilt/label", at, [tilt.replace("-", "−") for tilt in tilts])
+        unit = UNITS["rad"]
+        shown = np.round(unit.factor * shapes.rows["bit_tilt"], 2) + 0.0  # without a zero below zero
+        send_numbers(
+            track, "bit_frame/tilt/label", at, shown, lambda degrees: f"ψ {degrees:+.2f}{unit.shown}".replace("-", "−")
+        )
 
 
 def log_stabilizers(track: Track, shapes: Shapes) -> None:

@@ -4,7 +4,7 @@ All that a run shows is on up to three timelines: the drilled length and, if all
 measured depth, in whole millimetres; and the simulation time, if the run has one.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -160,9 +160,10 @@ def points(x: Array | float, y: Array | float) -> Array:
 
 def send_strips(track: Track, thing: str, at: Moments, strips: Array) -> None:
     """Send line strips at some moments, shape (rows, strips, points, 2)."""
-    rows, per_row = strips.shape[:2]
-    columns = rr.LineStrips2D.columns(strips=strips.reshape(-1, *strips.shape[2:]).astype(np.float32))
-    send(track, thing, at, columns.partition([per_row] * rows))
+    rows, per_row, count, _ = strips.shape
+    lines = line_strips(strips.reshape(-1, 2), np.full(rows * per_row, count))
+    columns = rr.LineStrips2D.columns(strips=lines)
+    send(track, thing, at, columns if per_row == 1 else columns.partition(np.full(rows, per_row)))
 
 
 def consecutive(first: Indices, count: Indices) -> Indices:
@@ -178,10 +179,17 @@ def send_paths(
 
     `path` has the points of all strips one after the other, (N, 2), and `count` how many each of them has, (rows,).
     """
+    send(track, thing, at, rr.LineStrips2D.columns(strips=line_strips(path, count), colors=colours))
+
+
+def line_strips(path: Array, count: Indices) -> pa.ListArray:
+    """Line strips through points (N, 2) one after the other, `count` of them each, as Arrow's array of lists.
+
+    Rerun's own conversion from numpy goes from strip to strip.
+    """
     offsets = np.append(0, np.cumsum(count)).astype(np.int32)
     through = Vec2DBatch(path.astype(np.float32)).as_arrow_array()
-    strips = pa.ListArray.from_arrays(offsets, through, type=LineStrip2DBatch([]).as_arrow_array().type)
-    send(track, thing, at, rr.LineStrips2D.columns(strips=strips, colors=colours))
+    return pa.ListArray.from_arrays(offsets, through, type=LineStrip2DBatch([]).as_arrow_array().type)
 
 
 def send_arrows(track: Track, thing: str, at: Moments, tip: Array, force: Array) -> None:
@@ -196,15 +204,15 @@ def send_arrows(track: Track, thing: str, at: Moments, tip: Array, force: Array)
         beside[:, 0] = np.clip(beside[:, 0], LABEL_AT_MOST * left, LABEL_AT_MOST * right)
         send(track, f"{thing}/label", at, rr.Points2D.columns(positions=beside).partition(there))
         unit = UNITS["N"]
-        texts = [f"{round(unit.factor * newtons, 2):.3g} {unit.shown}" for newtons in np.abs(force).tolist()]
-        send_texts(track, f"{thing}/label", at, texts)
+        shown = np.round(unit.factor * np.abs(force), 2)
+        send_numbers(track, f"{thing}/label", at, shown, lambda number: f"{number:.3g} {unit.shown}")
 
 
-def send_texts(track: Track, thing: str, at: Moments, texts: Sequence[str]) -> None:
-    """Send the text of a label where it changes."""
-    changes = [i for i, text in enumerate(texts) if i == 0 or text != texts[i - 1]]
-    labels = rr.Points2D.columns(labels=[texts[i] for i in changes])
-    send(track, thing, at.where(np.array(changes)), labels)
+def send_numbers(track: Track, thing: str, at: Moments, numbers: Array, text: Callable[[float], str]) -> None:
+    """Send the text of a label, which is of a number, where the number changes."""
+    changes = np.flatnonzero(np.diff(numbers, prepend=np.nan) != 0.0)
+    labels = rr.Points2D.columns(labels=[text(number) for number in numbers[changes].tolist()])
+    send(track, thing, at.where(changes), labels)
 
 
 def send_curve(track: Track, entity: str, at: Moments, values: Array) -> None:
