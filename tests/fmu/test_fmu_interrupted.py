@@ -9,7 +9,7 @@ import pytest
 
 SCRIPT = """
 import os, signal, sys
-from boreprop_fmu.host.instance import uninterrupted
+from boreprop_fmu.host.instance import interruptions, uninterrupted
 
 def handler(number, frame):
     raise KeyboardInterrupt
@@ -18,7 +18,7 @@ number = getattr(signal, sys.argv[1])
 if sys.argv[2] == "handled":
     signal.signal(number, handler)
 try:
-    with uninterrupted():
+    with uninterrupted(interruptions()):
         os.kill(os.getpid(), number)
         print("the call ends", flush=True)
     print("nothing came")

@@ -16,7 +16,7 @@ from boreprop.core.quantities import INPUTS, OUTPUTS
 from boreprop.errors import InputError
 from boreprop.run.trajectory import Stopped, Trajectory
 
-from .instance import open_instance, read_description, uninterrupted
+from .instance import interruptions, open_instance, read_description, uninterrupted
 
 MAX_ROWS = 10_000_000  # more would need gigabytes of memory
 CLOSE = 1e-9  # of a step: times closer than this are taken as equal, for they differ by rounding
@@ -89,7 +89,7 @@ class FmuRun:
 
     def __iter__(self) -> Iterator[list[float]]:
         messages: deque[str] = deque(maxlen=1)
-        time = self.start
+        time, handlers = self.start, interruptions()
         try:
             with open_instance(self.fmu, self._description, messages, start=self.start, stop=self.stop) as slave:
                 if self._tolerance is not None:
@@ -100,7 +100,7 @@ class FmuRun:
                 slave.exitInitializationMode()
                 for k in range(len(self)):
                     point = self.start + k * self.step
-                    with uninterrupted():
+                    with uninterrupted(handlers):
                         self._advance(slave, time, point, changes)
                         time = point
                         row = [time, *read()]

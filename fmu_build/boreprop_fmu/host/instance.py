@@ -1,7 +1,7 @@
 """Loads an FMU through fmpy: reads its description, and opens an instance of it safely in this process."""
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from signal import Signals, getsignal, raise_signal, signal
@@ -15,8 +15,6 @@ from fmpy.fmi2 import FMU2Slave, defaultCallbacks, fmi2CallbackFunctions, fmi2Ca
 
 from boreprop.errors import InputError
 from boreprop.kernel.compiler import host_platform
-
-INTERRUPTIONS = [number for number in Signals if number.name in ("SIGINT", "SIGTERM", "SIGHUP")]
 
 
 def read_description(fmu: Path) -> Any:
@@ -108,25 +106,28 @@ def _library(directory: str, identifier: str, platform: str | None) -> str | Non
     return str(library) if platform and library.exists() else None
 
 
+def interruptions() -> dict[int, Any]:
+    """Ctrl-C, and the signals that ask for the end, with their handlers, as far as this thread handles them."""
+    if current_thread() is not main_thread():  # only the main thread is interrupted
+        return {}
+    handlers = {number: getsignal(number) for number in Signals if number.name in ("SIGINT", "SIGTERM", "SIGHUP")}
+    return {number: handler for number, handler in handlers.items() if callable(handler)}
+
+
 @contextmanager
-def uninterrupted() -> Iterator[None]:
-    """Delay Ctrl-C, and other signals that Python handles, until the end of a call.
+def uninterrupted(handlers: Mapping[int, Any]) -> Iterator[None]:
+    """Delay some signals, given with their handlers, until the end of a call.
 
     An FMU with Python in it would take what a handler raises for an error of its own.
     """
-    if current_thread() is not main_thread():  # only the main thread is interrupted
-        yield
-        return
     received: list[int] = []
-    before = {number: getsignal(number) for number in INTERRUPTIONS}
-    handled = [number for number, handler in before.items() if callable(handler)]
-    for number in handled:
+    for number in handlers:
         signal(number, lambda number, _: received.append(number))
     try:
         yield
     finally:
-        for number in handled:
-            signal(number, before[number])
+        for number, handler in handlers.items():
+            signal(number, handler)
     if received:
         raise_signal(received[0])
 
