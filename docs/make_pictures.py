@@ -22,6 +22,7 @@ from boreprop_viz.record import record
 
 HERE = Path(__file__).parent
 EXAMPLES = HERE.parent / "examples"
+LIVE_AT = 3093.9  # m, just before the end of what is drilled in the live run, where it is said to be interrupted
 MENU = 37  # pixels at the top
 COLOURS = 256  # of a palette: half the size of a picture, and nobody sees it
 
@@ -42,7 +43,7 @@ def main() -> None:
             keep(whole(shown, 150.0), "overlaid")
         drill_for_a_while(Path(name, "build_section.fmu"), recording, rows=5000)
         with viewer(recording) as shown:
-            keep(whole(shown), "live")
+            keep(whole(shown, LIVE_AT), "live")
 
 
 def drill_for_a_while(fmu: Path, recording: Path, rows: int) -> None:
@@ -57,17 +58,16 @@ def drill_for_a_while(fmu: Path, recording: Path, rows: int) -> None:
         record({fmu.stem: run}, plan=read_survey(EXAMPLES / "build_section_plan.csv"), save=recording, progress=stop)
 
 
-def whole(shown: Viewer, length: float | None = None) -> Image.Image:
-    """The viewer without its menu, its cursor at a drilled length, m; None: where it is."""
-    if length is not None:
-        shown.seek(round(1000 * length))
+def whole(shown: Viewer, depth: float) -> Image.Image:
+    """The viewer without its menu, its cursor at a measured depth, m."""
+    shown.seek(round(1000 * depth))
     picture = shown.picture()
     return picture.crop((0, MENU, *picture.size))
 
 
-def bit_frame(shown: Viewer, length: float) -> Image.Image:
-    """The bit frame alone."""
-    shown.seek(round(1000 * length))
+def bit_frame(shown: Viewer, depth: float) -> Image.Image:
+    """The bit frame alone, its cursor at a measured depth, m."""
+    shown.seek(round(1000 * depth))
     [view] = [view for view in shown.views() if view.origin.strip("/") == "bit_frame"]
     picture = shown.picture(view)
     ground = Image.new(picture.mode, picture.size, picture.getpixel((0, 0)))

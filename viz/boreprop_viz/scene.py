@@ -24,7 +24,7 @@ from boreprop.run.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
-POINTS_ALONG_BHA = 32  # of the drawn hole, and twice those of the BHA: smooth curves with little data
+POINTS_ALONG_BHA = 36  # of the drawn hole, and twice those of the BHA: smooth curves with little data
 POINTS_OF_PLAN = 1000  # of the drawn plan: at most a pixel apart
 REACH_ABOVE_BHA = 1.15  # lengths of the BHA up to which the bit frame shows the hole, so that its top can be seen
 AHEAD = 0.2  # lengths of the BHA ahead of the bit over which the bit frame shows the directions of bit and hole
