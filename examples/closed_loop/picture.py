@@ -48,7 +48,7 @@ def picture(
     inclination.set_ylabel("borehole inclination (°)")
     error.set_ylabel("inclination − plan (°)")
     force.set_ylabel("steering force (kN)")
-    weight.set_ylabel("active weight on bit (kN)")
+    weight.set_ylabel("active weight\non bit (kN)")
     weight.set_ylim(0, 70)
     weight.set_xlabel("drilled length (m)")
     weight.set_xlim(0, drilled[-1])
