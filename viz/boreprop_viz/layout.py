@@ -164,7 +164,7 @@ def waves(name: str, scales: Scales, tracks: Sequence[Track], *, whole: bool) ->
     """A tab of ripple, bit tilt and modes, over the whole run or over the last waves up to the cursor."""
     views = [series("ripple", "Ripple: hole axis less its trend (mm)", scales, scales.ripple, whole=whole)]
     lanes = LANES_FRAME + LANE * sum(track.lanes for track in tracks)
-    if lanes <= TAB / 2:
+    if lanes <= TAB / 4:
         views.append(series("bit_tilt", "Bit tilt (°)", scales, scales.ranges["bit_tilt"], whole=whole))
     modes = rrb.StateTimelineView(
         origin="modes", name="Contacts: low, high side; saturated tilt: +, −", time_view=_time_axis(scales, whole)

@@ -24,7 +24,10 @@ STRIP_TOP, STRIP_BOTTOM, STRIP_LEFT = 0.1, 0.02, 0.38  # of its height, of its w
 TREND = 0.75  # wavelengths, at most half the BHA: width of the trend, see `axis_ripple`, of which a wave leaves < 0.1 %
 FULL_RIPPLE = 0.25  # ψ* times the wavelength: the ripple of a hole whose bit tilts from limit to limit
 MARGIN = 0.1  # of the span of all curves, above and below them, so that they do not run along the edge
-MOST_STEPS = 7.5  # powers of ten in the range of a plot for which it has room, in a small window, to number each
+MOST_STEPS, MOST_STEPS_OF_RIPPLE = (
+    6.0,
+    7.5,
+)  # powers of ten in the range of a plot for which it has room, in a small window, to number each
 SMALLEST_SPAN = 0.01  # of its largest value, which a plot shows to either side of a curve without a change
 EDGE = 0.1  # of such a power, between a number and the edge of the plot
 TILTS = 1.15  # tilt limits to either side in the plot of the tilt, so that a tilt at its limit does not lie on the edge
@@ -136,7 +139,7 @@ def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) ->
         severities=severities(cases),
         window=WAVES * wavelength,
         rippling=bool(waves),
-        ripple=with_ticks(-1000 * max(ripples), 1000 * max(ripples)),
+        ripple=with_ticks(-1000 * max(ripples), 1000 * max(ripples), MOST_STEPS_OF_RIPPLE),
         trend=min(TREND * wavelength, *(case.bha.half_length for case in cases)),
         length=length,
         duration=duration,
@@ -201,12 +204,12 @@ def plot_range(plot: Plot, curves: Sequence[Array]) -> tuple[float, float]:
     return with_ticks(low - margin, high + margin)
 
 
-def with_ticks(low: float, high: float) -> tuple[float, float]:
+def with_ticks(low: float, high: float, most_steps: float = MOST_STEPS) -> tuple[float, float]:
     """A range of a plot, widened as little as possible until two of the values that the viewer numbers lie in it.
 
     The viewer numbers multiples of a power of ten, the smallest for which there is room.
     """
-    step = 10.0 ** ceil(log10((high - low) / MOST_STEPS))
+    step = 10.0 ** ceil(log10((high - low) / most_steps))
     pairs = [(step * k, step * (k + 1)) for k in range(floor(low / step), ceil(high / step))]
     first, second = min(pairs, key=lambda pair: max(low - pair[0], 0.0) + max(pair[1] - high, 0.0))
     return min(low, first - EDGE * step * (first < low)), max(high, second + EDGE * step * (second > high))

@@ -120,7 +120,7 @@ PLOTS = {
     "rate_of_penetration": Plot("Rate of penetration", ("rate_of_penetration",), (BLUE,)),
 }
 TABS = (  # names of tabs and the plots in each
-    ("Hole", ("inclination", "build_rate")),
+    ("Hole", ("inclination", "build_rate", "bit_tilt")),
     ("Plan", ("distance_from_plan", "inclination_less_plan")),
     ("Forces", ("stabilizer_force", "rss_force", "bit_lateral_force")),
     ("Drilling", ("active_weight_on_bit", "rate_of_penetration")),
