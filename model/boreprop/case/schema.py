@@ -4,6 +4,7 @@ The keys are those of the table of quantities; the types are those of the datacl
 """
 
 import json
+import re
 import tomllib
 from collections.abc import Callable
 from contextlib import suppress
@@ -34,6 +35,8 @@ OF_FILES: dict[str, tuple[str, Callable[[Path], Survey | Schedule]]] = {
 }
 """Key that names a CSV file → the field of a `Case` that the file holds, and the function that reads it."""
 
+PATHS = "must be a path with forward slashes or in single quotes, since in double quotes a backslash begins an escape"
+
 _CASE = TypeAdapter(Case)
 
 
@@ -42,7 +45,7 @@ def parse(text: str, source: Path) -> Case:
     try:
         document = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{source}: must be TOML, got: {error}") from error
+        raise InputError(f"{source}: {_no_toml(error, text)}") from error
     check_keys(document, source)
     fields = case_fields(document) | read_files(document, source)
     try:
@@ -52,6 +55,16 @@ def parse(text: str, source: Path) -> Case:
         errors = error.errors(include_url=False)
         more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
         raise InputError(f"{source}: {_message(errors[0], document)}{more}") from error
+
+
+def _no_toml(error: tomllib.TOMLDecodeError, text: str) -> str:
+    """What is wrong with a text that is no TOML: most often a path as Windows writes it."""
+    at = re.search(r"\(at line (\d+)", str(error))
+    if at:
+        line = text.split("\n")[int(at[1]) - 1].strip()
+        if re.search(r'"[^"]*\\', line):
+            return f"line {at[1]}: {PATHS}, got {shown(line)}"
+    return f"must be TOML, got: {error}"
 
 
 def check_keys(document: dict[str, Any], source: Path) -> None:
@@ -70,6 +83,8 @@ def check_keys(document: dict[str, Any], source: Path) -> None:
                 raise InputError(f"{source}: {where}: {_unknown(key)}, got {shown(value)}")
             if BY_KEY[where].kind == "String" and not isinstance(value, str):
                 raise InputError(f"{source}: {where}: must be text in quotes, got {shown(value)}")
+            if where in OF_FILES and not value.isprintable():  # "C:\temp" has a tab in it
+                raise InputError(f"{source}: {where}: {PATHS}, got {shown(value)}")
     for where in OF_FILES:
         table, _, file = where.partition(".")
         columns = columns_of(table)
