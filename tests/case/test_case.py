@@ -129,6 +129,11 @@ def test_a_byte_order_mark_and_windows_line_ends_are_no_trouble(paper_text: str,
         ("= 0.6", "= 1979-05-27", "bha.rss_position: must be a valid number, got datetime.date(1979, 5, 27)"),
         ("= 2.0", "= 95", "bit.tilt_limit_deg: must be <= 90, got 95"),
         ("= 0.2159", "= 0", "bit.diameter: must be > 0, got 0.0"),
+        ("= 0.2159", "= 8.5", "bit.diameter: must be <= 1.5, got 8.5"),
+        ("[3.66e-3]", "[0.10795]", "bha.stabilizer_clearances[1]: must be < bit.diameter/2 = 0.10795, got 0.10795"),
+        ("[3.66e-3]", "[3.66]", "bha.stabilizer_clearances[1]: must be < bit.diameter/2 = 0.10795, got 3.66"),
+        ("[0.0, 0.0, 0.5]", "[0.0, -999.25, 0.5]", "hole.inclination_deg[2]: must be >= -180, got -999.25"),
+        ("[0.0, 0.0, 0.5]", "[0.0, 0.0, 180.1]", "hole.inclination_deg[3]: must be <= 180, got 180.1"),
         ("= 1612.469", "= -1", "drilling.active_weight_on_bit: must be > 0, got -1.0"),
         ("= 219.6", f"= 1{'0' * 400}", "drilling.length: must be "),
         ("= 219.6", "= inf", "drilling.length: must be a finite number, got inf"),
@@ -173,7 +178,7 @@ BACKSLASH = (
 )
 
 
-@pytest.mark.parametrize("path", ["C:/Users/me/s.csv", "data/survey.csv", "C:/new/temp/s.csv", "C:/x/", "//pc/s.csv"])
+@pytest.mark.parametrize("path", ["C:/Me/me/s.csv", "data/survey.csv", "C:/new/temp/s.csv", "C:/x/", "//pc/s.csv"])
 def test_a_path_as_windows_writes_it_is_refused_with_the_remedy(paper_text: str, tmp_path: Path, path: str) -> None:
     windows = path.replace("/", "\\")
     text = paper_text.partition("[hole]")[0] + f'[hole]\nsurvey = "{windows}"\n'

@@ -10,6 +10,7 @@ from boreprop.case.file import load_case
 from boreprop.case.packed import read_packed_case
 from boreprop.case.tables import read_schedule
 from boreprop.cli import console
+from boreprop.cli.cases import open_case
 from boreprop.core.survey import Survey
 from boreprop.errors import InputError
 from boreprop.run.results import SUFFIXES, read_trajectory
@@ -79,7 +80,7 @@ class Opener:
         if path.suffix == ".toml":
             if self.case or self.fmu:
                 raise InputError(f"{path}: must be a result file with --case or --fmu, got a case file")
-            case = load_case(path)
+            case = open_case(path)
             self.planned(case)  # raises before anything is drilled
             with console.progress("drilling", case.length) as drilled:
                 return simulate(case, progress=drilled)

@@ -6,7 +6,6 @@ from typing import Annotated
 
 import typer
 
-from ..case.file import load_case
 from ..core.checks import check_number
 from ..core.options import RELATIVE_TOLERANCE
 from ..errors import InputError
@@ -14,6 +13,7 @@ from ..run.engines import ENGINES
 from ..run.results import SUFFIXES, case_path, keeping_rows, write_trajectory
 from ..run.simulate import SAMPLE_INTERVAL, simulate
 from . import console
+from .cases import open_case
 from .options import CaseFile, Tolerance, one_of, positive
 
 MAX_ROWS = 10_000_000  # more would be a file of many gigabytes
@@ -47,7 +47,7 @@ def simulate_command(
     console.check_output(output, SUFFIXES)
     if case_path(output).resolve() == case_file.resolve():
         raise InputError(f"{output}: must have another name, since its case would overwrite the case file {case_file}")
-    case = load_case(case_file)
+    case = open_case(case_file)
     if length is not None:
         case = replace(case, length=length)
     check_number("--sample-interval", sample_interval, at_least=case.length / MAX_ROWS)

@@ -6,10 +6,10 @@ from typing import Annotated
 
 import typer
 
-from ..case.file import load_case
 from ..core.checks import check_number
 from ..report.tables.steering import HEADINGS, lines, piece_lines, summarize
 from . import console
+from .cases import open_case
 from .options import CaseFile, Inclination, positive
 from .printing import print_table
 
@@ -34,7 +34,7 @@ def steering_command(
         console.check_output(output, (".png",))
     if inclination_deg is not None:
         check_number("--inclination-deg", inclination_deg)
-    case = load_case(case_file)
+    case = open_case(case_file)
     summary = summarize(case, None if inclination_deg is None else radians(inclination_deg), force_limit)
     print_table(lines(summary), (str(case_file), ""))
     print_table(piece_lines(summary.curve), HEADINGS)
