@@ -125,7 +125,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("angular_steering_resistance", "parameter", "", "χ", "(4)", "angular over axial drilling resistance", above=0.0, key="bit.angular_steering_resistance", field="bit.angular_steering_resistance"),
     Quantity("bit_tilt_limit", "parameter", "rad", "ψ*", "(10)", "tilt at which the bit gauge meets the wall", above=0.0, at_most=pi / 2, nominal=0.01, key="bit.tilt_limit_deg", field="bit.tilt_limit"),
     Quantity("relative_tolerance", "parameter", "", "", "", "local error allowed in one step of the integrator, relative to 1 rad and ℓ₁", at_least=1e-12, at_most=1e-2, nominal=1e-7, start=RELATIVE_TOLERANCE),
-    Quantity("survey_file", "parameter", "", "", "", "survey of the existing hole (CSV); empty: the survey packed in the FMU", kind="String", start="", key="hole.survey"),
+    Quantity("survey_file", "parameter", "", "", "", "survey of the existing hole (plain CSV: UTF-8, commas, decimal points, m, degrees); empty: the survey packed in the FMU", kind="String", start="", key="hole.survey"),
 
     Quantity("bit_diameter", "case", "m", "", "", "diameter of the hole", above=0.0, at_most=1.5, key="bit.diameter", field="bit_diameter"),
     Quantity("length", "case", "m", "", "", "length to drill", above=0.0, key="drilling.length", field="length"),
