@@ -1,5 +1,7 @@
 """Draws a run into a recording, stretch by stretch."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from .entities import (
@@ -63,4 +65,4 @@ class RunStream:
             log_along(self.track, rows, length, ripple, self.rippled)
         self.rippled = max([self.rippled, *length[-1:]])
         log_modes(self.track, rows, stretch.rows.row_count)
-        return self.verdict.follow(stretch.rows)
+        return self.verdict.follow(replace(stretch.rows, columns=stretch.rows.columns | shapes.outside))
