@@ -5,6 +5,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pytest
 import rerun as rr
 from rerun.chunk import RrdReader
@@ -18,7 +19,7 @@ from boreprop.run.trajectory import Trajectory
 from boreprop_viz.picture import SOFTWARE_DRIVERS, environment
 from boreprop_viz.record import Drawing, record
 from boreprop_viz.source import stored
-from rrd import static
+from rrd import read, static
 from viewers import rerun, until
 
 PLAN = Survey((0.0, 100.0), (0.0, 0.1))
@@ -104,3 +105,13 @@ def titles(client: ViewerClient) -> list[str]:
 
 def shows(client: ViewerClient, expected: list[str]) -> bool:
     return titles(client) == expected
+
+
+def test_runs_whose_names_differ_in_their_spaces_alone_are_drawn_apart(
+    runs: dict[str, Trajectory], tmp_path: Path
+) -> None:
+    slim, wide = runs.values()
+    record({"a b": slim, "a  b": wide, "a_b": slim, " ": wide}, save=tmp_path / "names.rrd")
+    for part, expected in {"a_b": slim, "a_b_2": wide, "a_b_3": slim, "run": wide}.items():
+        drawn = read(tmp_path / "names.rrd", f"plots/bit_tilt/{part}/bit_tilt", "Scalars:scalars")
+        assert np.ravel(list(drawn.values())) == pytest.approx(np.degrees(expected["bit_tilt"]), abs=1e-4)
