@@ -32,6 +32,7 @@ MODES = "modes"  # the lanes
 MOST_NUMBERED = 2  # runs
 DECIMALS = 4  # of a curve
 LABEL_APART = 0.09  # of the width of the bit frame, from the tail of an arrow to the middle of its number, which …
+LABELS_APART = 0.035  # of the height of the bit frame, from the number of a run to that of the next
 LABEL_AT_MOST = 0.8  # … is at most so far from the middle of the frame, parts of its half width
 
 Indices = NDArray[np.int64]
@@ -215,6 +216,7 @@ def send_arrows(track: Track, thing: str, at: Moments, tip: Array, force: Array)
     if track.numbered:
         left, right = track.scales.frame.x
         beside = tails - points(LABEL_APART * (right - left) * np.sign(force[there]), 0.0)
+        beside[:, 1] += LABELS_APART * track.place * np.ptp(track.scales.frame.y)  # clear of that of the run before
         beside[:, 0] = np.clip(beside[:, 0], LABEL_AT_MOST * left, LABEL_AT_MOST * right)
         send(track, f"{thing}/label", at, rr.Points2D.columns(positions=beside).partition(there))
         unit = UNITS["N"]
