@@ -130,6 +130,11 @@ def log_labels(rec: rr.RecordingStream, entity: str, places: Array, labels: Sequ
     rec.log(entity, text, static=True)
 
 
+def metres(value: float) -> str:
+    """A round number of metres, without digits that are not needed."""
+    return f"{round(value, 3) + 0.0:.15g}"
+
+
 def log_grid(rec: rr.RecordingStream, scales: Scales) -> None:
     """Lines at round numbers of metres, labelled along the left and the bottom edge, except in the corners."""
     (left, right), (top, bottom) = scales.section.x, scales.section.y
@@ -139,8 +144,8 @@ def log_grid(rec: rr.RecordingStream, scales: Scales) -> None:
     rec.log("vertical_section/grid", rr.LineStrips2D.from_fields(strips=lines), static=True)
     left, right, bottom = 0.9 * left + 0.1 * right, 0.9 * right + 0.1 * left, 0.95 * bottom + 0.05 * top
     x, z = x[(x > left) & (x < right)], z[z < bottom - 0.055 * (bottom - top)]  # a line of text above the lowest
-    log_labels(rec, "vertical_section/grid/depth", points(left, z), [f"{round(value)} m" for value in z])
-    log_labels(rec, "vertical_section/grid/displacement", points(x, bottom), [f"{round(value)} m" for value in x])
+    log_labels(rec, "vertical_section/grid/depth", points(left, z), [f"{metres(value)} m" for value in z])
+    log_labels(rec, "vertical_section/grid/displacement", points(x, bottom), [f"{metres(value)} m" for value in x])
 
 
 def log_round_start(rec: rr.RecordingStream, scales: Scales) -> None:

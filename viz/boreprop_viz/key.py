@@ -17,6 +17,7 @@ from .track import Track
 KEY = "key"
 WIDTH, LINE = 600.0, 26.0  # of the key and of one of its lines
 ABOVE = 13.0  # by which a viewer draws a text below its place
+LONGEST = 40  # letters of a name, which may be wide ones
 SWATCH, GAP, LETTER, MARGIN = 18.0, 8.0, 7.0, 20.0  # width of a coloured line, of what is between two, of a letter, …
 
 Entry = tuple[str, Colour]
@@ -29,11 +30,16 @@ def entries(tracks: Sequence[Track], planned: bool) -> list[Entry]:
     if len(tracks) == 1:
         stabilizers = [(f"stabilizer {i}", colour) for i, colour in enumerate(BY_STABILIZER[: n - 1], 1)]
         return [("hole", HOLE), ("BHA, bit", BIT), *plan, ("RSS", RSS), *stabilizers, ("dogleg severity", OLIVE)]
-    runs = [(track.name, track.colour or GREY) for track in tracks]
+    runs = [(shortened(track.name), track.colour or GREY) for track in tracks]
     numbers = [f"stabilizer {i}" for i in range(1, n)]
     firsts = zip_longest(("hole, build rate", "bit, dogleg severity"), numbers, ("low, +", "high, −"))
     kinds = [", ".join(filter(None, first)) for first in firsts]
     return [*runs, *plan, *zip(kinds, tracks[0].shades(BY_STABILIZER[: len(kinds)]), strict=True)]
+
+
+def shortened(name: str) -> str:
+    """A name without its middle if it is too long for a line: a viewer shows no text that is wider than its view."""
+    return name if len(name) <= LONGEST else f"{name[: LONGEST // 2]}…{name[-LONGEST // 2 :]}"
 
 
 def places(entries: Sequence[Entry]) -> Iterator[tuple[float, float]]:

@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from boreprop.analysis.rippling import Rippling, State, find_rippling, last_wave
+from boreprop.analysis.rippling import Rippling, State, find_rippling, last_wave, visible_waves
+from boreprop.analysis.summary import SHORT_WAVE
 from boreprop.analysis.waves import large_until
 from boreprop.case.case import Case
 from boreprop.report.tables.stations import beside
@@ -56,7 +57,8 @@ class Verdict:
         self.past = ""  # the last ripple that is over, in words
         self.off_plan = 0.0  # the distance from the plan that was told last, m
         self.beyond = 0.0  # by how much the BHA was told to leave the hole, m
-        self.ripple, self.plan, self.sag, self.said = SO_FAR, "", "", ""  # in words
+        self.hidden = 0.0  # the longest wave that was told to be too short for its rows, m
+        self.ripple, self.unseen, self.plan, self.sag, self.said = SO_FAR, "", "", "", ""  # in words
 
     @property
     def next(self) -> float:
@@ -97,7 +99,7 @@ class Verdict:
 
     def _say(self, recent: Trajectory, end: str = "") -> list[Saying]:
         """What is to be said from the last of some rows on: nothing if it was said already."""
-        words = f"{self.ripple}{self.plan}{self.sag}{end}"
+        words = f"{self.ripple}{self.unseen}{self.plan}{self.sag}{end}"
         if words == self.said:
             return []
         self.said = words
@@ -114,6 +116,7 @@ class Verdict:
         confirmed, self.state = sure or wave.state is self.state, wave.state
         if confirmed and (wave.state is not self.told.state or _changed(wave, self.told)):
             self._tell(replace(find_rippling(recent), state=wave.state), recent)
+        self._see_spacing(recent)
         self._see_plan(recent, sure)
         self._see_sag(between(recent, before, np.inf))
 
@@ -144,6 +147,15 @@ class Verdict:
     def _place(self, length: float) -> str:
         """A drilled length, m, in words."""
         return UNITS["m"].text(self.origin + length, ".0f")
+
+    def _see_spacing(self, recent: Trajectory) -> None:
+        """Look how far apart some rows are, and put it into words if they hide short waves."""
+        hidden, _ = visible_waves(recent["drilled_length"])
+        if hidden <= SHORT_WAVE * self.every / EVERY:
+            self.hidden, self.unseen = 0.0, ""
+        elif abs(hidden - self.hidden) > NOTICEABLE * self.hidden:
+            self.hidden = hidden
+            self.unseen = f"; waves under {rounded(hidden, UNITS['m'])} would not show between these rows"
 
     def _see_plan(self, recent: Trajectory, sure: bool = False) -> None:
         """Look how far the last of some rows is off the plan, and put it into words if that has changed noticeably."""
