@@ -122,7 +122,9 @@ def view(
 ) -> None:
     """Draw runs with Rerun. A case is simulated first; an FMU is drawn while it runs."""
     if save is not None:
-        console.check_output(save, (".rrd",))
+        from boreprop.run.files import files_read  # imported here, since reading cases takes longer than help
+
+        console.check_output(save, (".rrd",), reads=files_read(*sources, case, fmu, plan, schedule))
     if case is not None and fmu is not None:
         raise InputError("--case, --fmu: at most one must be given, got both")
     if (viewers := spawn + serve + (connect is not None)) > 1:

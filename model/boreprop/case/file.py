@@ -15,7 +15,7 @@ import tomli_w
 from ..core.quantities import QUANTITIES
 from ..errors import InputError
 from .case import Case
-from .schema import TABLES, parse
+from .schema import OF_FILES, TABLES, parse
 
 
 def load_case(path: str | Path) -> Case:
@@ -76,6 +76,18 @@ def parse_case(text: str, source: str | Path) -> Case:
         If the text, or a file that it names, is malformed or breaks a constraint.
     """
     return parse(text, Path(source))
+
+
+def files_named(path: Path) -> list[Path]:
+    """The files that a case file names, there or not; none if it cannot be read, as `load_case` then says."""
+    try:
+        document = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError):
+        return []
+    places = [where.split(".") for where in OF_FILES]
+    tables = [(document.get(table), key) for table, key in places]
+    names = [content.get(key) for content, key in tables if isinstance(content, dict)]
+    return [path.parent / name for name in names if isinstance(name, str)]
 
 
 def read_run(text: str) -> dict[str, str]:

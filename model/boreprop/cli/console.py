@@ -6,7 +6,7 @@ Bad input of any kind ends a command with one line on stderr and exit status 2, 
 
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NoReturn
@@ -57,21 +57,25 @@ def warn(message: str) -> None:
     print("warning:", " ".join(message.split()), file=sys.stderr)
 
 
-def check_output(path: str | Path, suffixes: tuple[str, ...] = ()) -> Path:
+def check_output(path: str | Path, suffixes: tuple[str, ...] = (), *, reads: Iterable[Path] = ()) -> Path:
     """Check before the work that the file `path` can be written; return it.
 
     Raises
     ------
     InputError
-        If the path does not end in one of `suffixes`, its directory cannot be written to, or it is a directory.
+        If the path does not end in one of `suffixes`, its directory cannot be written to, it is no regular file, or
+        it is one of the files that the command `reads`.
     """
     path = Path(path)
     if suffixes and path.suffix not in suffixes:
         raise InputError(f"{path}: must end in {' or '.join(suffixes)}, got {path.suffix!r}")
     if not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
         raise InputError(f"{path}: must be in a directory that can be written to, got {str(path.parent)!r}")
-    if path.is_dir():
-        raise InputError(f"{path}: must be a file, got a directory")
+    if path.exists() and not path.is_file():
+        raise InputError(f"{path}: must be a file, got {'a directory' if path.is_dir() else 'a pipe or a device'}")
+    for read in reads:
+        if path.exists() and read.exists() and path.samefile(read):
+            raise InputError(f"{path}: must not be a file that the command reads, got one: choose another output")
     return path
 
 

@@ -16,6 +16,7 @@ from ..case.file import load_case
 from ..core.checks import check_number
 from ..errors import InputError
 from ..report.tables import stability as tables
+from ..run.files import files_read
 from . import console
 from .options import CaseFile, EtaPiRange, Inclination, positive
 from .printing import print_table
@@ -113,7 +114,7 @@ def stability_command(
     from ..report.figures.drawing import save  # imported here, since `roots` needs no matplotlib
     from ..report.figures.stability import draw
 
-    console.check_output(output, (".png",))
+    console.check_output(output, (".png",), reads=files_read(case_file))
     across = parse_range("--eta-pi", eta_pi) if eta_pi else None
     up = parse_range("--lambda2", lambda2) if lambda2 else None
     case = load_case(case_file)

@@ -16,6 +16,7 @@ from ..core.options import RELATIVE_TOLERANCE
 from ..errors import InputError
 from ..report.tables.hysteresis import loop
 from ..report.tables.tipping import SIDES, left_out, lines
+from ..run.files import files_read
 from . import console
 from .options import CaseFile, ClearanceRange, EtaPiRange, Tolerance, positive
 from .printing import print_table
@@ -40,7 +41,7 @@ def dogleg_command(
     clearance. Without --eta-pi or --clearance-mm, the values include those of the case.
     """
     if output is not None:
-        console.check_output(output, (".png",))
+        console.check_output(output, (".png",), reads=files_read(case_file))
     across = parse_range("--eta-pi", eta_pi) if eta_pi else None
     up = parse_range("--clearance-mm", clearance_mm) / 1e3 if clearance_mm else None
     case, limit = load_case(case_file), radians(limit_deg)
@@ -85,7 +86,7 @@ def hysteresis_command(
     from ..report.figures.drawing import save  # imported here, since `dogleg` can do without matplotlib
     from ..report.figures.hysteresis import draw
 
-    console.check_output(output, (".png",))
+    console.check_output(output, (".png",), reads=files_read(case_file))
     if (eta_pi is None) == (clearance_mm is None):
         raise InputError(f"--eta-pi, --clearance-mm: exactly one must be given, got {'both' if eta_pi else 'neither'}")
     case = load_case(case_file)
