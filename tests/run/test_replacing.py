@@ -26,8 +26,13 @@ def test_two_writers_with_the_same_process_number_leave_one_whole_file(
 def test_a_draft_that_is_not_finished_is_removed(tmp_path: Path, error: type[BaseException]) -> None:
     path = tmp_path / "run.csv"
     path.write_text("old")
-    with pytest.raises(error), replacing(path) as draft:
-        draft.write_text("half")
-        raise error
+
+    def write() -> None:
+        with replacing(path) as draft:
+            draft.write_text("half")
+            raise error
+
+    with pytest.raises(error):
+        write()
     assert path.read_text() == "old"
     assert list(tmp_path.iterdir()) == [path]

@@ -1,7 +1,7 @@
 """One-line errors, exit statuses and progress bars, for all three commands.
 
 Bad input of any kind ends a command with one line on stderr and exit status 2, a run that stops early with exit status
-3, and Ctrl-C with 130.
+3, and Ctrl-C with 130. Whatever ends a command, drafts and temporary folders are removed.
 """
 
 import os
@@ -13,6 +13,7 @@ from typing import NoReturn
 
 import typer
 
+from ..endings import endings_like_interrupt
 from ..errors import BorepropError, InputError
 
 BAD_INPUT, INTERRUPTED = 2, 130  # exit statuses
@@ -28,22 +29,23 @@ EXTRAS = {  # package → the extra that installs it
 
 def execute(app: typer.Typer) -> NoReturn:
     """Execute `app` with the arguments of the process, and exit."""
-    try:
-        sys.exit(app(standalone_mode=False))
-    except typer.TyperException as error:
-        context = getattr(error, "ctx", None)
-        fail(error.format_message() + (f" (see {context.command_path} --help)" if context else ""))
-    except BorepropError as error:
-        fail(str(error), error.exit_status)
-    except ModuleNotFoundError as error:
-        package = (error.name or "").partition(".")[0]
-        if package not in EXTRAS:
-            raise  # a bug
-        fail(f"{package} must be installed for this, got: {error}; pip install 'boreprop[{EXTRAS[package]}]'")
-    except OSError as error:
-        fail(f"{error.filename}: {error.strerror}" if error.filename else str(error))
-    except (KeyboardInterrupt, typer.Abort):
-        sys.exit(INTERRUPTED)
+    with endings_like_interrupt():
+        try:
+            sys.exit(app(standalone_mode=False))
+        except typer.TyperException as error:
+            context = getattr(error, "ctx", None)
+            fail(error.format_message() + (f" (see {context.command_path} --help)" if context else ""))
+        except BorepropError as error:
+            fail(str(error), error.exit_status)
+        except ModuleNotFoundError as error:
+            package = (error.name or "").partition(".")[0]
+            if package not in EXTRAS:
+                raise  # a bug
+            fail(f"{package} must be installed for this, got: {error}; pip install 'boreprop[{EXTRAS[package]}]'")
+        except OSError as error:
+            fail(f"{error.filename}: {error.strerror}" if error.filename else str(error))
+        except (KeyboardInterrupt, typer.Abort):
+            sys.exit(INTERRUPTED)
 
 
 def fail(message: str, status: int = BAD_INPUT) -> NoReturn:
