@@ -45,7 +45,7 @@ def end(folder: Path, name: str, begun: Callable[[], object], *arguments: str | 
 
 @ENDS
 def test_a_file_that_is_being_written(tmp_path: Path, paper_case: Path, name: str, status: int) -> None:
-    arguments = ["simulate", paper_case, "--output", "run.csv", "--length", "5000", "--sample-interval", "0.005"]
+    arguments = ["simulate", str(paper_case), "--output", "run.csv", "--length", "5000", "--sample-interval", "0.005"]
     begun = lambda: list(tmp_path.glob(".*.run.csv"))  # noqa: E731
     assert end(tmp_path, name, begun, "from boreprop.cli.app import main; main()", *arguments) == status
     assert not list(tmp_path.iterdir())
@@ -55,7 +55,7 @@ def test_a_file_that_is_being_written(tmp_path: Path, paper_case: Path, name: st
 @ENDS
 def test_an_fmu_that_is_being_run(tmp_path: Path, case: Case, flavour: Flavour, name: str, status: int) -> None:
     fmu = build_fmu(case, tmp_path / "Borehole.fmu", runtime=flavour.runtime)
-    arguments = ["run", fmu, "--output", "run.csv", "--step", "0.001", "--stop", "1000"]
+    arguments = ["run", str(fmu), "--output", "run.csv", "--step", "0.001", "--stop", "1000"]
     begun = lambda: list(tmp_path.glob("tmp/boreprop-fmu-*/binaries"))  # noqa: E731
     assert end(tmp_path, name, begun, "from boreprop_fmu.cli import main; main()", *arguments) == status
     assert list(tmp_path.iterdir()) == [fmu]
