@@ -35,6 +35,8 @@ def run_command(
 ) -> None:
     """Run an FMU and write the run to a file.
 
+    To run an FMU is to run the code in it, with all your rights: run only those from people whom you trust.
+
     Its rows are at whole multiples of the communication step, from 0. If the FMU cannot go on to the end, the rows up
     to there are written, and the exit status is 3.
     """

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from ..case.case import Case
 from ..case.file import dump_case, load_case, parse_case, read_run
-from ..core.columns import read_columns
+from ..core.columns import read_columns, regular
 from ..core.quantities import BY_NAME, INPUTS, OUTPUTS
 from ..errors import InputError
 from ..replacing import replacing
@@ -182,7 +182,7 @@ def _read_csv(path: Path, case: Case | None) -> Trajectory:
     own = case_path(path)
     if not own.exists():
         return Trajectory(columns, case)
-    about = read_run(own.read_text("utf-8-sig", errors="replace"))
+    about = read_run(regular(own).read_text("utf-8-sig", errors="replace"))
     return Trajectory(columns, load_case(own) if case is None else case, about.get("stopped"), about.get("engine"))
 
 
@@ -196,7 +196,7 @@ def _write_parquet(trajectory: Trajectory, path: Path) -> None:
 def _read_parquet(path: Path, case: Case | None) -> Trajectory:
     pyarrow, parquet = _pyarrow(path)
     try:
-        with parquet.ParquetFile(path) as file:
+        with parquet.ParquetFile(regular(path)) as file:
             ours = _ours(path, file.schema_arrow.names)
             table, metadata = file.read(columns=list(ours.values())), file.schema_arrow.metadata or {}
     except (OSError, pyarrow.ArrowException) as error:
