@@ -1,6 +1,6 @@
 """Options that several commands share, and the parsers of their values."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from math import inf, nan
 from pathlib import Path
 from typing import Annotated
@@ -81,9 +81,9 @@ ClearanceRange = Annotated[
 """The option --clearance-mm: ``clearance_mm: ClearanceRange = None``; see `ranges.parse_range`."""
 
 
-def check_asked(output: Path | None, as_json: bool) -> None:
-    """Raise `InputError` unless a picture that can be written, or JSON, is asked for."""
+def check_asked(output: Path | None, as_json: bool, *, reads: Iterable[Path]) -> None:
+    """Raise `InputError` unless a picture that can be written, or JSON, is asked for; see `check_output`."""
     if output is not None:
-        check_output(output, (".png",))
+        check_output(output, (".png",), reads=reads)
     elif not as_json:
         raise InputError("--output, --json: one must be given, got neither")

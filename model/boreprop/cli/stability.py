@@ -16,6 +16,7 @@ from ..case.file import load_case
 from ..core.checks import check_number
 from ..errors import InputError
 from ..report.tables import stability as tables
+from ..run.files import files_read
 from . import console
 from .options import AsJson, CaseFile, EtaPiRange, Inclination, check_asked, positive
 from .printing import print_json, print_table
@@ -111,7 +112,7 @@ def stability_command(
     are shown, among them the set with which the case drills steadily. For each there are two panels, with the bit tilt
     not saturated and saturated.
     """
-    check_asked(output, as_json)
+    check_asked(output, as_json, reads=files_read(case_file))
     across = parse_range("--eta-pi", eta_pi) if eta_pi else None
     up = parse_range("--lambda2", lambda2) if lambda2 else None
     case = load_case(case_file)

@@ -9,6 +9,7 @@ import typer
 from ..case.file import load_case
 from ..core.checks import check_number
 from ..report.tables.steering import HEADINGS, lines, piece_lines, summarize
+from ..run.files import files_read
 from . import console
 from .options import AsJson, CaseFile, Inclination, positive
 from .printing import print_json, print_table
@@ -32,7 +33,7 @@ def steering_command(
 ) -> None:
     """Print how fast a steady steering force turns the hole, and draw it."""
     if output is not None:
-        console.check_output(output, (".png",))
+        console.check_output(output, (".png",), reads=files_read(case_file))
     if inclination_deg is not None:
         check_number("--inclination-deg", inclination_deg)
     case = load_case(case_file)

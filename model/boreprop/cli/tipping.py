@@ -16,6 +16,7 @@ from ..core.options import RELATIVE_TOLERANCE
 from ..errors import InputError
 from ..report.tables.hysteresis import loop
 from ..report.tables.tipping import SIDES, left_out, lines
+from ..run.files import files_read
 from . import console
 from .options import AsJson, CaseFile, ClearanceRange, EtaPiRange, Tolerance, check_asked, positive
 from .printing import print_json, print_table
@@ -41,7 +42,7 @@ def dogleg_command(
     clearance. Without --eta-pi or --clearance-mm, the values include those of the case.
     """
     if output is not None:
-        console.check_output(output, (".png",))
+        console.check_output(output, (".png",), reads=files_read(case_file))
     across = parse_range("--eta-pi", eta_pi) if eta_pi else None
     up = parse_range("--clearance-mm", clearance_mm) / 1e3 if clearance_mm else None
     case, limit = load_case(case_file), radians(limit_deg)
@@ -91,7 +92,7 @@ def hysteresis_command(
 
     Either the weight goes up and down (--eta-pi) or the clearance (--clearance-mm).
     """
-    check_asked(output, as_json)
+    check_asked(output, as_json, reads=files_read(case_file))
     if (eta_pi is None) == (clearance_mm is None):
         raise InputError(f"--eta-pi, --clearance-mm: exactly one must be given, got {'both' if eta_pi else 'neither'}")
     case = load_case(case_file)

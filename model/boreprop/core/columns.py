@@ -1,10 +1,21 @@
 """Columns of numbers from a CSV file with a header row: surveys and force schedules."""
 
 import csv
+from errno import EINVAL
 from math import isfinite
 from pathlib import Path
 
 from .errors import TableError
+
+
+def regular(path: str | Path) -> Path:
+    """The path of a file to read; `OSError` if it is a pipe or a device, from which reading might never end."""
+    path = Path(path)
+    if "\0" in str(path):
+        raise OSError(EINVAL, "a name with a null character", str(path))
+    if path.exists() and not (path.is_file() or path.is_dir()):  # a directory cannot be read, as the system will say
+        raise OSError(EINVAL, "a pipe or a device", str(path))
+    return path
 
 
 def read_columns(path: str | Path, names: tuple[str, ...]) -> list[tuple[float, ...]]:
@@ -16,7 +27,7 @@ def read_columns(path: str | Path, names: tuple[str, ...]) -> list[tuple[float, 
         If the file cannot be read, a column is missing, a row is ragged, or a value is not a finite number.
     """
     try:
-        with open(path, newline="", encoding="utf-8-sig") as file:
+        with open(regular(path), newline="", encoding="utf-8-sig") as file:
             rows = [(number, row) for number, row in enumerate(csv.reader(file), start=1) if row]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or str(error)
