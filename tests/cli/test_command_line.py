@@ -116,14 +116,6 @@ def test_a_wrong_argument(
     assert not list(tmp_path.iterdir())
 
 
-def test_a_run_does_not_overwrite_the_case_it_reads(command: Command, tmp_path: Path, paper_text: str) -> None:
-    (tmp_path / "paper.case.toml").write_text(paper_text)
-    assert_refused(
-        command("boreprop", "simulate", "paper.case.toml", "--output", "paper.csv"), "paper.csv", "case file"
-    )
-    assert (tmp_path / "paper.case.toml").read_text() == paper_text
-
-
 def test_simulate_writes_a_row_at_each_multiple_of_the_sample_interval(
     command: Command, tmp_path: Path, paper_case: Path
 ) -> None:

@@ -1,6 +1,7 @@
 """Result files: every number comes back, with its case, and a write that fails changes nothing."""
 
 import sys
+import tracemalloc
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -180,3 +181,16 @@ def test_a_parquet_write_that_fails_half_way_leaves_no_file(
     with pytest.raises(KeyboardInterrupt):
         write_trajectory(trajectory, tmp_path / "run.parquet")
     assert not list(tmp_path.iterdir())
+
+
+def test_a_long_csv_file_is_written_row_by_row_in_little_memory(tmp_path: Path) -> None:
+    rows = 12 * results.BLOCK + 1
+    values = np.random.default_rng(1).normal(size=(5, rows))
+    names = ("drilled_length", "bit_tilt", "bit_inclination", "bit_moment", "displacement")
+    tracemalloc.start()
+    write_trajectory(Trajectory(dict(zip(names, values, strict=True))), tmp_path / "run.csv")
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    lines = [",".join(map(repr, row)) for row in values.T.tolist()]
+    assert (tmp_path / "run.csv").read_bytes() == "".join(f"{line}\n" for line in (",".join(names), *lines)).encode()
+    assert peak < values.nbytes

@@ -11,6 +11,7 @@ from boreprop.cli.cases import open_case
 from boreprop.cli.options import CaseFile, one_of
 from boreprop.errors import InputError
 from boreprop.kernel.compiler import CompilerError
+from boreprop.run.files import files_read
 
 from ..native.binaries import PLATFORMS, build_binaries, check_platform, is_compiled
 from ..pack.build import IDENTIFIER, RUNTIMES, build_fmu
@@ -42,7 +43,7 @@ def build_command(
     ] = None,
 ) -> None:
     """Pack a case, and the model with it, as an FMU."""
-    console.check_output(output, (".fmu",))
+    console.check_output(output, (".fmu",), reads=files_read(case_file))
     case, chosen = open_case(case_file), None if platforms is None else _chosen(platforms)
     if runtime != "python":
         _compile_missing(chosen or [])

@@ -1,8 +1,9 @@
 """A case: the drilling system, the existing hole, the active weight on bit, the steering force and the length."""
 
 from dataclasses import dataclass
+from itertools import repeat
 
-from ..core.checks import check_increasing, check_part
+from ..core.checks import check_increasing, check_part, checked_float
 from ..core.errors import ParameterError
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly, eta_pi
@@ -36,6 +37,8 @@ class Schedule:
     rss_force: tuple[float, ...] = (0.0,)
 
     def __post_init__(self) -> None:
+        for name in ("drilled_length", "rss_force"):
+            object.__setattr__(self, name, tuple(map(checked_float, repeat(name), getattr(self, name))))
         if not self.drilled_length or self.drilled_length[0] != 0.0:
             raise ParameterError("drilled_length", "must start at 0", self.drilled_length)
         check_increasing("drilled_length", self.drilled_length)

@@ -28,6 +28,7 @@ from .tables import read_schedule, read_survey
 Document = dict[str, dict[str, Any]]  # table → key → value
 
 BY_KEY = {quantity.key: quantity for quantity in QUANTITIES if quantity.key}
+DEEPEST = 100  # parts that a dotted key may have
 TABLES = ("bha", "bit", "drilling", "hole", "rss", "run")  # of a file, in the order in which they are written
 OF_FILES: dict[str, tuple[str, Callable[[Path], Survey | Schedule]]] = {
     "hole.survey": ("survey", read_survey),
@@ -42,10 +43,7 @@ _CASE = TypeAdapter(Case)
 
 def parse(text: str, source: Path) -> Case:
     """See `boreprop.case.file.parse_case`."""
-    try:
-        document = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{source}: {_no_toml(error, text)}") from error
+    document = read_toml(text, source)
     check_keys(document, source)
     fields = case_fields(document) | read_files(document, source)
     try:
@@ -65,6 +63,25 @@ def _no_toml(error: tomllib.TOMLDecodeError, text: str) -> str:
         if re.search(r'"[^"]*\\', line):
             return f"line {at[1]}: {PATHS}, got {shown(line)}"
     return f"must be TOML, got: {error}"
+
+
+def read_toml(text: str, source: Path) -> dict[str, Any]:
+    """The document that a TOML text is; `InputError` if it is none, or holds what no case has and Python chokes on."""
+    parts = re.split(r"[][{}=,#\n]", text)
+    if any(len(re.findall(r"[^.]\.", part)) > DEEPEST for part in parts):  # tomllib's time goes with the square
+        raise InputError(f"{source}: must be TOML with keys of at most {DEEPEST} parts, got more dots in one")
+    try:
+        document = tomllib.loads(text)
+        json.dumps(document, default=str)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{source}: {_no_toml(error, text)}") from error
+    except RecursionError as error:
+        raise InputError(f"{source}: must be TOML without lists in lists, got hundreds in one another") from error
+    except ValueError as error:  # an int of more digits than Python reads or writes
+        raise InputError(
+            f"{source}: must be TOML with numbers of usual size, got one of thousands of digits"
+        ) from error
+    return document
 
 
 def check_keys(document: dict[str, Any], source: Path) -> None:

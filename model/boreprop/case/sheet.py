@@ -15,6 +15,7 @@ from io import StringIO
 from math import isfinite, nan
 from pathlib import Path
 
+from ..core.columns import regular
 from ..errors import InputError, shown
 
 SEPARATORS = (",", ";", "\t")
@@ -184,7 +185,7 @@ def read_sheet(path: str | Path, known: Callable[[str], bool]) -> Sheet:
 def _text(path: Path) -> str:
     """The text of a file, whatever its encoding: those that have no mark and are not UTF-8 are taken for cp1252."""
     try:
-        data = path.read_bytes()
+        data = regular(path).read_bytes()
     except OSError as error:
         raise InputError(f"{path}: must be a readable CSV file, got: {error.strerror}") from error
     for beginning, what in NO_CSV.items():

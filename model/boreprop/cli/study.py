@@ -13,6 +13,7 @@ from ..analysis.study.figures import key_figures
 from ..core.checks import check_number
 from ..errors import InputError
 from ..report.tables.study import lines, outcome
+from ..run.files import files_read
 from . import console
 from .cases import open_case
 from .options import CaseFile, Tolerance
@@ -59,7 +60,7 @@ def study_command(
     NAME is an input or parameter of the case, such as stabilizer_clearance[1], in SI units; or eta_pi; or
     bit_tilt_limit_deg.
     """
-    console.check_output(output, (".parquet",))
+    console.check_output(output, (".parquet",), reads=files_read(case_file))
     check_number("--sample", draws, at_least=1)
     check_number("--seed", seed, at_least=0)
     if workers is not None:

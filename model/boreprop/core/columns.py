@@ -5,12 +5,23 @@ decimal points, the units of the case file. `boreprop.case.sheet` reads what els
 """
 
 import csv
+from errno import EINVAL
 from math import isfinite
 from pathlib import Path
 
 from .errors import TableError
 
 PLAIN = "plain CSV: UTF-8, commas, decimal points, depths in m, inclinations in degrees"
+
+
+def regular(path: str | Path) -> Path:
+    """The path of a file to read; `OSError` if it is a pipe or a device, from which reading might never end."""
+    path = Path(path)
+    if "\0" in str(path):
+        raise OSError(EINVAL, "a name with a null character", str(path))
+    if path.exists() and not (path.is_file() or path.is_dir()):  # a directory cannot be read, as the system will say
+        raise OSError(EINVAL, "a pipe or a device", str(path))
+    return path
 
 
 def read_columns(path: str | Path, names: tuple[str, ...]) -> list[tuple[float, ...]]:
@@ -23,7 +34,7 @@ def read_columns(path: str | Path, names: tuple[str, ...]) -> list[tuple[float, 
         column whose name ends in _deg is beyond ±180.
     """
     try:
-        with open(path, newline="", encoding="utf-8-sig") as file:
+        with open(regular(path), newline="", encoding="utf-8-sig") as file:
             rows = [(number, row) for number, row in enumerate(csv.reader(file), start=1) if any(map(_text, row))]
     except UnicodeDecodeError as error:
         raise TableError(f"{path}: must be a readable CSV file, got: bytes that are no UTF-8 text") from error

@@ -19,13 +19,16 @@ from numpy.typing import NDArray
 from ..case.case import Case
 from ..case.file import dump_case, load_case, parse_case, read_run
 from ..case.sheet import read_sheet
+from ..core.columns import regular
 from ..core.quantities import BY_NAME, INPUTS, OUTPUTS
 from ..errors import InputError, shown
 from ..replacing import replacing
+from .files import MARK, case_path, check_case_beside
 from .trajectory import Stopped, Trajectory, plain_name
 
 SUFFIXES = (".csv", ".parquet")
 CASE_KEY = b"boreprop.case"
+BLOCK = 1000  # rows of a CSV file that are written at once: the numbers of more are never Python objects together
 
 
 def write_trajectory(trajectory: Trajectory, path: str | Path) -> None:
@@ -43,7 +46,8 @@ def write_trajectory(trajectory: Trajectory, path: str | Path) -> None:
     Raises
     ------
     InputError
-        If `path` ends in neither .csv nor .parquet, or if it ends in .parquet and pyarrow is not installed.
+        If `path` ends in neither .csv nor .parquet, if it ends in .parquet and pyarrow is not installed, or if a file
+        that is not ours lies where the case goes.
     OSError
         If the file cannot be written.
     """
@@ -116,11 +120,6 @@ def read_trajectory(path: str | Path, case: Case | None = None) -> Trajectory:
     return trajectory
 
 
-def case_path(path: Path) -> Path:
-    """The file with the case of a CSV file: run.case.toml beside run.csv."""
-    return path.with_suffix(".case.toml")
-
-
 IO_NAMES = {quantity.name for quantity in INPUTS + OUTPUTS}
 OUTPUT_NAMES = {quantity.name for quantity in OUTPUTS}
 # the heading of a column of another tool: component.name [reference type causality]
@@ -164,17 +163,19 @@ def _case_text(trajectory: Trajectory, case: Case) -> str:
 
 def _write_csv(trajectory: Trajectory, path: Path) -> None:
     columns = _typed(trajectory)
-    # repr is the shortest text that reads back as the same number
-    rows = zip(*(map(repr, column.tolist()) for column in columns.values()), strict=True)
+    check_case_beside(path)
     with replacing(path) as draft:
         with open(draft, "w", encoding="utf-8", newline="\n") as file:
             file.write(",".join(columns) + "\n")
-            file.writelines(",".join(row) + "\n" for row in rows)
+            for start in range(0, trajectory.row_count, BLOCK):
+                # repr is the shortest text that reads back as the same number
+                cells = (map(repr, column[start : start + BLOCK].tolist()) for column in columns.values())
+                file.writelines(",".join(row) + "\n" for row in zip(*cells, strict=True))
         if trajectory.case is None:
             case_path(path).unlink(missing_ok=True)  # it belonged to the run that is overwritten
         else:
             with replacing(case_path(path)) as case_draft:
-                case_draft.write_text(_case_text(trajectory, trajectory.case), encoding="utf-8")
+                case_draft.write_text(MARK + _case_text(trajectory, trajectory.case), encoding="utf-8")
 
 
 def _read_csv(path: Path, case: Case | None) -> Trajectory:
@@ -184,7 +185,7 @@ def _read_csv(path: Path, case: Case | None) -> Trajectory:
     own = case_path(path)
     if not own.exists():
         return Trajectory(columns, case)
-    about = read_run(own.read_text("utf-8-sig", errors="replace"))
+    about = read_run(regular(own).read_text("utf-8-sig", errors="replace"))
     return Trajectory(columns, load_case(own) if case is None else case, about.get("stopped"), about.get("engine"))
 
 
@@ -198,7 +199,7 @@ def _write_parquet(trajectory: Trajectory, path: Path) -> None:
 def _read_parquet(path: Path, case: Case | None) -> Trajectory:
     pyarrow, parquet = _pyarrow(path)
     try:
-        with parquet.ParquetFile(path) as file:
+        with parquet.ParquetFile(regular(path)) as file:
             ours = _ours(path, file.schema_arrow.names)
             table, metadata = file.read(columns=list(ours.values())), file.schema_arrow.metadata or {}
     except (OSError, pyarrow.ArrowException) as error:
