@@ -130,8 +130,6 @@ def test_a_byte_order_mark_and_windows_line_ends_are_no_trouble(paper_text: str,
         ("= 2.0", "= 95", "bit.tilt_limit_deg: must be <= 90, got 95"),
         ("= 0.2159", "= 0", "bit.diameter: must be > 0, got 0.0"),
         ("= 0.2159", "= 8.5", "bit.diameter: must be <= 1.5, got 8.5"),
-        ("[3.66e-3]", "[0.10795]", "bha.stabilizer_clearances[1]: must be < bit.diameter/2 = 0.10795, got 0.10795"),
-        ("[3.66e-3]", "[3.66]", "bha.stabilizer_clearances[1]: must be < bit.diameter/2 = 0.10795, got 3.66"),
         ("[0.0, 0.0, 0.5]", "[0.0, -999.25, 0.5]", "hole.inclination_deg[2]: must be >= -180, got -999.25"),
         ("[0.0, 0.0, 0.5]", "[0.0, 0.0, 180.1]", "hole.inclination_deg[3]: must be <= 180, got 180.1"),
         ("= 1612.469", "= -1", "drilling.active_weight_on_bit: must be > 0, got -1.0"),
@@ -188,6 +186,18 @@ def test_a_path_as_windows_writes_it_is_refused_with_the_remedy(paper_text: str,
     for readable in (f'"{path}"', f"'{windows}'"):
         with pytest.raises(InputError, match="must be a readable CSV file, got: "):
             parse_case(text.replace(f'"{windows}"', readable), tmp_path / "case.toml")
+
+
+@pytest.mark.parametrize("clearance", ["0.10795", "3.66"])
+def test_a_clearance_as_wide_as_half_the_hole_is_refused(paper_text: str, tmp_path: Path, clearance: str) -> None:
+    file = tmp_path / "case.toml"
+    file.write_text(paper_text.replace("[3.66e-3]", f"[{clearance}]"))
+    with pytest.raises(InputError) as caught:
+        load_case(file)
+    constraint = "must be < bit.diameter/2 = 0.10795"
+    assert str(caught.value) == f"{file}: bha.stabilizer_clearances[1]: {constraint}, got {clearance}"
+    file.write_text(paper_text.replace("[3.66e-3]", "[0.1079]"))
+    load_case(file)
 
 
 def test_a_case_file_in_another_encoding_is_refused_with_the_remedy(paper_text: str, tmp_path: Path) -> None:

@@ -34,8 +34,8 @@ def load_case(path: str | Path) -> Case:
     Raises
     ------
     InputError
-        If a file cannot be read, a key is missing or unknown, or a value breaks its constraint. The message names file,
-        key, constraint and value.
+        If a file cannot be read, a key is missing or unknown, or a value breaks its constraint, among them that each
+        clearance is less than the radius of the hole. The message names file, key, constraint and value.
 
     Examples
     --------
@@ -60,7 +60,22 @@ def load_case(path: str | Path) -> Case:
     except UnicodeDecodeError as error:
         constraint = "must be a TOML file in UTF-8 (save it with that encoding)"
         raise InputError(f"{path}: {constraint}, got the byte 0x{error.object[error.start]:02x}") from error
-    return parse_case(text, path)
+    case = parse_case(text, path)
+    _check_clearances(case, path)
+    return case
+
+
+def _check_clearances(case: Case, path: str | Path) -> None:
+    """Raise `InputError` unless the stabilizers have blades: a clearance is less than the radius of the hole.
+
+    Of a file only, which has the numbers of a rig. What is drilled does not depend on the diameter, so that a case made
+    in Python may have a stabilizer that never touches the wall.
+    """
+    clearances, radius = case.bha.stabilizer_clearances, case.bit_diameter / 2
+    widest = max(clearances, default=0.0)
+    if widest >= radius:
+        key = f"bha.stabilizer_clearances[{clearances.index(widest) + 1}]"
+        raise InputError(f"{path}: {key}: must be < bit.diameter/2 = {radius:g}, got {widest!r}")
 
 
 def parse_case(text: str, source: str | Path) -> Case:

@@ -100,7 +100,7 @@ def check_keys(document: dict[str, Any], source: Path) -> None:
                 raise InputError(f"{source}: {where}: {_unknown(key)}, got {shown(value)}")
             if BY_KEY[where].kind == "String" and not isinstance(value, str):
                 raise InputError(f"{source}: {where}: must be text in quotes, got {shown(value)}")
-            if where in OF_FILES and not value.isprintable():  # "\temp" begins with a tab
+            if where in OF_FILES and any(escaped in value for escaped in "\b\t\n\f\r"):  # "\temp" begins with a tab
                 raise InputError(f"{source}: {where}: {PATHS}, got {shown(value)}")
     for where in OF_FILES:
         table, _, file = where.partition(".")

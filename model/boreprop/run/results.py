@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..case.case import Case
-from ..case.file import dump_case, load_case, parse_case, read_run
+from ..case.file import dump_case, parse_case, read_run
 from ..case.sheet import read_sheet
 from ..core.columns import regular
 from ..core.quantities import BY_NAME, INPUTS, OUTPUTS
@@ -185,8 +185,11 @@ def _read_csv(path: Path, case: Case | None) -> Trajectory:
     own = case_path(path)
     if not own.exists():
         return Trajectory(columns, case)
-    about = read_run(regular(own).read_text("utf-8-sig", errors="replace"))
-    return Trajectory(columns, load_case(own) if case is None else case, about.get("stopped"), about.get("engine"))
+    text = regular(own).read_text("utf-8-sig", errors="replace")
+    about = read_run(text)
+    return Trajectory(
+        columns, parse_case(text, own) if case is None else case, about.get("stopped"), about.get("engine")
+    )
 
 
 def _write_parquet(trajectory: Trajectory, path: Path) -> None:
