@@ -11,6 +11,7 @@ from boreprop.cli.cases import open_case
 from boreprop.cli.options import CaseFile, one_of
 from boreprop.errors import InputError
 from boreprop.kernel.compiler import CompilerError
+from boreprop.report.tables.sag import steadily_outside
 from boreprop.run.files import files_read
 
 from ..native.binaries import PLATFORMS, build_binaries, check_platform, is_compiled
@@ -47,6 +48,8 @@ def build_command(
     case, chosen = open_case(case_file), None if platforms is None else _chosen(platforms)
     if runtime != "python":
         _compile_missing(chosen or [])
+    if warning := steadily_outside(case):
+        console.warn(f"{case_file}: {warning}")
     build_fmu(case, output, runtime=runtime, name=name, platforms=chosen)
     with ZipFile(output) as archive:
         folders = [path.split("/") for path in archive.namelist()]
