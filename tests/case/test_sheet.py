@@ -141,7 +141,7 @@ SURVEY = b"measured_depth,inclination_deg\n2500,26\n"
         (SURVEY + b"2510,NaN\n", ":3: inclination_deg: must be a finite number, got 'NaN'"),
         (SURVEY + b"2510,180.5\n", ":3: inclination_deg: must be between -180 and 180, got 180.5"),
         (SURVEY + b"2_510,26\n", ":3: measured_depth: must be a finite number, got '2_510'"),
-        (SURVEY + b'2510,"26\n', ": must be a CSV file with quotes in pairs, got: "),
+        (SURVEY + b'2510,"26\n', ": must be a CSV file with quotes in pairs, got: unexpected end of data in line 3"),
         (
             b"MD (ft),Inc\n8200,26\n",
             ": must have a column 'measured_depth' (m) or 'measured_depth_ft' (ft), got ['MD (ft)', 'Inc']",

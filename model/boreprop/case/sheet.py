@@ -32,6 +32,7 @@ MARKED = (  # byte-order mark → encoding; the mark of UTF-16 is also the begin
     (codecs.BOM_UTF16_LE, "utf-16"),
     (codecs.BOM_UTF16_BE, "utf-16"),
 )
+LONGEST_HEADER = 1 << 20  # characters, with what is empty above it
 
 
 @dataclass(frozen=True)
@@ -206,16 +207,19 @@ def _rows(text: str, separator: str) -> Iterator[tuple[int, list[str]]]:
     """Each row that has a cell with text in it, and the number of the line in which it ends."""
     reader = csv.reader(StringIO(text, newline=""), delimiter=separator, skipinitialspace=True, strict=True)
     filled = ((reader.line_num, row) for row in reader if any(map(str.strip, row)))
-    for count, (line, row) in enumerate(filled):
-        hint = count == 0 and re.fullmatch("sep=.", separator.join(row).strip(" "), re.IGNORECASE)  # for Excel
-        if not hint:
-            yield line, row
+    try:
+        for count, (line, row) in enumerate(filled):
+            hint = count == 0 and re.fullmatch("sep=.", separator.join(row).strip(" "), re.IGNORECASE)  # for Excel
+            if not hint:
+                yield line, row
+    except csv.Error as error:
+        raise csv.Error(f"{error} in line {reader.line_num}") from error
 
 
 def _found(text: str, separator: str, known: Callable[[str], bool]) -> tuple[int, int]:
     """How many known headings, and how many headings in all, are found with a separator."""
     try:
-        _, header = next(_rows(text, separator), (0, []))
+        _, header = next(_rows(text[:LONGEST_HEADER], separator), (0, []))
     except csv.Error:
         return 0, 0
     return sum(known(heading.strip()) for heading in header), len(header)
