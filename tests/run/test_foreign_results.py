@@ -156,6 +156,29 @@ def test_what_stands_before_and_behind_a_name_changes_nothing(
         np.testing.assert_array_equal(back[name], column)
 
 
+@given(
+    columns=columns(),
+    separator=st.sampled_from([";", "\t"]),
+    mark=st.sampled_from(".,"),
+    encoding=st.sampled_from(["utf-8-sig", "utf-16", "cp1252"]),
+)
+@settings(max_examples=50, deadline=None)
+def test_a_run_that_a_spreadsheet_has_saved_is_the_same_run(
+    columns: dict[str, np.ndarray], separator: str, mark: str, encoding: str
+) -> None:
+    rows = zip(*(map(repr, column.tolist()) for column in columns.values()), strict=True)
+    lines = [separator.join([*columns, "αβ °"[2 * (encoding == "cp1252") :]])]
+    lines += [separator.join([*(cell.replace(".", mark) for cell in row), "°"]) for row in rows]
+    lines.insert(1, separator * len(columns))
+    with TemporaryDirectory() as directory:
+        file = Path(directory) / "run.csv"
+        file.write_bytes("\r\n".join(lines).encode(encoding))
+        back = read_trajectory(file)
+    assert list(back.columns) == list(columns)
+    for name, column in columns.items():
+        np.testing.assert_array_equal(back[name], column)
+
+
 def test_a_unit_behind_a_name_is_not_skipped(tmp_path: Path) -> None:
     (tmp_path / "run.csv").write_text("drilled_length,bit_tilt [deg]\n0,1\n")
     assert list(read_trajectory(tmp_path / "run.csv").columns) == ["drilled_length"]
