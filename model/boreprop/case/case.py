@@ -72,7 +72,7 @@ class Case:
     Raises
     ------
     ParameterError
-        If the diameter, the weight or the length is not finite and positive, or a value is beyond what can be.
+        If the diameter, the weight or the length is not finite and positive, or the diameter is beyond 1.5 m.
 
     Examples
     --------
