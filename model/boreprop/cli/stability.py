@@ -18,8 +18,8 @@ from ..errors import InputError
 from ..report.tables import stability as tables
 from ..run.files import files_read
 from . import console
-from .options import CaseFile, EtaPiRange, Inclination, positive
-from .printing import print_table
+from .options import AsJson, CaseFile, EtaPiRange, Inclination, check_asked, positive
+from .printing import print_json, print_table
 from .ranges import parse_range
 
 WIDE = 110  # characters, so that the line of a mode is not wrapped
@@ -95,7 +95,7 @@ def _weight(case: Case, eta_pi: float) -> float:
 
 def stability_command(
     case_file: CaseFile,
-    output: Annotated[Path, typer.Option(metavar="CHART.png", help="The picture.")],
+    output: Annotated[Path | None, typer.Option(metavar="CHART.png", help="The picture.")] = None,
     eta_pi: EtaPiRange = None,
     lambda2: Annotated[
         str | None,
@@ -104,6 +104,7 @@ def stability_command(
             help="Values of λ₂, the distance from stabilizer 1 to 2 over that from the bit to 1.",
         ),
     ] = None,
+    as_json: AsJson = False,
 ) -> None:
     """Draw the stability chart of a case over ηΠ and λ₂, and print its limits.
 
@@ -111,10 +112,7 @@ def stability_command(
     are shown, among them the set with which the case drills steadily. For each there are two panels, with the bit tilt
     not saturated and saturated.
     """
-    from ..report.figures.drawing import save  # imported here, since `roots` needs no matplotlib
-    from ..report.figures.stability import draw
-
-    console.check_output(output, (".png",), reads=files_read(case_file))
+    check_asked(output, as_json, reads=files_read(case_file))
     across = parse_range("--eta-pi", eta_pi) if eta_pi else None
     up = parse_range("--lambda2", lambda2) if lambda2 else None
     case = load_case(case_file)
@@ -127,7 +125,16 @@ def stability_command(
     across, up = usual_across if across is None else across, usual_up if up is None else up
     with console.progress("chart", 1.0) as done:
         chart = stability_chart(case, across, up, contacts=contacts, progress=done)
+    if as_json:
+        print_json(tables.chart_as_plain(chart, limits))
+    if output is None:
+        return
+    from ..report.figures.drawing import save  # imported here, since only a picture needs matplotlib
+    from ..report.figures.stability import draw
+
     save(draw(chart, case), output)
+    if as_json:
+        return
     print(
         f"{output}: {len(across)} × {len(up)} points; {tables.stability_limit(contacts[0], limits[contacts[0]])}; "
         f"the case: ηΠ = {case.eta_pi:.4g} ({tables.weight(case.active_weight_on_bit)})"

@@ -11,8 +11,8 @@ from ..core.checks import check_number
 from ..report.tables.steering import HEADINGS, lines, piece_lines, summarize
 from ..run.files import files_read
 from . import console
-from .options import CaseFile, Inclination, positive
-from .printing import print_table
+from .options import AsJson, CaseFile, Inclination, positive
+from .printing import print_json, print_table
 
 
 def steering_command(
@@ -29,6 +29,7 @@ def steering_command(
             help="Largest force, N. Default: the largest of the case's schedule, or 30 kN if that has none.",
         ),
     ] = None,
+    as_json: AsJson = False,
 ) -> None:
     """Print how fast a steady steering force turns the hole, and draw it."""
     if output is not None:
@@ -37,11 +38,15 @@ def steering_command(
         check_number("--inclination-deg", inclination_deg)
     case = load_case(case_file)
     summary = summarize(case, None if inclination_deg is None else radians(inclination_deg), force_limit)
-    print_table(lines(summary), (str(case_file), ""))
-    print_table(piece_lines(summary.curve), HEADINGS)
+    if as_json:
+        print_json(summary)
+    else:
+        print_table(lines(summary), (str(case_file), ""))
+        print_table(piece_lines(summary.curve), HEADINGS)
     if output is not None:
         from ..report.figures.drawing import save  # imported here, since only a picture needs matplotlib
         from ..report.figures.steering import draw
 
         save(draw(summary), output)
-        print(f"{output}: build rate and bit tilt over the steering force")
+        if not as_json:
+            print(f"{output}: build rate and bit tilt over the steering force")

@@ -15,8 +15,8 @@ from ..errors import InputError
 from ..report.tables import stations as tables
 from ..report.tables.summary import lines
 from ..run.results import read_trajectory
-from .options import positive
-from .printing import print_table
+from .options import AsJson, positive
+from .printing import plain, print_json, print_table
 
 
 def summary_command(
@@ -37,6 +37,7 @@ def summary_command(
             help="Say how far the hole is off this plan: columns measured_depth, inclination_deg.",
         ),
     ] = None,
+    as_json: AsJson = False,
 ) -> None:
     """Print a run in a dozen numbers, and whether it ripples."""
     trajectory = read_trajectory(run_file, load_case(case_file) if case_file else None)
@@ -47,10 +48,14 @@ def summary_command(
     plan = None if plan_file is None else _planned(plan_file, trajectory.case.survey.measured_depth[-1])
     summary = summarize(trajectory)
     over = summary.averaging_length
-    off_plan = [] if plan is None else tables.plan_lines(trajectory, deviation_of(trajectory, plan, over))
-    print_table([*lines(summary), *off_plan], (str(run_file), ""))
-    if stations is not None:
-        listed = list_stations(trajectory, stations, plan, averaged_over=over)
+    off = None if plan is None else deviation_of(trajectory, plan, over)
+    listed = None if stations is None else list_stations(trajectory, stations, plan, averaged_over=over)
+    if as_json:
+        off_plan = None if off is None else {"distance": off.distance[-1], "inclination": off.inclination[-1]}
+        print_json(plain(summary) | {"off_plan": off_plan, "stations": listed})
+        return
+    print_table([*lines(summary), *([] if off is None else tables.plan_lines(trajectory, off))], (str(run_file), ""))
+    if listed is not None:
         print_table(tables.lines(listed), tables.headings(listed), caption=tables.caption(listed))
 
 
