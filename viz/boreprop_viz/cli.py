@@ -6,7 +6,7 @@ from typing import Annotated, NoReturn
 import typer
 
 from boreprop.cli import console
-from boreprop.cli.lazy import new_app
+from boreprop.cli.lazy import Command, new_app
 from boreprop.cli.options import positive
 from boreprop.cli.version import Version
 from boreprop.errors import InputError
@@ -21,7 +21,7 @@ def main() -> NoReturn:
     console.execute(app)
 
 
-@app.command()
+@app.command(cls=Command)
 def view(
     sources: Annotated[
         list[Path],
