@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 from math import radians
+from pathlib import Path
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
@@ -11,7 +13,7 @@ from boreprop.analysis.sag import BeamInHole, largest_sag, steady_sag
 from boreprop.analysis.steering import steady_response
 from boreprop.analysis.summary import summarize
 from boreprop.case.case import Case, Schedule
-from boreprop.case.file import load_case
+from boreprop.case.file import dump_case, load_case
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop.report.tables.steering import lines as steering_lines
@@ -19,6 +21,7 @@ from boreprop.report.tables.steering import summarize as summarize_steering
 from boreprop.report.tables.summary import lines
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
+from conftest import Command
 from places import EXAMPLES
 
 # a published assembly that drops: 7 × 2¾ in collars, stabilizers of full gauge at 45, 75 and 165 ft, a hole of 9 in
@@ -105,3 +108,21 @@ def test_nothing_is_said_of_a_bha_inside_its_hole() -> None:
     run = simulate(case, sample_interval=1.0)
     said = dict(lines(summarize(run))) | dict(steering_lines(summarize_steering(case)))
     assert "warning" not in said
+
+
+def test_an_fmu_of_such_a_bha_says_so_when_it_is_built_and_on_its_page(command_here: Command, tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(dump_case(PENDULUM))
+    built = command_here("boreprop-fmu", "build", "case.toml", "--output", "x.fmu", "--runtime", "python")
+    assert built.returncode == 0
+    assert built.stderr.startswith("warning: case.toml: 37.4 m behind the bit the axis of the BHA is 1")
+    with ZipFile(tmp_path / "x.fmu") as fmu:
+        page = fmu.read("documentation/index.html").decode()
+    assert "Of this case, drilled on steadily: 37.4 m behind the bit" in page
+
+
+def test_an_fmu_of_another_bha_says_nothing_of_it(command_here: Command, tmp_path: Path) -> None:
+    example = EXAMPLES / "build_section.toml"
+    built = command_here("boreprop-fmu", "build", example, "--output", "x.fmu", "--runtime", "python")
+    assert (built.returncode, built.stderr) == (0, "")
+    with ZipFile(tmp_path / "x.fmu") as fmu:
+        assert "Of this case" not in fmu.read("documentation/index.html").decode()

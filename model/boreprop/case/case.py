@@ -59,7 +59,7 @@ class Case:
     bit
         The law of bit and rock.
     bit_diameter
-        Diameter of the hole, m. It is used for drawing only and does not enter the physics.
+        Diameter of the hole, m. It does not enter the physics; no clearance can be as large as half of it.
     active_weight_on_bit
         The part of the weight on bit that drills, Π F* in the paper, N.
     length
@@ -72,7 +72,7 @@ class Case:
     Raises
     ------
     ParameterError
-        If the diameter, the weight or the length is not finite and positive.
+        If the diameter, the weight or the length is not finite and positive, or a value is beyond what can be.
 
     Examples
     --------
@@ -92,6 +92,10 @@ class Case:
 
     def __post_init__(self) -> None:
         check_part("", self)
+        widest = max(self.bha.stabilizer_clearances, default=0.0)
+        if widest >= self.bit_diameter / 2:
+            name = f"stabilizer_clearance[{self.bha.stabilizer_clearances.index(widest) + 1}]"
+            raise ParameterError(name, f"must be < bit.diameter/2 = {self.bit_diameter / 2:g}", widest)
 
     @property
     def length_scale(self) -> float:

@@ -55,8 +55,11 @@ def load_case(path: str | Path) -> Case:
     """
     try:
         text = regular(path).read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: must be a readable TOML file, got: {getattr(error, 'strerror', error)}") from error
+    except OSError as error:
+        raise InputError(f"{path}: must be a readable TOML file, got: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        constraint = "must be a TOML file in UTF-8 (save it with that encoding)"
+        raise InputError(f"{path}: {constraint}, got the byte 0x{error.object[error.start]:02x}") from error
     return parse_case(text, path)
 
 

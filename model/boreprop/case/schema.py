@@ -36,6 +36,8 @@ OF_FILES: dict[str, tuple[str, Callable[[Path], Survey | Schedule]]] = {
 }
 """Key that names a CSV file → the field of a `Case` that the file holds, and the function that reads it."""
 
+PATHS = "must be a path with forward slashes or in single quotes, since in double quotes a backslash begins an escape"
+
 _CASE = TypeAdapter(Case)
 
 
@@ -53,6 +55,16 @@ def parse(text: str, source: Path) -> Case:
         raise InputError(f"{source}: {_message(errors[0], document)}{more}") from error
 
 
+def _no_toml(error: tomllib.TOMLDecodeError, text: str) -> str:
+    """What is wrong with a text that is no TOML: most often a path as Windows writes it."""
+    at = re.search(r"\(at line (\d+)", str(error))
+    if at:
+        line = text.split("\n")[int(at[1]) - 1].strip()
+        if re.search(r'"[^"]*\\', line):
+            return f"line {at[1]}: {PATHS}, got {shown(line)}"
+    return f"must be TOML, got: {error}"
+
+
 def read_toml(text: str, source: Path) -> dict[str, Any]:
     """The document that a TOML text is; `InputError` if it is none, or holds what no case has and Python chokes on."""
     parts = re.split(r"[][{}=,#\n]", text)
@@ -62,7 +74,7 @@ def read_toml(text: str, source: Path) -> dict[str, Any]:
         document = tomllib.loads(text)
         json.dumps(document, default=str)
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{source}: must be TOML, got: {error}") from error
+        raise InputError(f"{source}: {_no_toml(error, text)}") from error
     except RecursionError as error:
         raise InputError(f"{source}: must be TOML without lists in lists, got hundreds in one another") from error
     except ValueError as error:  # an int of more digits than Python reads or writes
@@ -88,6 +100,8 @@ def check_keys(document: dict[str, Any], source: Path) -> None:
                 raise InputError(f"{source}: {where}: {_unknown(key)}, got {shown(value)}")
             if BY_KEY[where].kind == "String" and not isinstance(value, str):
                 raise InputError(f"{source}: {where}: must be text in quotes, got {shown(value)}")
+            if where in OF_FILES and not value.isprintable():  # "\temp" begins with a tab
+                raise InputError(f"{source}: {where}: {PATHS}, got {shown(value)}")
     for where in OF_FILES:
         table, _, file = where.partition(".")
         columns = columns_of(table)

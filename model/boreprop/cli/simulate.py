@@ -6,7 +6,6 @@ from typing import Annotated
 
 import typer
 
-from ..case.file import load_case
 from ..core.checks import check_number
 from ..core.options import RELATIVE_TOLERANCE
 from ..run.engines import ENGINES
@@ -14,6 +13,7 @@ from ..run.files import files_read
 from ..run.results import keeping_rows, write_trajectory
 from ..run.simulate import SAMPLE_INTERVAL, simulate
 from . import console
+from .cases import open_case
 from .options import CaseFile, Tolerance, one_of, positive
 from .outputs import check_run_output
 
@@ -46,7 +46,7 @@ def simulate_command(
     there are written, and the exit status is 3.
     """
     check_run_output(output, files_read(case_file))
-    case = load_case(case_file)
+    case = open_case(case_file)
     if length is not None:
         case = replace(case, length=length)
     check_number("--sample-interval", sample_interval, at_least=case.length / MAX_ROWS)

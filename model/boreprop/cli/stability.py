@@ -12,12 +12,12 @@ from ..analysis.stability.chart import stability_chart, usual_grid
 from ..analysis.stability.contacts import all_contacts, charted, contacts_met, steady_mode
 from ..analysis.stability.roots import Roots, critical_eta_pi, find_roots, parse_contact
 from ..case.case import Case
-from ..case.file import load_case
 from ..core.checks import check_number
 from ..errors import InputError
 from ..report.tables import stability as tables
 from ..run.files import files_read
 from . import console
+from .cases import open_case
 from .options import AsJson, CaseFile, EtaPiRange, Inclination, check_asked, positive
 from .printing import print_json, print_table
 from .ranges import parse_range
@@ -52,7 +52,7 @@ def roots_command(
     touching = parse_contact(contact or "")
     if inclination_deg is not None:
         check_number("--inclination-deg", inclination_deg)
-    case = load_case(case_file)
+    case = open_case(case_file)
     inclination = case.survey.inclination[-1] if inclination_deg is None else radians(inclination_deg)
     at = case.eta_pi if eta_pi is None else eta_pi
     if every or (contact is None and not as_json):
@@ -115,7 +115,7 @@ def stability_command(
     check_asked(output, as_json, reads=files_read(case_file))
     across = parse_range("--eta-pi", eta_pi) if eta_pi else None
     up = parse_range("--lambda2", lambda2) if lambda2 else None
-    case = load_case(case_file)
+    case = open_case(case_file)
     bha, bit, inclination, forces = case.bha, case.bit, case.survey.inclination[-1], case.schedule.rss_force
     here, _ = steady_mode(case, forces[0], inclination)
     contacts = charted(bha, bit, inclination, forces, here)

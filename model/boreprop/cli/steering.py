@@ -6,11 +6,11 @@ from typing import Annotated
 
 import typer
 
-from ..case.file import load_case
 from ..core.checks import check_number
 from ..report.tables.steering import HEADINGS, lines, piece_lines, summarize
 from ..run.files import files_read
 from . import console
+from .cases import open_case
 from .options import AsJson, CaseFile, Inclination, positive
 from .printing import print_json, print_table
 
@@ -36,7 +36,7 @@ def steering_command(
         console.check_output(output, (".png",), reads=files_read(case_file))
     if inclination_deg is not None:
         check_number("--inclination-deg", inclination_deg)
-    case = load_case(case_file)
+    case = open_case(case_file)
     summary = summarize(case, None if inclination_deg is None else radians(inclination_deg), force_limit)
     if as_json:
         print_json(summary)

@@ -5,12 +5,10 @@ from typing import Annotated
 
 import typer
 
-from ..analysis.hole import SurveyedHole
-from ..analysis.plan import deviation_of, planned_hole
+from ..analysis.plan import deviation_of, planned_hole, read_plan
 from ..analysis.stations import list_stations
 from ..analysis.summary import summarize
 from ..case.file import load_case
-from ..case.tables import read_survey
 from ..errors import InputError
 from ..report.tables import stations as tables
 from ..report.tables.summary import lines
@@ -45,7 +43,8 @@ def summary_command(
         raise InputError(f"{run_file}: must come with its case, got none: give it with --case")
     if trajectory.row_count < 2:
         raise InputError(f"{run_file}: must have at least 2 rows, got {trajectory.row_count}")
-    plan = None if plan_file is None else _planned(plan_file, trajectory.case.survey.measured_depth[-1])
+    start = trajectory.case.survey.measured_depth[-1]
+    plan = None if plan_file is None else planned_hole(read_plan(plan_file, start), start)
     summary = summarize(trajectory)
     over = summary.averaging_length
     off = None if plan is None else deviation_of(trajectory, plan, over)
@@ -57,12 +56,3 @@ def summary_command(
     print_table([*lines(summary), *([] if off is None else tables.plan_lines(trajectory, off))], (str(run_file), ""))
     if listed is not None:
         print_table(tables.lines(listed), tables.headings(listed), caption=tables.caption(listed))
-
-
-def _planned(path: Path, start: float) -> SurveyedHole:
-    """The planned hole in a file; `InputError` if it does not include the measured depth of the start, m."""
-    plan = read_survey(path)
-    try:
-        return planned_hole(plan, start)
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from error

@@ -11,13 +11,13 @@ from ..analysis.stability.contacts import first_that_touches
 from ..analysis.tipping import critical_dogleg_or_why, dogleg_map, usual_map
 from ..arrays import Floats
 from ..case.case import Case
-from ..case.file import load_case
 from ..core.options import RELATIVE_TOLERANCE
 from ..errors import InputError
 from ..report.tables.hysteresis import loop
 from ..report.tables.tipping import SIDES, left_out, lines
 from ..run.files import files_read
 from . import console
+from .cases import open_case
 from .options import AsJson, CaseFile, ClearanceRange, EtaPiRange, Tolerance, check_asked, positive
 from .printing import print_json, print_table
 from .ranges import parse_range
@@ -45,7 +45,7 @@ def dogleg_command(
         console.check_output(output, (".png",), reads=files_read(case_file))
     across = parse_range("--eta-pi", eta_pi) if eta_pi else None
     up = parse_range("--clearance-mm", clearance_mm) / 1e3 if clearance_mm else None
-    case, limit = load_case(case_file), radians(limit_deg)
+    case, limit = open_case(case_file), radians(limit_deg)
     error = tolerance or RELATIVE_TOLERANCE
     found = {side: critical_dogleg_or_why(case, side=side, limit=limit, relative_tolerance=error) for side in SIDES}
     if as_json:
@@ -95,7 +95,7 @@ def hysteresis_command(
     check_asked(output, as_json, reads=files_read(case_file))
     if (eta_pi is None) == (clearance_mm is None):
         raise InputError(f"--eta-pi, --clearance-mm: exactly one must be given, got {'both' if eta_pi else 'neither'}")
-    case = load_case(case_file)
+    case = open_case(case_file)
     if eta_pi is not None:
         name, values = "eta_pi", parse_range("--eta-pi", eta_pi).tolist()
     else:

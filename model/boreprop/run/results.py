@@ -10,7 +10,6 @@ Other tools write our columns under longer names. OMSimulator and fmpy put the p
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from csv import reader
 from pathlib import Path
 from typing import Any
 
@@ -19,9 +18,10 @@ from numpy.typing import NDArray
 
 from ..case.case import Case
 from ..case.file import dump_case, load_case, parse_case, read_run
-from ..core.columns import read_columns, regular
+from ..case.sheet import read_sheet
+from ..core.columns import regular
 from ..core.quantities import BY_NAME, INPUTS, OUTPUTS
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..replacing import replacing
 from .files import MARK, case_path, check_case_beside
 from .trajectory import Stopped, Trajectory, plain_name
@@ -91,7 +91,7 @@ def read_trajectory(path: str | Path, case: Case | None = None) -> Trajectory:
 
     Raises
     ------
-    InputError, TableError
+    InputError
         If the file cannot be read, drilled_length is missing or no single component has every output, a line has too
         few or too many values, a value is not a finite number, or the case has another number of stabilizers.
 
@@ -126,16 +126,21 @@ OUTPUT_NAMES = {quantity.name for quantity in OUTPUTS}
 HEADING = re.compile(r"(?:(?P<component>.+)\.)?(?P<name>[^.\s]+)(?: \[\d+ [\w ]+\])?")
 
 
+def _taken_apart(heading: str) -> re.Match[str] | None:
+    """The parts of the heading of one of our inputs or outputs; None for any other heading."""
+    match = HEADING.fullmatch(heading)
+    return match if match and plain_name(match["name"]) in IO_NAMES else None
+
+
 def _ours(path: Path, headings: list[str]) -> dict[str, str]:
     """Scalar names of the time and of one borehole's inputs and outputs → their headings in the file."""
     components: dict[str, dict[str, str]] = {}
     for heading in headings:
-        match = HEADING.fullmatch(heading)
-        if match and plain_name(match["name"]) in IO_NAMES:
+        if match := _taken_apart(heading):
             components.setdefault(match["component"] or "", {}).setdefault(match["name"], heading)
     drilling = [names for names in components.values() if "drilled_length" in names]
     if not drilling:
-        raise InputError(f"{path}: must have a column 'drilled_length', got {headings}")
+        raise InputError(f"{path}: must have a column 'drilled_length' (m), got {shown(headings)}")
     outputs = [{name for name in names if plain_name(name) in OUTPUT_NAMES} for names in drilling]
     ours = [names for names, own in zip(drilling, outputs, strict=True) if own >= set().union(*outputs)]
     if len(ours) != 1:
@@ -174,11 +179,9 @@ def _write_csv(trajectory: Trajectory, path: Path) -> None:
 
 
 def _read_csv(path: Path, case: Case | None) -> Trajectory:
-    read_columns(path, ())  # raises if the file is not sound, so the next lines need not check
-    with open(path, newline="", encoding="utf-8-sig") as file:
-        headings = [heading.strip() for heading in next(filter(None, reader(file)), [])]
-    ours = _ours(path, headings)
-    columns = {name: np.array(c) for name, c in zip(ours, read_columns(path, tuple(ours.values())), strict=True)}
+    sheet = read_sheet(path, lambda heading: _taken_apart(heading) is not None)
+    ours = _ours(path, sheet.headings)
+    columns = {name: np.array(c) for name, c in zip(ours, sheet.numbers(list(ours.values())), strict=True)}
     own = case_path(path)
     if not own.exists():
         return Trajectory(columns, case)

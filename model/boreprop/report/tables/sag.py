@@ -2,8 +2,17 @@
 
 from math import isnan
 
-from ...analysis.sag import Sag
+from ...analysis.sag import Sag, steady_sag
+from ...analysis.steering import steady_response
+from ...case.case import Case
 from ...units import SMALL_LENGTH, UNITS
+
+
+def steadily_outside(case: Case) -> str:
+    """The warning, if there is one, for drilling on steadily under the first force, at the inclination of the bit."""
+    inclination = case.survey.inclination[-1]
+    response = steady_response(case, case.schedule.rss_force[0], inclination)
+    return outside_the_hole(steady_sag(case, response, inclination))
 
 
 def outside_the_hole(sag: Sag) -> str:

@@ -3,7 +3,7 @@
 from collections.abc import Container, Mapping
 from math import degrees, log, pi
 
-from ...analysis.stability.chart import Chart
+from ...analysis.stability.chart import VERDICTS, Chart
 from ...analysis.stability.roots import CriticalEtaPi, Roots, Verdict
 from ...units import UNITS
 
@@ -25,7 +25,6 @@ def as_plain(found: Roots) -> dict[str, object]:
 
 def chart_as_plain(chart: Chart, limits: Mapping[tuple[int, ...], CriticalEtaPi | None]) -> dict[str, object]:
     """A chart as a document for JSON: for each mode its limit, and its verdicts over λ₂, then ηΠ."""
-    words = [verdict.value for verdict in (Verdict.STABLE, Verdict.DRIFT, Verdict.OSCILLATORY)]
     return {
         "eta_pi": chart.eta_pi,
         "lambda2": chart.lambda2,
@@ -35,7 +34,7 @@ def chart_as_plain(chart: Chart, limits: Mapping[tuple[int, ...], CriticalEtaPi 
             {
                 "contact": panel.contact,
                 "saturated": panel.saturated,
-                "verdicts": [[words[code] for code in row] for row in panel.verdicts],
+                "verdicts": [[VERDICTS[code] for code in row] for row in panel.verdicts],
             }
             for panel in chart.panels
         ],
