@@ -87,7 +87,10 @@ def view(
     ] = None,
     _version: Version = False,
 ) -> None:
-    """Draw runs with Rerun. A case is simulated first; an FMU is drawn while it runs."""
+    """Draw runs with Rerun. A case is simulated first; an FMU is drawn while it runs.
+
+    To run an FMU is to run the code in it, with all your rights: run only those from people whom you trust.
+    """
     if save is not None:
         from boreprop.run.files import files_read  # imported here, since reading cases takes longer than help
 
