@@ -2,10 +2,12 @@
 PYTHON ?= python3
 MINUTES ?= 40
 BIN = .venv/bin
+C = $(wildcard model/boreprop/kernel/*.[ch] fmu_build/boreprop_fmu/native/*.[ch] fmu_build/boreprop_fmu/native/*/*.h)
 
+.PRECIOUS: .venv/%.installed
 .PHONY: demo binaries test soak lint bench clean
 
-demo: .venv/all.installed  # the main job: case file, FMU, run, viewer recording, figures, summary; results in out/
+demo: .venv/all.compiled  # the main job: case file, FMU, run, viewer recording, figures, summary; results in out/
 	mkdir -p out
 	$(BIN)/boreprop-fmu build examples/build_section.toml --output out/Borehole.fmu
 	$(BIN)/boreprop-fmu run out/Borehole.fmu --schedule examples/build_section_rss.csv --output out/run.csv
@@ -25,10 +27,10 @@ demo: .venv/all.installed  # the main job: case file, FMU, run, viewer recording
 binaries: .venv/dev.installed  # what native FMUs are packed with, for all platforms
 	$(BIN)/python -m boreprop_fmu.native all
 
-test: .venv/dev.installed  # the whole suite
+test: .venv/dev.compiled  # the whole suite
 	$(BIN)/python -m pytest -n auto
 
-soak: .venv/dev.installed  # new examples of the property tests, then the fuzzers: make soak MINUTES=40 [SEED=…]
+soak: .venv/dev.compiled  # new examples of the property tests, then the fuzzers: make soak MINUTES=40 [SEED=…]
 	$(BIN)/python tests/soak.py --minutes $(MINUTES) $(if $(SEED),--seed $(SEED))
 
 lint: .venv/dev.installed  # style, types and the import contract; style and faults of the C
@@ -38,7 +40,7 @@ lint: .venv/dev.installed  # style, types and the import contract; style and fau
 	$(BIN)/lint-imports
 	$(BIN)/python tests/lint_c.py
 
-bench: .venv/bench.installed  # speed, side by side with something else
+bench: .venv/bench.compiled  # speed, side by side with something else
 	$(BIN)/python benchmarks/integrator.py
 	$(BIN)/python benchmarks/whole_process.py
 	$(BIN)/python benchmarks/fmu_cost.py
@@ -57,7 +59,10 @@ clean:
 	@echo 'Installing into .venv: a minute or two the first time'
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[$*]"
-	@# again: the compiler may have come with the extras
-	@$(BIN)/python -m boreprop.kernel >/dev/null 2>&1 || true
-	@$(BIN)/python -m boreprop_fmu.native >/dev/null 2>&1 || true
+	@touch $@
+
+# What is compiled, again whenever its C has changed; without a compiler the model in Python drills.
+.venv/%.compiled: .venv/%.installed $(C)
+	-$(BIN)/python -m boreprop.kernel
+	-$(BIN)/python -m boreprop_fmu.native
 	@touch $@

@@ -1,11 +1,12 @@
 """The FMU as a running component. Every FMU runs in a process of its own, where the model is nowhere but in the FMU."""
 
 import json
+import os
 import subprocess
 import sys
 from dataclasses import replace
 from itertools import product
-from math import degrees
+from math import degrees, inf
 from pathlib import Path
 from typing import Any
 
@@ -223,3 +224,28 @@ def test_bad_input_to_the_command_is_one_line(
     assert message in done.stderr
     assert done.stderr.count("\n") == 1
     assert set(tmp_path.iterdir()) == inputs
+
+
+@both_flavours
+def test_a_step_of_more_than_100_km_is_discarded_at_once(fmu: Path) -> None:
+    """Without the bound, 2^18 steps of the integrator come before the refusal; the test's host would be given up."""
+    *refused, usual = host("too_far", fmu)
+    for (status, [line], then), length in zip(refused, (100_100.0, 1e15, inf), strict=True):
+        assert (status, then) == ("discard", "kept")
+        name, _, got = line.partition(": must be ")
+        if length == inf:
+            assert (name, got) == ("drilled_length", "a finite number, got inf")
+        else:
+            assert (name, got.partition(", got ")[0]) == ("step_size * rate_of_penetration", "<= 100000")
+            assert float(got.partition(", got ")[2]) == pytest.approx(length)
+    assert usual[:2] == ["ok", []]
+
+
+@both_flavours
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names")
+def test_a_survey_is_no_pipe_and_no_device(fmu: Path, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    for path in (tmp_path / "pipe", Path("/dev/zero")):
+        assert host("read_survey", fmu, path) == [
+            f"{path}: must be a readable CSV file, got: a pipe or a device (survey_file)"
+        ]

@@ -46,7 +46,7 @@ def entry(name: str, mode: int = 0) -> zipfile.ZipInfo:
 
 
 EXTRA = {
-    "absolute": (entry("/boreprop-evil"), b"evil"),
+    "absolute": (entry("/evil"), b"evil"),
     "absolute on Windows": (entry("C:/evil"), b"evil"),
     "share of Windows": (entry(r"\\host\evil"), b"evil"),
     "parent": (entry("../evil"), b"evil"),

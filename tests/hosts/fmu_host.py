@@ -225,5 +225,25 @@ def initial(fmu: str, values: str) -> object:
         return [inside, one.row()]
 
 
+def too_far(fmu: str) -> object:
+    """Status, log and outputs after steps of 100 km and a bit, of many more, without end, and of a usual length."""
+    answers = []
+    with instance(fmu) as one:
+        one.initialize(rate_of_penetration=1e3)
+        one.steps(1, 1e-3)
+        before = one.row()
+        for size in (100.1, 1e12, 1e306, 1e-3):
+            one.log.clear()
+            answers.append((one.step(size), [line for _, _, line in one.log], outputs(one, before)))
+    return answers
+
+
+def read_survey(fmu: str, path: str) -> object:
+    """What is logged if this is to be the survey."""
+    with instance(fmu) as one:
+        attempt(lambda: one.initialize(survey_file=path))
+        return [line for _, _, line in one.log]
+
+
 if __name__ == "__main__":
     print(json.dumps(globals()[sys.argv[1]](*sys.argv[2:])))

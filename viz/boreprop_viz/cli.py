@@ -6,7 +6,7 @@ from typing import Annotated, NoReturn
 import typer
 
 from boreprop.cli import console
-from boreprop.cli.lazy import new_app
+from boreprop.cli.lazy import Command, new_app
 from boreprop.cli.options import positive
 from boreprop.cli.version import Version
 from boreprop.errors import InputError
@@ -21,7 +21,7 @@ def main() -> NoReturn:
     console.execute(app)
 
 
-@app.command()
+@app.command(cls=Command)
 def view(
     sources: Annotated[
         list[Path],
@@ -87,7 +87,10 @@ def view(
     ] = None,
     _version: Version = False,
 ) -> None:
-    """Draw runs with Rerun. A case is simulated first; an FMU is drawn while it runs."""
+    """Draw runs with Rerun. A case is simulated first; an FMU is drawn while it runs.
+
+    To run an FMU is to run the code in it, with all your rights: run only those from people whom you trust.
+    """
     if save is not None:
         from boreprop.run.files import files_read  # imported here, since reading cases takes longer than help
 

@@ -11,6 +11,7 @@ from boreprop.case.packed import read_packed_case
 from boreprop.case.tables import read_schedule
 from boreprop.cli import console
 from boreprop.cli.cases import open_case
+from boreprop.cli.fallback import warn_of_fallback
 from boreprop.core.survey import Survey
 from boreprop.errors import InputError
 from boreprop.run.results import SUFFIXES, read_trajectory
@@ -82,6 +83,7 @@ class Opener:
                 raise InputError(f"{path}: must be a result file with --case or --fmu, got a case file")
             case = open_case(path)
             self.planned(case)  # raises before anything is drilled
+            warn_of_fallback()
             with console.progress("drilling", case.length) as drilled:
                 return simulate(case, progress=drilled)
         if path.suffix not in SUFFIXES:

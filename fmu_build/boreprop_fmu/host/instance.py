@@ -17,19 +17,21 @@ from boreprop.case.archive import open_archive
 from boreprop.errors import InputError
 from boreprop.kernel.compiler import host_platform
 
+KIND = "FMI 2.0 co-simulation FMU"
+
 
 def read_description(fmu: Path) -> Any:
     """Read modelDescription.xml; `InputError` unless it is that of a sound FMI 2.0 co-simulation FMU."""
-    with open_archive(fmu):
+    with open_archive(fmu, KIND):
         pass
     try:
         description = fmpy.read_model_description(fmu)
     except Exception as error:  # fmpy raises what its parsers raise
         reason = getattr(error, "strerror", None) or error
-        raise InputError(f"{fmu}: must be an FMI 2.0 co-simulation FMU, got: {reason}") from error
+        raise InputError(f"{fmu}: must be an {KIND}, got: {reason}") from error
     if description.fmiVersion != "2.0" or description.coSimulation is None:
         kind = "without co-simulation" if description.coSimulation is None else "for co-simulation"
-        raise InputError(f"{fmu}: must be an FMI 2.0 co-simulation FMU, got: FMI {description.fmiVersion} {kind}")
+        raise InputError(f"{fmu}: must be an {KIND}, got: FMI {description.fmiVersion} {kind}")
     return description
 
 

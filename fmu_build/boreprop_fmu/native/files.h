@@ -4,6 +4,9 @@
 
 #include "text.h"
 #include <errno.h>
+#ifndef _WIN32
+#include <sys/stat.h>
+#endif
 
 enum { LARGEST = 1 << 26 }; /* bytes of a file */
 
@@ -19,6 +22,17 @@ static FILE *open_file(const char *path) {
     return _wfopen(wide, L"rb");
 #else
     return fopen(path, "rb");
+#endif
+}
+
+/* Whether a path is that of a pipe or a device, from which reading might never end. */
+static int is_special(const char *path) {
+#ifdef _WIN32
+    (void)path;
+    return 0;
+#else
+    struct stat about;
+    return !stat(path, &about) && !S_ISREG(about.st_mode) && !S_ISDIR(about.st_mode);
 #endif
 }
 
@@ -43,9 +57,10 @@ static char *read_text(const char *path, const char *kind, char why[LINE]) {
     const char *fault = NULL;
     size_t size = 0;
     errno = 0;
-    FILE *file = open_file(path);
+    FILE *file = is_special(path) ? NULL : open_file(path);
     char *text = file ? read_all(file, &size) : NULL;
-    if (!file || ferror(file)) fault = strerror(errno);
+    if (!file && is_special(path)) fault = "a pipe or a device";
+    else if (!file || ferror(file)) fault = strerror(errno);
     else if (!text) fault = "more than fits into the memory, or than 64 MB";
     else if (strlen(text) != size || !is_utf8(text)) fault = "bytes that are no UTF-8 text";
     if (file) fclose(file);

@@ -82,7 +82,10 @@ static fmi2Status step(Component *c, double time, double size, char why[LINE]) {
     double here = drilling_length(&c->run->drilling);
     if (start_rate != c->rate || end_rate != start_rate) since = time, from = here;
     double length = from + start_rate * (time + size - since) + (end_rate - start_rate) * size / 2;
-    if (!check_finite(Q_DRILLED_LENGTH, 0, length, &problem)) {
+    int bounded = check_finite(Q_DRILLED_LENGTH, 0, length, &problem);
+    if (bounded && length - here > MOST_DRILLED)
+        bounded = wrong(&problem, TOO_LARGE, Q_STEP_LENGTH, 0, length - here, MOST_DRILLED);
+    if (!bounded) {
         tell(&problem, why);
         return fmi2Discard;
     }

@@ -24,7 +24,7 @@ from boreprop.core.columns import read_columns
 from boreprop.core.drilling import Drilling
 from boreprop.core.errors import BorepropError, ParameterError, TableError
 from boreprop.core.options import Options
-from boreprop.core.quantities import VARIABLES, Quantity, columns_of, fields_of
+from boreprop.core.quantities import MOST_DRILLED, VARIABLES, Quantity, columns_of, fields_of
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop_fmu.python.process import forget, give_ctrl_c_back, open_log, write_to_user
@@ -231,6 +231,8 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
             anchor = (current_time, drilling.drilled_length, rate)
         # from the anchor, so that rounding does not add up from step to step
         drilled_length = max(anchor[1] + rate * (current_time + step_size - anchor[0]), drilling.drilled_length)
+        check_number("drilled_length", drilled_length)
+        check_number("step_size * rate_of_penetration", drilled_length - drilling.drilled_length, at_most=MOST_DRILLED)
         if weight == 0.0:  # off bottom, as while a pipe is connected: nothing moves
             check_quantity("rss_force", given["rss_force"])
         else:

@@ -28,13 +28,15 @@ FAULTS = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, Runtime
 
 
 @contextmanager
-def open_archive(fmu: str | Path) -> Iterator[zipfile.ZipFile]:
+def open_archive(fmu: str | Path, kind: str = "FMU") -> Iterator[zipfile.ZipFile]:
     """Open an FMU to read from it, or to unpack it.
 
     Parameters
     ----------
     fmu
         The FMU.
+    kind
+        What it must be, for the message if it is no archive.
 
     Yields
     ------
@@ -55,7 +57,7 @@ def open_archive(fmu: str | Path) -> Iterator[zipfile.ZipFile]:
     except InputError:
         raise
     except FAULTS as error:
-        raise InputError(f"{fmu}: must be an FMU, got: {getattr(error, 'strerror', None) or error}") from error
+        raise InputError(f"{fmu}: must be an {kind}, got: {getattr(error, 'strerror', None) or error}") from error
 
 
 def _check_files(fmu: str | Path, files: list[zipfile.ZipInfo]) -> None:

@@ -9,12 +9,13 @@ import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NoReturn
+from typing import Literal, NoReturn
 
 import typer
 
 from ..endings import endings_like_interrupt
 from ..errors import BorepropError, InputError
+from .signs import write_plainly
 
 BAD_INPUT, INTERRUPTED = 2, 130  # exit statuses
 EXTRAS = {  # package → the extra that installs it
@@ -29,6 +30,7 @@ EXTRAS = {  # package → the extra that installs it
 
 def execute(app: typer.Typer) -> NoReturn:
     """Execute `app` with the arguments of the process, and exit."""
+    write_plainly()
     with endings_like_interrupt():
         try:
             sys.exit(app(standalone_mode=False))
@@ -81,6 +83,11 @@ def check_output(path: str | Path, suffixes: tuple[str, ...] = (), *, reads: Ite
     return path
 
 
+def color_system() -> Literal["auto"] | None:
+    """The colours that Rich may use: those of the terminal, or none if NO_COLOR is set (https://no-color.org)."""
+    return None if os.environ.get("NO_COLOR") else "auto"
+
+
 @contextmanager
 def progress(description: str, total: float) -> Iterator[Callable[[float], None]]:
     """Show a progress bar on stderr, if that is a terminal. Yields a function that takes the part of `total` done."""
@@ -90,6 +97,6 @@ def progress(description: str, total: float) -> Iterator[Callable[[float], None]
     from rich.console import Console  # imported here, since importing rich takes longer than a short run
     from rich.progress import Progress
 
-    with Progress(console=Console(stderr=True), transient=True) as bar:
+    with Progress(console=Console(stderr=True, color_system=color_system()), transient=True) as bar:
         task = bar.add_task(description, total=total)
         yield lambda completed: bar.update(task, completed=completed)

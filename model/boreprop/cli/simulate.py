@@ -14,6 +14,7 @@ from ..run.results import keeping_rows, write_trajectory
 from ..run.simulate import SAMPLE_INTERVAL, simulate
 from . import console
 from .cases import open_case
+from .fallback import warn_of_fallback
 from .options import CaseFile, Tolerance, one_of, positive
 from .outputs import check_run_output
 
@@ -50,6 +51,8 @@ def simulate_command(
     if length is not None:
         case = replace(case, length=length)
     check_number("--sample-interval", sample_interval, at_least=case.length / MAX_ROWS)
+    if engine == "auto":
+        warn_of_fallback()
     with keeping_rows(output), console.progress("drilling", case.length) as drilled:
         trajectory = simulate(
             case,

@@ -16,6 +16,7 @@ from ..report.tables.study import lines, outcome
 from ..run.files import files_read
 from . import console
 from .cases import open_case
+from .fallback import warn_of_fallback
 from .options import CaseFile, Tolerance
 from .printing import print_table
 from .ranges import parse_axis, parse_distribution, parse_each
@@ -69,6 +70,8 @@ def study_command(
         raise InputError(f"--workers: must not be given with --dask, whose workers compute, got {workers}")
     cases = _cases(case_file, vary or [], uncertain or [], draws, seed)
     figures = key_figures if tolerance is None else partial(key_figures, relative_tolerance=tolerance)
+    if dask is None:
+        warn_of_fallback()
     try:
         with on_cluster(dask) as executor, console.progress("cases", len(cases)) as done:
             results = study(cases, figures, output=output, executor=executor, workers=workers, progress=done)

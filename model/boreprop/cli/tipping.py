@@ -18,6 +18,7 @@ from ..report.tables.tipping import SIDES, left_out, lines
 from ..run.files import files_read
 from . import console
 from .cases import open_case
+from .fallback import warn_of_fallback
 from .options import AsJson, CaseFile, ClearanceRange, EtaPiRange, Tolerance, check_asked, positive
 from .printing import print_json, print_table
 from .ranges import parse_range
@@ -46,6 +47,7 @@ def dogleg_command(
     across = parse_range("--eta-pi", eta_pi) if eta_pi else None
     up = parse_range("--clearance-mm", clearance_mm) / 1e3 if clearance_mm else None
     case, limit = open_case(case_file), radians(limit_deg)
+    warn_of_fallback()
     error = tolerance or RELATIVE_TOLERANCE
     found = {side: critical_dogleg_or_why(case, side=side, limit=limit, relative_tolerance=error) for side in SIDES}
     if as_json:
@@ -102,6 +104,7 @@ def hysteresis_command(
         name = f"stabilizer_clearance[{first_that_touches(case)}]"
         values = (parse_range("--clearance-mm", clearance_mm or "") / 1e3).tolist()
     error = tolerance or RELATIVE_TOLERANCE
+    warn_of_fallback()
     with console.progress("values", 2 * len(values)) as done:
         found = hysteresis(case, name, values, radians(dogleg_deg), relative_tolerance=error, progress=done)
     if as_json:

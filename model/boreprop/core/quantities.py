@@ -15,6 +15,7 @@ Kind = Literal["Real", "Integer", "String"]
 Size = Literal["1", "n", "n-1", "column"]  # "column": as long as the table that it is a column of
 
 MAX_STABILIZERS = 6
+MOST_DRILLED = 1e5  # m in a communication step of an FMU: no hole is longer, and a step must end soon
 RELATIVE_TOLERANCE = 1e-7  # with it θ is within 5e-7 rad of the reference trajectories
 
 

@@ -108,13 +108,18 @@ def _array(kind: Any) -> Any:
     return np.ctypeslib.ndpointer(kind, flags="C_CONTIGUOUS")
 
 
-def available() -> bool:
-    """Whether the kernel can be used."""
+def why_not() -> str:
+    """Why the kernel cannot be used, and what helps; empty if it can."""
     try:
         library()
-    except KernelError:
-        return False
-    return True
+    except KernelError as error:
+        return str(error)
+    return ""
+
+
+def available() -> bool:
+    """Whether the kernel can be used."""
+    return not why_not()
 
 
 class NativeDrilling:

@@ -8,7 +8,7 @@ from hashlib import sha256
 from ..core import radau
 from ..core.options import Options
 from ..core.problems import DERIVED, SENTENCES
-from ..core.quantities import INPUTS, MAX_STABILIZERS, OUTPUTS, PARAMETERS, QUANTITIES, Quantity
+from ..core.quantities import INPUTS, MAX_STABILIZERS, MOST_DRILLED, OUTPUTS, PARAMETERS, QUANTITIES, Quantity
 from ..core.system import LEAST_SPAN
 from ..replacing import replacing
 from .compiler import FOLDER
@@ -29,6 +29,7 @@ NAMES = {quantity.name: quantity.name for quantity in QUANTITIES} | {
     "current_time": "current_time",
     "step_size": "step_size",
     "step_end": "current_time + step_size",
+    "step_length": "step_size * rate_of_penetration",
 }
 """What a problem may be about → its name in messages: quantities, what is made of them, arguments of FMI calls."""
 
@@ -44,6 +45,7 @@ QUANTITIES_HEADER = """\
 /* clang-format off */
 
 #define QUANTITIES_DIGEST "{digest}" /* of this file, but for this line, and of problems.h */
+#define MOST_DRILLED {most_drilled!r} /* m in a communication step */
 #define LEAST_SPAN {least_span!r} /* m between stabilizers, at least: forces between closer ones are rounding errors */
 
 enum {{ MAX_STABILIZERS = {most}, PARAMETER_COUNT = {parameters}, INPUT_COUNT = {inputs}, OUTPUT_COUNT = {outputs} }};
@@ -196,6 +198,7 @@ def quantities_header(system: Table = SYSTEM, inputs: Table = INPUTS, outputs: T
     """The text of quantities.h."""
     numbers = {
         "least_span": LEAST_SPAN,
+        "most_drilled": MOST_DRILLED,
         "most": MAX_STABILIZERS,
         "parameters": len(system),
         "inputs": len(inputs),

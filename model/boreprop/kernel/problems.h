@@ -83,6 +83,7 @@ typedef enum {
     Q_CURRENT_TIME,
     Q_STEP_SIZE,
     Q_STEP_END,
+    Q_STEP_LENGTH,
     NAME_COUNT
 } Name;
 
@@ -159,6 +160,7 @@ static const char *const NAME[NAME_COUNT] = {
     "current_time",
     "step_size",
     "current_time + step_size",
+    "step_size * rate_of_penetration",
 };
 
 /* clang-format on */

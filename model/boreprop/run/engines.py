@@ -11,7 +11,7 @@ from ..case.case import Case
 from ..core.drilling import Drilling
 from ..core.errors import ParameterError
 from ..core.options import Options, Statistics
-from ..kernel.binding import NativeDrilling, available
+from ..kernel.binding import NativeDrilling, available, why_not
 
 
 class Engine(Protocol):
@@ -57,6 +57,11 @@ ENGINES = ("auto", *DRILLING)
 def engine() -> str:
     """The engine that "auto" stands for: "native" where it is there, else "python"."""
     return "native" if available() else "python"
+
+
+def why_not_native() -> str:
+    """Why "auto" stands for "python", and what helps; empty if it stands for "native"."""
+    return why_not()
 
 
 def chosen(choice: str) -> str:

@@ -139,12 +139,12 @@ def piece_lines(curve: tuple[Piece, ...]) -> list[tuple[str, ...]]:
     return [
         (
             forces(piece.start, piece.end),
-            f"{per_build_length(piece.start.build_rate):+z.2f}…{per_build_length(piece.end.build_rate):+z.2f}",
+            f"{per_build_length(piece.start.build_rate):+z.2f} to {per_build_length(piece.end.build_rate):+z.2f}",
             f"{per_build_length(piece.gain / UNITS['N'].factor):+z.3f}",
             (
                 f"{tilt(piece.start)} (limit)"
                 if piece.start.bit_tilt_saturation
-                else f"{tilt(piece.start)}…{tilt(piece.end)}"
+                else f"{tilt(piece.start)} to {tilt(piece.end)}"
             ),
             touching(piece.start, piece.end),
             (
@@ -179,7 +179,7 @@ def _warning(piece: Piece, eta_pi: float) -> str:
 
 def forces(start: SteadyResponse, end: SteadyResponse) -> str:
     """The range of forces between two responses, in kN."""
-    return "…".join(UNITS["N"].number(response.rss_force, "+z.2f") for response in (start, end))
+    return " to ".join(UNITS["N"].number(response.rss_force, "+z.2f") for response in (start, end))
 
 
 def tilt(response: SteadyResponse) -> str:

@@ -1,0 +1,115 @@
+"""Tables and help as a terminal, a pipe or a file can take them: nothing is cut, and no character is too much."""
+
+import io
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from boreprop.case.file import load_case
+from boreprop.cli import app, printing
+from boreprop.cli.printing import print_table
+from boreprop.cli.signs import PLAIN, written
+from boreprop.run.results import write_trajectory
+from boreprop.run.simulate import simulate
+from places import ROOT
+
+CASE = ROOT / "examples/build_section.toml"
+CELLS = [
+    ("η·Π of the case", "+12.34 to +56.78", "a-word-that-is-long-and-has-no-blanks"),
+    ("[1]", ":smile:", "[bold]x"),
+]
+TABLES = [
+    ["roots", "CASE"],
+    ["roots", "CASE", "--contact", "1"],
+    ["steering", "CASE"],
+    ["summary", "RUN", "--stations", "30"],
+    ["dogleg", "CASE"],
+]
+PROGRAMS = ["boreprop.cli.app", "boreprop_fmu.cli", "boreprop_viz.cli"]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("run")
+    write_trajectory(simulate(load_case(CASE), length=100.0), path / "RUN.csv")
+    return path
+
+
+def run(folder: Path, module: str, arguments: list[str], **environment: str) -> bytes:
+    """What a command prints to a pipe; it succeeds and says nothing else."""
+    files = {"CASE": CASE, "RUN": folder / "RUN.csv"}
+    given = [str(files.get(argument, argument)) for argument in arguments]
+    code = f"import sys; from {module} import main; sys.argv[0] = 'it'; main()"
+    done = subprocess.run(
+        [sys.executable, "-c", code, *given], capture_output=True, env=os.environ | environment, timeout=120
+    )
+    assert (done.returncode, done.stderr) == (0, b"")
+    return done.stdout
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "ascii"])
+@pytest.mark.parametrize(
+    ("module", "arguments"),
+    [("boreprop.cli.app", table) for table in TABLES]
+    + [(module, ["--help"]) for module in PROGRAMS]
+    + [("boreprop.cli.app", [command, "--help"]) for command in app.COMMANDS]
+    + [("boreprop_fmu.cli", ["run", "--help"])],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else value,
+)
+def test_any_encoding_will_do(folder: Path, module: str, arguments: list[str], encoding: str) -> None:
+    utf_8 = run(folder, module, arguments, PYTHONIOENCODING="utf-8").decode()
+    narrow = run(folder, module, arguments, PYTHONIOENCODING=encoding).decode(encoding)
+    if "--help" in arguments:
+        assert narrow.replace("\r\n", "\n") == written(utf_8, encoding)
+    else:  # the lines of the frame are others
+        words = [word for word in narrow.split() if word.strip("+-|")]
+        assert words == [word for word in written(utf_8, encoding).split() if word.strip("+-|?")]
+        assert len({len(line) for line in narrow.splitlines() if line.startswith("|")}) <= 2
+
+
+def test_signs_and_words() -> None:
+    assert written("ηΠ ≤ 0.5, λ₂ → θ², ±5 °/30 m", "cp1252") == "etaPi <= 0.5, lambda2 -> theta², ±5 °/30 m"
+    assert written("ηΠ ≤ 0.5 − é, ±5 °, 雪, \udcff", "ascii") == "etaPi <= 0.5 - e, +/-5 deg, ?, ?"
+
+
+@pytest.mark.parametrize("width", [20, 60, 80, 500])
+@pytest.mark.parametrize("terminal", [True, False])
+def test_no_word_of_a_table_is_cut(monkeypatch: pytest.MonkeyPatch, width: int, terminal: bool) -> None:
+    out = io.TextIOWrapper(io.BytesIO(), encoding="utf-8", errors=PLAIN)
+    monkeypatch.setattr(out, "isatty", lambda: terminal, raising=False)
+    monkeypatch.setattr(sys, "stdout", out)
+    monkeypatch.setenv("COLUMNS", str(width))
+    monkeypatch.setenv("NO_COLOR", "1")
+    print_table(CELLS, ("reverses at", "kN", "heading[i]"), title="A title", caption="And a caption")
+    out.flush()
+    text = out.buffer.getvalue().decode()
+    words = [word for line in (*CELLS, ("reverses at", "kN", "heading[i]")) for cell in line for word in cell.split()]
+    assert all(word in text.split() for word in words)
+    assert "…" not in text
+    lines = [line for line in text.splitlines() if line.startswith("│")]
+    if terminal:
+        assert len({len(line) for line in lines}) == 1
+    else:
+        assert len(lines) == len(CELLS)
+
+
+@pytest.mark.parametrize(("no_color", "plain"), [("1", True), ("", False)])
+def test_no_color(monkeypatch: pytest.MonkeyPatch, no_color: str, plain: bool) -> None:
+    out = io.TextIOWrapper(io.BytesIO(), encoding="utf-8")
+    monkeypatch.setattr(out, "isatty", lambda: True, raising=False)
+    monkeypatch.setattr(sys, "stdout", out)
+    monkeypatch.setenv("TERM", "xterm-256color")
+    monkeypatch.setenv("NO_COLOR", no_color)
+    printing.print_table(CELLS, ("a", "b", "c"), title="A title")
+    out.flush()
+    assert (b"\x1b" in out.buffer.getvalue()) != plain
+
+
+@pytest.mark.parametrize("arguments", TABLES, ids=" ".join)
+def test_what_goes_into_a_pipe_does_not_depend_on_the_terminal(folder: Path, arguments: list[str]) -> None:
+    widths = [run(folder, "boreprop.cli.app", arguments, COLUMNS=columns) for columns in ("60", "80", "200")]
+    assert widths[0] == widths[1] == widths[2]
+    assert "…" not in widths[0].decode("utf-8")
