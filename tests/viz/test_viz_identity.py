@@ -5,6 +5,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pytest
 import rerun as rr
 from rerun.chunk import RrdReader
@@ -18,7 +19,7 @@ from boreprop.run.trajectory import Trajectory
 from boreprop_viz.picture import SOFTWARE_DRIVERS, environment
 from boreprop_viz.record import Drawing, record
 from boreprop_viz.source import stored
-from rrd import static
+from rrd import read, static
 from viewers import rerun, until
 
 PLAN = Survey((0.0, 100.0), (0.0, 0.1))
@@ -104,3 +105,37 @@ def titles(client: ViewerClient) -> list[str]:
 
 def shows(client: ViewerClient, expected: list[str]) -> bool:
     return titles(client) == expected
+
+
+def test_runs_whose_names_differ_in_their_spaces_alone_are_drawn_apart(
+    runs: dict[str, Trajectory], tmp_path: Path
+) -> None:
+    slim, wide = runs.values()
+    record({"a b": slim, "a  b": wide, "a_b": slim, " ": wide}, save=tmp_path / "names.rrd")
+    for part, expected in {"a_b": slim, "a_b_2": wide, "a_b_3": slim, "run": wide}.items():
+        curve = read(tmp_path / "names.rrd", f"plots/bit_tilt/{part}/bit_tilt", "Scalars:scalars")
+        assert np.ravel(list(curve.values())) == pytest.approx(np.degrees(expected["bit_tilt"]), abs=1e-4)
+
+
+def test_a_name_is_shown_as_it_is_in_texts(runs: dict[str, Trajectory], tmp_path: Path) -> None:
+    record(dict(zip(("a|b", "*c*"), runs.values(), strict=True)), save=tmp_path / "names.rrd")
+    [[table]] = static(tmp_path / "names.rrd", "case", "TextDocument:text")
+    assert table.startswith("|  | a\\|b | \\*c\\* |\n")
+    texts = read(tmp_path / "names.rrd", "verdict", "TextDocument:text")
+    assert all("**a\\|b**" in text and "**\\*c\\***" in text for [text] in texts.values())
+
+
+def test_the_numbers_of_two_runs_at_one_place_do_not_cover_each_other(
+    runs: dict[str, Trajectory], tmp_path: Path
+) -> None:
+    slim, _ = runs.values()
+    record({"a": slim, "b": slim}, save=tmp_path / "twice.rrd")
+    labels = [f"bit_frame/contact_force/1/{run}/label" for run in "ab"]
+    places = [read(tmp_path / "twice.rrd", label, "Points2D:positions") for label in labels]
+    apart = [other[1] - one[1] for one, other in zip(*map(drawn, places), strict=True)]
+    top, bottom = Drawing.of([stored("a", slim)]).scales.frame.y
+    assert min(apart) > 0.03 * (bottom - top)
+
+
+def drawn(places: dict[int, list[tuple[float, float]]]) -> list[tuple[float, float]]:
+    return [place for some in places.values() for place in some]

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from boreprop_viz.key import WIDTH, places, width
+from boreprop_viz.key import LONGEST, WIDTH, places, shortened, width
 from boreprop_viz.scales import MOST_STEPS, plot_range, with_ticks
 from boreprop_viz.style import PLOTS
 
@@ -22,9 +22,10 @@ def test_two_numbers_of_the_axis_lie_in_the_range_of_a_plot(low: float, high: fl
     assert bottom <= low < high <= top
     steps = [10.0**k for k in range(floor(log10(top - bottom)) - 2, floor(log10(top - bottom)) + 1)]
     numbered = next(step for step in steps if (high - low) / step <= MOST_STEPS)  # the viewer takes the finest it can
-    inside = np.arange(np.ceil(bottom / numbered - 1e-9), np.floor(top / numbered + 1e-9) + 1)
+    clear = 0.09  # steps from the edge, where a number would be cut
+    inside = np.arange(np.ceil(bottom / numbered + clear), np.floor(top / numbered - clear) + 1)
     assert len(inside) >= 2
-    assert top - bottom <= max(high - low, 2.3 * numbered)
+    assert top - bottom <= max(high - low, 2.4 * numbered)
 
 
 @pytest.mark.parametrize("values", [[3.0, 3.0], [0.0, 0.0], [np.nan, np.nan], [np.nan, 1.0, 2.0]])
@@ -42,3 +43,11 @@ def test_the_entries_of_the_key_do_not_cover_each_other(names: list[str]) -> Non
         assert x >= ends.get(y, 0.0)
         assert x + width(name) <= WIDTH or y not in ends
         ends[y] = x + width(name)
+
+
+@given(st.text("abc", max_size=300), st.text("abc", max_size=300))
+def test_a_name_in_the_key_is_no_wider_than_the_key(beginning: str, end: str) -> None:
+    short = shortened(beginning + end)
+    assert width(short) <= WIDTH
+    assert short.startswith(beginning[: LONGEST // 2])
+    assert short.endswith(end[-LONGEST // 2 :])

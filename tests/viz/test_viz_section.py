@@ -211,3 +211,23 @@ def test_what_is_drilled_beyond_the_end_widens_section_and_strip(scales: Scales,
     below = Trajectory(run.columns | {"true_vertical_depth": 3 * run["true_vertical_depth"]}, run.case)
     assert not scales.hold(below)
     assert scales.widened(below).hold(below)
+
+
+def test_of_a_run_that_begins_late_nothing_is_shown_before_its_beginning(run: Trajectory, tmp_path: Path) -> None:
+    late = Trajectory({name: values[32:] for name, values in run.columns.items()}, run.case)
+    record(late, save=tmp_path / "late.rrd")
+    begin = late["drilled_length"][0]
+    for entity in ("plots/ripple/ripple", "plots/bit_tilt/bit_tilt"):
+        assert min(read(tmp_path / "late.rrd", entity, "Scalars:scalars")) >= round(1000 * begin)
+    top = min(
+        y for [strip] in read(tmp_path / "late.rrd", "strip/hole", "LineStrips2D:strips").values() for _, y in strip
+    )
+    [depths] = static(tmp_path / "late.rrd", "strip/grid/depth", "Points2D:labels")
+    assert late.case
+    assert min(top, *map(float, depths)) >= late.case.survey.measured_depth[-1] + begin
+
+
+def test_the_depths_of_a_hole_of_centimetres_are_told_apart(run: Trajectory, tmp_path: Path) -> None:
+    record(Trajectory({name: values[:1] for name, values in run.columns.items()}, run.case), save=tmp_path / "one.rrd")
+    [depths] = static(tmp_path / "one.rrd", "strip/grid/depth", "Points2D:labels")
+    assert len(set(depths)) == len(depths) > 1

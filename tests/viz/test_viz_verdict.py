@@ -135,7 +135,9 @@ def test_while_the_bit_stands_still_nothing_else_is_said(run: Trajectory) -> Non
 
 def test_rows_farther_apart_than_the_checks_are_followed_too() -> None:
     sparse = simulate(paper_case(), length=200.0, sample_interval=10.0)
-    assert [saying.words for saying in say(sparse, 3)] == ["no ripple so far", "no ripple"]
+    unseen = "; waves under 80 m would not show between these rows"
+    expected = ["no ripple so far", f"no ripple so far{unseen}", f"no ripple{unseen}"]
+    assert [saying.words for saying in say(sparse, 3)] == expected
 
 
 def test_the_end_says_how_the_run_ended() -> None:
@@ -243,3 +245,10 @@ def test_of_several_runs_the_text_says_at_each_tick_what_holds_of_each(tmp_path:
     for tick, text in shown.items():
         latest = [[saying.words for saying in said[n] if round(1000 * saying.length) <= tick][-1] for n in "ab"]
         assert text == f"- **a** {latest[0]}\n- **b** {latest[1]}"
+
+
+def test_waves_too_short_for_the_rows_are_named() -> None:
+    run = simulate(paper_case(), length=60.0, sample_interval=0.1)
+    apart = Trajectory({name: values[::10] for name, values in run.columns.items()}, run.case)
+    assert "would not show" not in "".join(saying.words for saying in say(run))
+    assert "; waves under 8 m would not show between these rows" in say(apart)[-1].words

@@ -1,5 +1,6 @@
 """The texts beside the pictures: whether the holes ripple, moment by moment, and the cases side by side."""
 
+import re
 from bisect import bisect
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -91,15 +92,21 @@ class Card:
         latest = [bisect(of_run, at) - 1 for of_run in moments]
         words = [said[last].words if last >= 0 else "" for said, last in zip(self.sayings, latest, strict=True)]
         marks = [UNTIL_ITS_END if live and word else "" for live, word in zip(self.going_on, words, strict=True)]
-        lines = [f"- **{name}** {mark}{word}" for name, mark, word in zip(self.names, marks, words, strict=True)]
+        said = zip(map(plain, self.names), marks, map(plain, words), strict=True)
+        lines = [f"- **{name}** {mark}{word}" for name, mark, word in said]
         return "\n".join([f"Does the hole ripple? In {self.along}:", "", *lines])
+
+
+def plain(text: str) -> str:
+    """Text in Markdown that shows what it is, whatever is in it."""
+    return re.sub(r"([\\`*_{}\[\]<>#|~&!])", r"\\\1", " ".join(text.split()))
 
 
 def table(names: Sequence[str], facts: Sequence[dict[str, str]]) -> str:
     """The facts about some cases side by side; those that differ come first."""
     rows = [[what, *(fact[what] for fact in facts)] for what in facts[0]]
     rows.sort(key=lambda row: len(set(row[1:])) == 1)
-    heading = [["", *names], ["---"] * (len(names) + 1)]
+    heading = [["", *map(plain, names)], ["---"] * (len(names) + 1)]
     return "\n".join(f"| {' | '.join(row)} |" for row in heading + rows)
 
 

@@ -129,19 +129,22 @@ def log_tilt_limits(track: Track, shapes: Shapes) -> None:
         send_curve(track, track.entity(f"plots/bit_tilt/{side}_limit"), ends, np.full(2, sign * limit))
 
 
-def find_ripple(track: Track, stretch: Stretch, rippled: float) -> tuple[Array, Array]:
+def find_ripple(track: Track, stretch: Stretch, begin: float, rippled: float) -> tuple[Array, Array]:
     """Drilled lengths and the ripple of the hole there, m, as far as its trend is determined.
 
-    They begin at most half a width of the trend before the drilled length `rippled`, m, if the run does.
+    They begin at most half a width of the trend before the drilled length `rippled`, m, but not before the run does, at
+    the length `begin`, m. The hole behind a run that begins late is not known, nor is the trend at its beginning.
     """
     width = track.scales.trend
-    hole = stretch.hole.since(max(rippled, 0.0) - (AXIS_REACH + 1.0) * width)
-    return axis_ripple(hole.length, hole.position, width)
+    hole = stretch.hole.since(max(rippled, begin) - (AXIS_REACH + 1.0) * width)
+    length, ripple = axis_ripple(hole.length, hole.position, width)
+    known = length >= (begin + AXIS_REACH * width if begin > width else begin)
+    return length[known], ripple[known]
 
 
 def log_ripple(track: Track, recent: Trajectory, length: Array, ripple: Array, rippled: float) -> None:
     """The ripple at the lengths beyond `rippled`, mm; `recent` are the last rows of the run, back to these lengths."""
-    new = (length > rippled) & (length >= 0.0)
+    new = length > rippled
     send_curve(track, track.entity(RIPPLE), arrivals(recent, length[new]), SMALL_LENGTH.factor * ripple[new])
 
 

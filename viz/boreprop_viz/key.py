@@ -7,14 +7,17 @@ is a pixel of a small window, and in a larger window it grows.
 from collections.abc import Iterator, Sequence
 from itertools import zip_longest
 
+import numpy as np
 import rerun as rr
 
-from .style import BIT, BY_STABILIZER, GREY, HOLE, PLAN, RSS, WHITE, Colour
+from .furniture import log_labels
+from .style import BIT, BY_STABILIZER, GREY, HOLE, OLIVE, PLAN, RSS, Colour
 from .track import Track
 
 KEY = "key"
 WIDTH, LINE = 600.0, 26.0  # of the key and of one of its lines
 ABOVE = 13.0  # by which a viewer draws a text below its place
+LONGEST = 40  # letters of a name, which may be wide ones
 SWATCH, GAP, LETTER, MARGIN = 18.0, 8.0, 7.0, 20.0  # width of a coloured line, of what is between two, of a letter, …
 
 Entry = tuple[str, Colour]
@@ -25,13 +28,18 @@ def entries(tracks: Sequence[Track], planned: bool) -> list[Entry]:
     n = max(len(track.case.bha.stabilizer_positions) for track in tracks)
     plan = [("plan", PLAN)] if planned else []
     if len(tracks) == 1:
-        parts = [("hole", HOLE), ("BHA, bit", BIT), *plan, ("RSS", RSS)]
-        return [*parts, *((f"stabilizer {i}", colour) for i, colour in enumerate(BY_STABILIZER[: n - 1], 1))]
-    runs = [(track.name, track.colour or GREY) for track in tracks]
-    stabilizers = [f"stabilizer {i}" for i in range(1, n)]
-    firsts = zip_longest(("hole, build rate", "bit, dogleg severity"), stabilizers, ("low, +", "high, −"))
+        stabilizers = [(f"stabilizer {i}", colour) for i, colour in enumerate(BY_STABILIZER[: n - 1], 1)]
+        return [("hole", HOLE), ("BHA, bit", BIT), *plan, ("RSS", RSS), *stabilizers, ("dogleg severity", OLIVE)]
+    runs = [(shortened(track.name), track.colour or GREY) for track in tracks]
+    numbers = [f"stabilizer {i}" for i in range(1, n)]
+    firsts = zip_longest(("hole, build rate", "bit, dogleg severity"), numbers, ("low, +", "high, −"))
     kinds = [", ".join(filter(None, first)) for first in firsts]
     return [*runs, *plan, *zip(kinds, tracks[0].shades(BY_STABILIZER[: len(kinds)]), strict=True)]
+
+
+def shortened(name: str) -> str:
+    """A name without its middle if it is too long for a line: a viewer shows no text that is wider than its view."""
+    return name if len(name) <= LONGEST else f"{name[: LONGEST // 2]}…{name[-LONGEST // 2 :]}"
 
 
 def places(entries: Sequence[Entry]) -> Iterator[tuple[float, float]]:
@@ -68,11 +76,4 @@ def log_key(rec: rr.RecordingStream, entries: Sequence[Entry]) -> None:
     )
     widths = [width(name) - SWATCH for name, _ in entries]
     middles = [(x + SWATCH + wide / 2, y - ABOVE) for (x, y), wide in zip(starts, widths, strict=True)]
-    names = rr.Points2D(
-        middles,
-        labels=[name for name, _ in entries],
-        colors=WHITE,
-        radii=rr.Radius.ui_points(0.0),
-        show_labels=True,
-    )
-    rec.log(f"{KEY}/names", names, static=True)
+    log_labels(rec, f"{KEY}/names", np.array(middles), [name for name, _ in entries])

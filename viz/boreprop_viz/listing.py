@@ -14,6 +14,7 @@ from boreprop.report.tables.stations import caption, headings, lines
 from boreprop.run.trajectory import Trajectory
 from boreprop.units import BUILD_LENGTH
 
+from .card import plain
 from .scene import Array
 from .source import Source
 from .verdict import Verdict
@@ -47,6 +48,6 @@ class Listing:
         found = list_stations(run, BUILD_LENGTH, plan, averaged_over=over)
         heading = [[text.replace("\n", " ") for text in headings(found)], ["---:"] * len(headings(found))]
         rows = "\n".join(f"| {' | '.join(row)} |" for row in [*heading, *lines(found)])
-        self.tables.append(f"**{source.name}**\n\n{rows}\n\n{caption(found)}")
+        self.tables.append(f"**{plain(source.name)}**\n\n{rows}\n\n{caption(found)}")
         text = rr.TextDocument("\n\n".join(self.tables), media_type=rr.MediaType.MARKDOWN)
         self.rec.log(STATIONS, text, static=True)

@@ -64,6 +64,7 @@ class Scales:
     length: float  # drilled length from the first row to the last, m
     duration: float | None  # time from the first row to the last, s; None if the runs have no time
     start: float | None  # measured depth at which drilling starts, m; None if the runs differ
+    begin: float  # drilled length at the first row, m
     ranges: dict[str, tuple[float, float] | None]  # plot → its range in the unit shown; None: the viewer chooses it
 
     @property
@@ -74,9 +75,9 @@ class Scales:
 
     @property
     def round_start(self) -> float:
-        """A round measured depth, m, at the start or above it by at most a tenth of the length of the run."""
+        """A round measured depth, m, at the first row or above it by at most a tenth of the length of the run."""
         unit = 10.0 ** ceil(log10(max(self.length, 1.0) / 100.0))
-        return unit * floor((self.start or 0.0) / unit)
+        return unit * floor(((self.start or 0.0) + self.begin) / unit)
 
     @property
     def along(self) -> str:
@@ -137,13 +138,14 @@ def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) ->
         lateral=max(1.0, round_down(WALLS_APART * reach / max(case.bit_diameter for case in cases))),
         newtons_per_metre=max(largest, 1.0) / (reach / LONGEST_ARROW),
         severities=severities(cases),
-        window=WAVES * wavelength,
+        window=min(WAVES * wavelength, max(length, wavelength)),
         rippling=bool(waves),
         ripple=with_ticks(-1000 * max(ripples), 1000 * max(ripples), MOST_STEPS_OF_RIPPLE),
         trend=min(TREND * wavelength, *(case.bha.half_length for case in cases)),
         length=length,
         duration=duration,
         start=start,
+        begin=begin,
         ranges=ranges | {"bit_tilt": with_ticks(-UNITS["rad"].factor * limit, UNITS["rad"].factor * limit)},
     )
 
@@ -210,9 +212,9 @@ def with_ticks(low: float, high: float, most_steps: float = MOST_STEPS) -> tuple
     The viewer numbers multiples of a power of ten, the smallest for which there is room.
     """
     step = 10.0 ** ceil(log10((high - low) / most_steps))
-    pairs = [(step * k, step * (k + 1)) for k in range(floor(low / step), ceil(high / step))]
-    first, second = min(pairs, key=lambda pair: max(low - pair[0], 0.0) + max(pair[1] - high, 0.0))
-    return min(low, first - EDGE * step * (first < low)), max(high, second + EDGE * step * (second > high))
+    pairs = [(step * (k - EDGE), step * (k + 1 + EDGE)) for k in range(floor(low / step), ceil(high / step))]
+    bottom, top = min(pairs, key=lambda pair: max(low - pair[0], 0.0) + max(pair[1] - high, 0.0))
+    return min(low, bottom), max(high, top)
 
 
 def first_digit(value: float) -> float:

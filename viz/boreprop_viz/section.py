@@ -11,7 +11,7 @@ from boreprop.analysis.hole import HoleAxis, bit_positions
 from boreprop.run.trajectory import Trajectory
 from boreprop.units import UNITS
 
-from .furniture import log_labels
+from .furniture import log_labels, metres
 from .scales import Scales
 from .scene import REACH_ABOVE_BHA, Array, Shapes
 from .source import Stretch
@@ -85,7 +85,7 @@ def log_depths(track: Track, hole: HoleAxis, drilled: float, recent: Trajectory)
     beside = hole.at(depth - start)
     side = np.where(beside[:, 0] < 0.6 * left + 0.4 * right, 1.0, -1.0)  # that on which there is room
     beside[:, 0] += side * DEPTH_ASIDE * (right - left)
-    labels = rr.Points2D.columns(positions=beside, labels=[f"MD {round(value)} m" for value in depth])
+    labels = rr.Points2D.columns(positions=beside, labels=[f"MD {metres(value)} m" for value in depth])
     send(track, "vertical_section/depths", arrivals(recent, depth - start), labels)
 
 

@@ -1,5 +1,7 @@
 """Draws a run into a recording, stretch by stretch."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from .entities import (
@@ -31,6 +33,7 @@ class RunStream:
     def __init__(self, track: Track) -> None:
         self.track = track
         self.frame = BitFrame(track.case)
+        self.begin = 0.0  # drilled length at the first row, m
         self.hole: DrilledHole | None = None  # from the first rows on
         self.rippled = -np.inf  # drilled length up to which its ripple is drawn, m
         self.verdict = Verdict(track.case, track.scales.start or 0.0)
@@ -39,9 +42,9 @@ class RunStream:
     def send(self, stretch: Stretch) -> list[Saying]:
         """Log the next rows of the run; returns what there is to say of its ripple."""
         if self.hole is None:
-            start = float(stretch.rows["drilled_length"][0])
-            log_existing_hole(self.track, stretch.hole, start)
-            self.hole = DrilledHole(self.track, start)
+            self.begin = float(stretch.rows["drilled_length"][0])
+            log_existing_hole(self.track, stretch.hole, self.begin)
+            self.hole = DrilledHole(self.track, self.begin)
         rows = stretch.rows if self.verdict.rows is None else joined(self.verdict.rows, stretch.rows)
         self.hole.log(stretch, rows)
         shapes = self.frame.shapes(stretch.rows, stretch.hole)
@@ -58,9 +61,9 @@ class RunStream:
             log_tilt_limits,
         ):
             log(self.track, shapes)
-        length, ripple = find_ripple(self.track, stretch, self.rippled)
+        length, ripple = find_ripple(self.track, stretch, self.begin, self.rippled)
         for log_along in (log_ripple, log_strip):
             log_along(self.track, rows, length, ripple, self.rippled)
         self.rippled = max([self.rippled, *length[-1:]])
         log_modes(self.track, rows, stretch.rows.row_count)
-        return self.verdict.follow(stretch.rows)
+        return self.verdict.follow(replace(stretch.rows, columns=stretch.rows.columns | shapes.outside))

@@ -11,7 +11,7 @@ from boreprop.analysis.axis import AXIS_POINTS
 from boreprop.run.trajectory import Trajectory
 from boreprop.units import SMALL_LENGTH
 
-from .furniture import log_labels
+from .furniture import log_labels, metres
 from .scales import STRIP_TOP, Scales, round_down
 from .scene import Array
 from .track import Track, arrivals, consecutive, points, send_paths
@@ -32,7 +32,7 @@ def log_strip(track: Track, recent: Trajectory, length: Array, ripple: Array, ri
     steps = np.diff(ripple)
     crest = np.concatenate(([False], steps[:-1] * steps[1:] < 0.0, [False]))
     drawn = np.flatnonzero(crest | (number % DRAWN == 0))
-    ends = np.flatnonzero((number % PIECE == 0) & (length > rippled) & (number >= PIECE))
+    ends = np.flatnonzero((number % PIECE == 0) & (length > rippled))
     ends = ends[ends >= PIECE]
     first, last = np.searchsorted(drawn, [ends - PIECE, ends])
     strip = track.scales.strip
@@ -45,14 +45,15 @@ def log_strip_grid(rec: rr.RecordingStream, scales: Scales) -> None:
     """Lines at round numbers of metres down the hole, and to both sides of it at round numbers of millimetres."""
     (left, right), (top, bottom) = scales.strip.bounds.x, scales.strip.bounds.y
     step = round_down((bottom - top) / 6)
-    depth = step * np.arange(np.ceil(scales.strip.start / step), (bottom - TEXT * (bottom - top)) / step)
+    begin = top + STRIP_TOP * (bottom - top)
+    depth = step * np.arange(np.ceil(begin / step), (bottom - TEXT * (bottom - top)) / step)
     aside = round_down(scales.ripple[1]) / SMALL_LENGTH.factor
     across = np.array(scales.strip.lanes)[:, None] + scales.strip.lateral * aside * np.array([-1.0, 0.0, 1.0])
-    down = points(across.ravel()[:, None], np.array([top + STRIP_TOP * (bottom - top), bottom]))
+    down = points(across.ravel()[:, None], np.array([begin, bottom]))
     lines = [*points(np.array([0.0, right]), depth[:, None]), *down]
     rec.log("strip/grid", rr.LineStrips2D.from_fields(strips=lines), static=True)
     above = TEXT * (bottom - top)
-    log_labels(rec, "strip/grid/depth", points(left / 2, depth - above / 2), [f"{round(value)}" for value in depth])
+    log_labels(rec, "strip/grid/depth", points(left / 2, depth - above / 2), [metres(value) for value in depth])
     places = points((left + right) / 2, top + above * np.array([-0.3, 0.8, 1.9]))
     along = "drilled length (m)" if scales.start is None else "MD (m)"
     heading = [f"ripple × {scales.strip.lateral:g}", f"lines ±{SMALL_LENGTH.text(aside)}", along]

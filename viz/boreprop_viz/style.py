@@ -23,7 +23,7 @@ HOLE, BIT, PLAN, RSS = ORANGE, SKY_BLUE, PURPLE, GREEN
 BY_STABILIZER = (VERMILION, VIOLET, BROWN, CRIMSON, TEAL)
 # from the smallest to the largest dogleg severity, lighter and lighter, so that they can be told apart with any vision
 BY_SEVERITY = ((140, 92, 10), (176, 116, 0), (208, 142, 8), (234, 170, 34), (250, 204, 90), (255, 240, 180))
-BY_RUN = (ORANGE, SKY_BLUE, GREEN, VERMILION, BLUE, VIOLET)
+BY_RUN = (ORANGE, SKY_BLUE, GREEN, VERMILION, BLUE, VIOLET, OLIVE, BROWN, CRIMSON, TEAL)
 
 
 SHADES = (0.0, 0.5, 0.65, 0.75, 0.8)  # of a run's colour, the first is the colour itself, the others are greyer

@@ -32,6 +32,7 @@ MODES = "modes"  # the lanes
 MOST_NUMBERED = 2  # runs
 DECIMALS = 4  # of a curve
 LABEL_APART = 0.09  # of the width of the bit frame, from the tail of an arrow to the middle of its number, which …
+LABELS_APART = 0.035  # of the height of the bit frame, from the number of a run to that of the next
 LABEL_AT_MOST = 0.8  # … is at most so far from the middle of the frame, parts of its half width
 
 Indices = NDArray[np.int64]
@@ -49,8 +50,9 @@ class Track:
         The scales of the recording.
     case
         What is drilled.
-    name, colour, place
-        The name of the run, its own colour and its number, from 0. The defaults are for a single run.
+    name, part, colour, place
+        The name of the run, its part of the paths of entities, its own colour and its number, from 0. The defaults are
+        for a single run.
     numbered
         Whether its forces and its tilt are shown in numbers, too: with more than two runs they would cover each other.
     """
@@ -59,20 +61,21 @@ class Track:
     scales: Scales
     case: Case
     name: str = ""
+    part: str = ""
     colour: Colour | None = None
     place: int = 0
     numbered: bool = True
 
     def entity(self, thing: str) -> str:
-        """The entity of a thing, named view/thing; with several runs it contains the run's name, too.
+        """The entity of a thing, named view/thing; with several runs it contains the run's part, too.
 
         Those of the lanes begin with the number of the run, since they are shown in the order of their names.
         """
-        if not self.name:
+        if not self.part:
             return thing
         view, _, name = thing.rpartition("/")
         number = f"{self.place + 1}_" if view == MODES else ""
-        return f"{view}/{rr.escape_entity_path_part(number + '_'.join(self.name.split()))}/{name}"
+        return f"{view}/{rr.escape_entity_path_part(number + self.part)}/{name}"
 
     @property
     def lanes(self) -> int:
@@ -94,10 +97,22 @@ def make_tracks(rec: rr.RecordingStream, scales: Scales, sources: Sequence[Sourc
     """A track for each run."""
     if len(sources) == 1:
         return [Track(rec, scales, sources[0].case)]
+    numbered = len(sources) <= MOST_NUMBERED
     return [
-        Track(rec, scales, source.case, source.name, BY_RUN[place % len(BY_RUN)], place, len(sources) <= MOST_NUMBERED)
-        for place, source in enumerate(sources)
+        Track(rec, scales, source.case, source.name, part, BY_RUN[place % len(BY_RUN)], place, numbered)
+        for place, (source, part) in enumerate(zip(sources, parts([source.name for source in sources]), strict=True))
     ]
+
+
+def parts(names: Sequence[str]) -> list[str]:
+    """The parts of runs in the paths of entities: their names without spaces, made different by their numbers."""
+    found: list[str] = []
+    for number, name in enumerate(names, 1):
+        part = "_".join(name.split()) or "run"
+        while part in found:
+            part += f"_{number}"
+        found.append(part)
+    return found
 
 
 class Moments(NamedTuple):
@@ -201,6 +216,7 @@ def send_arrows(track: Track, thing: str, at: Moments, tip: Array, force: Array)
     if track.numbered:
         left, right = track.scales.frame.x
         beside = tails - points(LABEL_APART * (right - left) * np.sign(force[there]), 0.0)
+        beside[:, 1] += LABELS_APART * track.place * np.ptp(track.scales.frame.y)  # clear of that of the run before
         beside[:, 0] = np.clip(beside[:, 0], LABEL_AT_MOST * left, LABEL_AT_MOST * right)
         send(track, f"{thing}/label", at, rr.Points2D.columns(positions=beside).partition(there))
         unit = UNITS["N"]
