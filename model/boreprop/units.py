@@ -125,8 +125,8 @@ def read_amounts(text: str, unit: str) -> tuple[float, ...]:
     Examples
     --------
     >>> from boreprop.units import read_amounts
-    >>> read_amounts("8.5 in", "mm")
-    (215.9,)
+    >>> read_amounts("6 3/4 in", "in")
+    (6.75,)
     >>> read_amounts("10, 20 ft", "m")
     (3.048, 6.096)
     """
