@@ -5,6 +5,8 @@ they write with a unit, such as "6 3/4 in", is read here.
 """
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from math import inf, pi
 from unicodedata import normalize
@@ -67,6 +69,30 @@ SMALL_LENGTH = Unit({"m": 1}, "mm", 1e3, ".3g")  # for clearances and for the ri
 INCH, FOOT, POUND_FORCE = 0.0254, 0.3048, 4.4482216152605  # m, m, N; exact
 POUND, GALLON = 0.45359237, 231 * INCH**3  # kg, m³ of a US gallon; exact
 STANDARD_GRAVITY = 9.80665  # m/s²
+
+FIELD_UNITS = {  # SI unit → how it is shown in field units, where that is not as in `UNITS`
+    "m": Unit({"m": 1}, "ft", 1 / FOOT, ".1f"),
+    "N": Unit({"kg": 1, "m": 1, "s": -2}, "klbf", 1e-3 / POUND_FORCE, ".2f"),
+    "rad/m": Unit({"rad": 1, "m": -1}, "°/100 ft", 100 * FOOT * 180 / pi, "+.2f"),
+}
+FIELD_SMALL_LENGTH = Unit({"m": 1}, "in", 1 / INCH, ".3g")
+
+
+@contextmanager
+def field_units() -> Iterator[None]:
+    """While this is entered, `UNITS` are those of the field: ft, klbf, °/100 ft."""
+    usual = dict(UNITS)
+    UNITS.update(FIELD_UNITS)
+    try:
+        yield
+    finally:
+        UNITS.update(usual)
+
+
+def small_length() -> Unit:
+    """The unit in which small lengths are shown: `SMALL_LENGTH`, or its like in field units."""
+    return FIELD_SMALL_LENGTH if UNITS["m"] is FIELD_UNITS["m"] else SMALL_LENGTH
+
 
 WRITTEN: tuple[dict[str, float], ...] = (  # a dictionary a dimension: unit, in lower case → its SI value
     {

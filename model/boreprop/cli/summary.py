@@ -13,7 +13,7 @@ from ..errors import InputError
 from ..report.tables import stations as tables
 from ..report.tables.summary import lines
 from ..run.results import read_trajectory
-from .options import AsJson, positive
+from .options import AsJson, Units, positive
 from .printing import plain, print_json, print_table
 
 
@@ -36,6 +36,7 @@ def summary_command(
         ),
     ] = None,
     as_json: AsJson = False,
+    units: Units = "si",  # noqa: ARG001 - its callback has done it
 ) -> None:
     """Print a run in a dozen numbers, and whether it ripples."""
     trajectory = read_trajectory(run_file, load_case(case_file) if case_file else None)
