@@ -77,3 +77,30 @@ def test_the_units_last_as_long_as_the_command(command_here: Command, run: Path)
 
 def test_other_units_are_refused(command_here: Command, run: Path) -> None:
     assert_refused(command_here("boreprop", "summary", str(run), "--units", "miles"), "--units", "si or field", "miles")
+
+
+def test_roots_have_lengths_in_feet(command_here: Command) -> None:
+    def lengths(printed: str, unit: str) -> list[float]:
+        return [float(text) for text in re.findall(rf"(?:doubles|halves) in ([\d.e+]+) {unit}\b", printed)]
+
+    si = lengths(command_here("boreprop", "roots", str(CASE)).stdout, "m")
+    printed = command_here("boreprop", "roots", str(CASE), "--units", "field").stdout
+    assert len(si) == 8
+    assert [FEET * length for length in lengths(printed, "ft")] == pytest.approx(si, rel=0.01)
+    assert not re.findall(r"\d (?:m|kN)\b", printed)
+
+
+def test_a_comparison_is_in_feet(command_here: Command, run: Path) -> None:
+    survey = run.with_name("survey.csv")
+    survey.write_text("measured_depth,inclination_deg\n2620,26.5\n2650,28.5\n2680,30.4\n", encoding="utf-8")
+    si, field = (
+        np.array([line for line in numbers(printed.stdout) if len(line) == 6])
+        for printed in (
+            command_here("boreprop", "compare", str(run), str(survey)),
+            command_here("boreprop", "compare", str(run), str(survey), "--units", "field"),
+        )
+    )
+    assert len(si) == len(field) >= 2
+    np.testing.assert_allclose(field[:, 0] * FEET, si[:, 0], atol=0.07)
+    np.testing.assert_array_equal(field[:, 1:4], si[:, 1:4])
+    np.testing.assert_allclose(field[:, 4:] / (100 * FEET), si[:, 4:] / 30, atol=0.0004)

@@ -9,6 +9,7 @@ COMMANDS = {  # name → module and what it does
     "new": ("boreprop.cli.new", "Write a case file, with comments, from what an engineer knows."),
     "simulate": ("boreprop.cli.simulate", "Simulate a case and write the run to a file."),
     "summary": ("boreprop.cli.summary", "Print a run in a dozen numbers, and whether it ripples."),
+    "compare": ("boreprop.cli.comparison", "Print what a run predicts beside what a survey measured, and draw it."),
     "steering": ("boreprop.cli.steering", "Print how fast a steady steering force turns the hole, and draw it."),
     "study": ("boreprop.cli.study", "Simulate many cases on all cores: over a grid, or of uncertain parameters."),
     "dogleg": (

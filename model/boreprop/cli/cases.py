@@ -1,11 +1,26 @@
-"""The case of a command that drills or analyses it."""
+"""The case of a command that drills or analyses it, and the run of one that reads it."""
 
 from pathlib import Path
+from typing import Annotated
+
+import typer
 
 from ..case.case import Case
 from ..case.file import load_case
 from ..case.usual import unusual
+from ..errors import InputError
+from ..run.results import read_trajectory
+from ..run.trajectory import Trajectory
 from . import console
+
+RunFile = Annotated[Path, typer.Argument(metavar="RUN.csv", help="A result file, .csv or .parquet.")]
+"""The argument RUN.csv: ``run_file: RunFile``."""
+
+RunCase = Annotated[
+    Path | None,
+    typer.Option("--case", metavar="CASE.toml", help="The case of the run. Default: the one stored with it."),
+]
+"""The option --case of a command that reads a run: ``case_file: RunCase = None``."""
 
 
 def open_case(path: Path) -> Case:
@@ -15,3 +30,13 @@ def open_case(path: Path) -> Case:
     if found:
         console.warn(f"{path}: {'; '.join(found)}")
     return case
+
+
+def open_run(run_file: Path, case_file: Path | None) -> Trajectory:
+    """Read a run of at least two rows, with the case stored with it or that of a case file; else `InputError`."""
+    run = read_trajectory(run_file, load_case(case_file) if case_file else None)
+    if run.case is None:
+        raise InputError(f"{run_file}: must come with its case, got none: give it with --case")
+    if run.row_count < 2:
+        raise InputError(f"{run_file}: must have at least 2 rows, got {run.row_count}")
+    return run

@@ -8,21 +8,17 @@ import typer
 from ..analysis.plan import deviation_of, planned_hole, read_plan
 from ..analysis.stations import list_stations
 from ..analysis.summary import summarize
-from ..case.file import load_case
-from ..errors import InputError
 from ..report.tables import stations as tables
 from ..report.tables.summary import lines
-from ..run.results import read_trajectory
+from ..run.completion import case_of
+from .cases import RunCase, RunFile, open_run
 from .options import AsJson, Units, positive
 from .printing import plain, print_json, print_table
 
 
 def summary_command(
-    run_file: Annotated[Path, typer.Argument(metavar="RUN.csv", help="A result file, .csv or .parquet.")],
-    case_file: Annotated[
-        Path | None,
-        typer.Option("--case", metavar="CASE.toml", help="The case of the run. Default: the one stored with it."),
-    ] = None,
+    run_file: RunFile,
+    case_file: RunCase = None,
     stations: Annotated[
         float | None,
         typer.Option(parser=positive, metavar="M", help="List the hole, too, at each M metres of measured depth."),
@@ -39,12 +35,8 @@ def summary_command(
     units: Units = "si",  # noqa: ARG001 - its callback has done it
 ) -> None:
     """Print a run in a dozen numbers, and whether it ripples."""
-    trajectory = read_trajectory(run_file, load_case(case_file) if case_file else None)
-    if trajectory.case is None:
-        raise InputError(f"{run_file}: must come with its case, got none: give it with --case")
-    if trajectory.row_count < 2:
-        raise InputError(f"{run_file}: must have at least 2 rows, got {trajectory.row_count}")
-    start = trajectory.case.survey.measured_depth[-1]
+    trajectory = open_run(run_file, case_file)
+    start = case_of(trajectory).survey.measured_depth[-1]
     plan = None if plan_file is None else planned_hole(read_plan(plan_file, start), start)
     summary = summarize(trajectory)
     over = summary.averaging_length
