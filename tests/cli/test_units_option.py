@@ -6,9 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from boreprop.analysis.comparison import compare
 from boreprop.case.file import load_case
-from boreprop.run.results import write_trajectory
+from boreprop.case.tables import read_survey
+from boreprop.report.figures.comparison import draw
+from boreprop.run.results import read_trajectory, write_trajectory
 from boreprop.run.simulate import simulate
+from boreprop.units import field_units
 from conftest import Command, assert_refused
 from places import EXAMPLES
 
@@ -104,3 +108,28 @@ def test_a_comparison_is_in_feet(command_here: Command, run: Path) -> None:
     np.testing.assert_allclose(field[:, 0] * FEET, si[:, 0], atol=0.07)
     np.testing.assert_array_equal(field[:, 1:4], si[:, 1:4])
     np.testing.assert_allclose(field[:, 4:] / (100 * FEET), si[:, 4:] / 30, atol=0.0004)
+
+
+def test_the_picture_of_a_comparison_is_in_feet(run: Path) -> None:
+    survey = run.with_name("survey.csv")
+    survey.write_text("measured_depth,inclination_deg\n2620,26.5\n2650,28.5\n2680,30.4\n", encoding="utf-8")
+    found = compare(read_trajectory(run), read_survey(survey))
+    with field_units():
+        panel = draw(found).axes[-1]
+    assert panel.get_xlabel() == "measured depth (ft)"
+    np.testing.assert_allclose(FEET * np.asarray(panel.lines[-1].get_xdata()), found.measured_depth)
+
+
+def test_a_dogleg_is_over_feet(command_here: Command) -> None:
+    paper = str(EXAMPLES / "paper_case.toml")
+    si = command_here("boreprop", "dogleg", paper, "--tolerance", "1e-5").stdout
+    field = command_here("boreprop", "dogleg", paper, "--tolerance", "1e-5", "--units", "field").stdout
+    found = re.findall(r"([\d.]+)° over ([\d.]+) m +\(([-+\d.]+) °/30 m\)", " ".join(si.replace("│", " ").split()))
+    there = re.findall(
+        r"([\d.]+)° over ([\d.]+) ft +\(([-+\d.]+) °/100 ft\)", " ".join(field.replace("│", " ").split())
+    )
+    assert len(found) == len(there) == 2
+    for (turn, length, rate), (same, feet, steeper) in zip(found, there, strict=True):
+        assert turn == same
+        assert FEET * float(feet) == pytest.approx(float(length), rel=1e-3)
+        assert float(steeper) / 30.48 == pytest.approx(float(rate) / 30, abs=0.004)

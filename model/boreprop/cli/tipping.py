@@ -18,7 +18,7 @@ from ..report.tables.tipping import SIDES, left_out, lines
 from ..run.files import files_read
 from . import console
 from .cases import open_case
-from .options import AsJson, CaseFile, ClearanceRange, EtaPiRange, Tolerance, check_asked, positive
+from .options import AsJson, CaseFile, ClearanceRange, EtaPiRange, Tolerance, Units, check_asked, positive
 from .printing import print_json, print_table
 from .ranges import parse_range
 
@@ -35,6 +35,7 @@ def dogleg_command(
     ] = 10.0,
     tolerance: Tolerance = None,
     as_json: AsJson = False,
+    units: Units = "si",  # noqa: ARG001 - its callback has done it
 ) -> None:
     """Print the smallest kink in the existing hole that starts rippling, and map it.
 
