@@ -119,7 +119,7 @@ def _below(other: str, what: str) -> Callable[[tuple[float, ...], Answers], str]
 def _positions(values: tuple[float, ...], _: Answers) -> str:
     if len(values) > MAX_STABILIZERS:
         return f"must be 1 to {MAX_STABILIZERS} positions"
-    apart = all(above - below >= LEAST_SPAN for below, above in pairwise(values))
+    apart = all(above - below >= LEAST_SPAN * (1 - 1e-9) for below, above in pairwise(values))
     return "" if apart else f"must increase by at least {LEAST_SPAN:g} m, from the bit up"
 
 
