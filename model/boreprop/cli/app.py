@@ -6,6 +6,7 @@ from . import console
 from .lazy import new_group
 
 COMMANDS = {  # name → module and what it does
+    "new": ("boreprop.cli.new", "Write a case file, with comments, from what an engineer knows."),
     "simulate": ("boreprop.cli.simulate", "Simulate a case and write the run to a file."),
     "summary": ("boreprop.cli.summary", "Print a run in a dozen numbers, and whether it ripples."),
     "compare": ("boreprop.cli.comparison", "Print what a run predicts beside what a survey measured, and draw it."),

@@ -8,11 +8,11 @@ import typer
 from ..analysis.comparison import compare
 from ..case.tables import read_survey
 from ..errors import InputError
-from ..report.tables.comparison import HEADINGS, caption, lines
+from ..report.tables.comparison import caption, headings, lines
 from ..run.files import files_read
 from . import console
 from .cases import RunCase, RunFile, open_run
-from .options import AsJson
+from .options import AsJson, Units
 from .printing import plain, print_json, print_table
 
 
@@ -25,6 +25,7 @@ def compare_command(
     case_file: RunCase = None,
     output: Annotated[Path | None, typer.Option(metavar="PICTURE.png", help="Draw both into this file.")] = None,
     as_json: AsJson = False,
+    units: Units = "si",  # noqa: ARG001 - its callback has done it
 ) -> None:
     """Print what a run predicts beside what a survey measured, and draw it."""
     if output is not None:
@@ -37,7 +38,7 @@ def compare_command(
     if as_json:
         print_json(plain(found) | {"residual": found.residual, "root_mean_square": found.root_mean_square})
     else:
-        print_table(lines(found), HEADINGS, title=f"{run_file} and {survey_file}", caption=caption(found))
+        print_table(lines(found), headings(), title=f"{run_file} and {survey_file}", caption=caption(found))
     if output is not None:
         from ..report.figures.comparison import draw  # imported here, since only a picture needs matplotlib
         from ..report.figures.drawing import save

@@ -9,6 +9,7 @@ import typer
 
 from ..core.quantities import BY_NAME
 from ..errors import InputError
+from ..units import field_units
 from .console import check_output
 
 
@@ -56,6 +57,24 @@ Tolerance = Annotated[
     ),
 ]
 """The option --tolerance of a command that drills: ``tolerance: Tolerance = None``."""
+
+
+def _show_in(context: typer.Context, system: str) -> str:
+    if system == "field":
+        context.with_resource(field_units())
+    return system
+
+
+Units = Annotated[
+    str,
+    typer.Option(
+        parser=one_of("si", "field"),
+        callback=_show_in,
+        metavar="si|field",
+        help="Units of what is printed: m, kN and °/30 m, or ft, klbf and °/100 ft.",
+    ),
+]
+"""The option --units of a command that prints tables: ``units: Units = "si"``. It holds until the command ends."""
 
 AsJson = Annotated[
     bool,

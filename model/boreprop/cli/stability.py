@@ -18,7 +18,7 @@ from ..report.tables import stability as tables
 from ..run.files import files_read
 from . import console
 from .cases import open_case
-from .options import AsJson, CaseFile, EtaPiRange, Inclination, check_asked, positive
+from .options import AsJson, CaseFile, EtaPiRange, Inclination, Units, check_asked, positive
 from .printing import print_json, print_table
 from .ranges import parse_range
 
@@ -40,6 +40,7 @@ def roots_command(
         bool, typer.Option("--json", help="Print the roots of one mode as JSON. Default mode: no stabilizer touches.")
     ] = False,
     every: Annotated[bool, typer.Option("--all", help="With --json: print a list of all modes.")] = False,
+    units: Units = "si",  # noqa: ARG001 - its callback has done it
 ) -> None:
     """Print whether each mode of a case is stable, drifts or oscillates.
 
@@ -83,7 +84,7 @@ def _print_modes(case: Case, modes: list[Roots], eta_pi: float, inclination: flo
         [tables.mode_line(mode, case.length_scale, here, met) for mode in modes],
         tables.MODE_HEADINGS,
         title=tables.modes_title(eta_pi, weight, inclination),
-        caption=tables.NOT_MET,
+        caption=tables.not_met(),
         width=WIDE,
     )
 

@@ -7,11 +7,11 @@ from typing import Annotated
 import typer
 
 from ..core.checks import check_number
-from ..report.tables.steering import HEADINGS, lines, piece_lines, summarize
+from ..report.tables.steering import headings, lines, piece_lines, summarize
 from ..run.files import files_read
 from . import console
 from .cases import open_case
-from .options import AsJson, CaseFile, Inclination, positive
+from .options import AsJson, CaseFile, Inclination, Units, positive
 from .printing import print_json, print_table
 
 
@@ -30,6 +30,7 @@ def steering_command(
         ),
     ] = None,
     as_json: AsJson = False,
+    units: Units = "si",  # noqa: ARG001 - its callback has done it
 ) -> None:
     """Print how fast a steady steering force turns the hole, and draw it."""
     if output is not None:
@@ -42,7 +43,7 @@ def steering_command(
         print_json(summary)
     else:
         print_table(lines(summary), (str(case_file), ""))
-        print_table(piece_lines(summary.curve), HEADINGS)
+        print_table(piece_lines(summary.curve), headings())
     if output is not None:
         from ..report.figures.drawing import save  # imported here, since only a picture needs matplotlib
         from ..report.figures.steering import draw

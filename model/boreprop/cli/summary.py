@@ -12,7 +12,7 @@ from ..report.tables import stations as tables
 from ..report.tables.summary import lines
 from ..run.completion import case_of
 from .cases import RunCase, RunFile, open_run
-from .options import AsJson, positive
+from .options import AsJson, Units, positive
 from .printing import plain, print_json, print_table
 
 
@@ -32,6 +32,7 @@ def summary_command(
         ),
     ] = None,
     as_json: AsJson = False,
+    units: Units = "si",  # noqa: ARG001 - its callback has done it
 ) -> None:
     """Print a run in a dozen numbers, and whether it ripples."""
     trajectory = open_run(run_file, case_file)

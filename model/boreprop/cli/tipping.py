@@ -19,7 +19,7 @@ from ..run.files import files_read
 from . import console
 from .cases import open_case
 from .fallback import warn_of_fallback
-from .options import AsJson, CaseFile, ClearanceRange, EtaPiRange, Tolerance, check_asked, positive
+from .options import AsJson, CaseFile, ClearanceRange, EtaPiRange, Tolerance, Units, check_asked, positive
 from .printing import print_json, print_table
 from .ranges import parse_range
 
@@ -36,6 +36,7 @@ def dogleg_command(
     ] = 10.0,
     tolerance: Tolerance = None,
     as_json: AsJson = False,
+    units: Units = "si",  # noqa: ARG001 - its callback has done it
 ) -> None:
     """Print the smallest kink in the existing hole that starts rippling, and map it.
 

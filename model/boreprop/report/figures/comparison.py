@@ -9,7 +9,7 @@ from .drawing import COLOURS
 
 def draw(found: Comparison) -> Figure:
     """Draw predicted and measured inclination over the measured depth, and the measured less the predicted one."""
-    unit, depth = UNITS["rad"], found.measured_depth
+    unit, depth = UNITS["rad"], UNITS["m"].factor * found.measured_depth
     figure = Figure(figsize=(9, 7), layout="constrained")
     inclination, difference = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
     inclination.plot(depth, unit.factor * found.predicted, color=COLOURS[0], label="predicted")

@@ -5,7 +5,7 @@ from math import degrees
 from matplotlib.figure import Figure
 
 from ...units import UNITS
-from ..tables.steering import SteeringSummary, at_force, kilonewtons, per_build_length, touching
+from ..tables.steering import SteeringSummary, at_force, force_text, per_build_length, touching
 from .drawing import COLOURS
 
 MORE_COLOURS = (*COLOURS, "#56B4E9", "#D55E00", "#000000")  # of Okabe and Ito, without the yellow, pale on white
@@ -13,7 +13,7 @@ MORE_COLOURS = (*COLOURS, "#56B4E9", "#D55E00", "#000000")  # of Okabe and Ito, 
 
 def draw(summary: SteeringSummary) -> Figure:
     """Draw build rate and bit tilt over the force: a colour for each set of contacts, dashed if the tilt saturates."""
-    weight = f"{kilonewtons(summary.active_weight_on_bit)} active weight on bit (ηΠ = {summary.eta_pi:.3g})"
+    weight = f"{force_text(summary.active_weight_on_bit)} active weight on bit (ηΠ = {summary.eta_pi:.3g})"
     setting = f"{degrees(summary.inclination):.4g}° inclination, {weight}"
     force, angle = UNITS["N"], UNITS["rad"]
     figure = Figure(figsize=(9, 8.5), layout="constrained")
@@ -42,7 +42,7 @@ def draw(summary: SteeringSummary) -> Figure:
     if any(piece.start.bit_tilt_saturation for piece in summary.curve):
         rates.plot([], [], "--", color="0.4", label="bit tilt at its limit")
     for response in summary.holding:
-        label = f"holds at {kilonewtons(response.rss_force, '+')}"
+        label = f"holds at {force_text(response.rss_force, '+')}"
         at = force.factor * response.rss_force
         rates.plot(at, 0.0, "o", color="black", markerfacecolor="white", zorder=3, label=label)
     for what, marker, response in (("highest", "^", summary.highest), ("lowest", "v", summary.lowest)):

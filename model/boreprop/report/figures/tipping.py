@@ -1,6 +1,6 @@
 """A map of critical doglegs over weight and clearance."""
 
-from math import degrees
+from math import degrees, radians
 
 import numpy as np
 from matplotlib import colormaps
@@ -13,7 +13,7 @@ from matplotlib.ticker import FixedLocator, NullLocator
 
 from ...analysis.tipping import DoglegMap
 from ...case.case import Case
-from ...units import BUILD_LENGTH, SMALL_LENGTH, UNITS
+from ...units import SMALL_LENGTH, UNITS
 from .drawing import add_weight_axis, multiple
 
 LEVELS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)  # ticks, in degrees and degrees per 30 m
@@ -57,8 +57,8 @@ def draw(case: Case, found: DoglegMap, limit: float) -> Figure:
 
 def _add_scale(figure: Figure, shades: ScalarMappable, length: float) -> None:
     """Add the scale of the colours, in degrees and as a dogleg severity."""
-    bar = figure.colorbar(shades, label=f"turn (°) over the last {length:.4g} m")
-    severity = bar.ax.secondary_yaxis("left", functions=multiple(BUILD_LENGTH / length))
+    bar = figure.colorbar(shades, label=f"turn (°) over the last {UNITS['m'].text(length, '.4g')}")
+    severity = bar.ax.secondary_yaxis("left", functions=multiple(radians(UNITS["rad/m"].factor) / length))
     severity.set_ylabel(UNITS["rad/m"].heading("dogleg severity"))
     for axis in (bar.ax.yaxis, severity.yaxis):
         axis.set_major_locator(FixedLocator(LEVELS))

@@ -5,21 +5,24 @@ from math import isnan
 from ...analysis.comparison import Comparison
 from ...units import UNITS
 
-HEADINGS = tuple(
-    f"{name}\n({UNITS[unit].shown})"
-    for name, unit in (
-        ("MD", "m"),
-        ("predicted", "rad"),
-        ("measured", "rad"),
-        ("difference", "rad"),
-        ("build, pred.", "rad/m"),
-        ("build, meas.", "rad/m"),
+
+def headings() -> tuple[str, ...]:
+    """The headings of the columns of `lines`, with their units."""
+    return tuple(
+        f"{name}\n({UNITS[unit].shown})"
+        for name, unit in (
+            ("MD", "m"),
+            ("predicted", "rad"),
+            ("measured", "rad"),
+            ("difference", "rad"),
+            ("build, pred.", "rad/m"),
+            ("build, meas.", "rad/m"),
+        )
     )
-)
 
 
 def lines(found: Comparison) -> list[tuple[str, ...]]:
-    """A line for each station, with a cell for each of `HEADINGS`."""
+    """A line for each station, with a cell for each of `headings`."""
     columns = (
         ("m", "", found.measured_depth),
         ("rad", "", found.predicted),
@@ -39,7 +42,7 @@ def caption(found: Comparison) -> str:
     """What the columns mean, and how far apart the two are."""
     mean, rms = (UNITS["rad"].text(value, "+z.2f") for value in (found.residual.mean(), found.root_mean_square))
     return (
-        f"Inclinations of the run: means over {found.averaging_length:.3g} m around the station. "
+        f"Inclinations of the run: means over {UNITS['m'].text(found.averaging_length, '.3g')} around the station. "
         "Build rates: since the station before. "
         f"Measured less predicted: {mean} in the mean, {rms.lstrip('+')} as a root mean square."
     )

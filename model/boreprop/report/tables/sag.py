@@ -5,7 +5,7 @@ from math import isnan
 from ...analysis.sag import Sag, steady_sag
 from ...analysis.steering import steady_response
 from ...case.case import Case
-from ...units import SMALL_LENGTH, UNITS
+from ...units import UNITS, small_length
 
 
 def steadily_outside(case: Case) -> str:
@@ -20,7 +20,7 @@ def outside_the_hole(sag: Sag) -> str:
     if not sag.outside:
         return ""
     side = "below" if sag.offset < 0 else "above"
-    offset, radius = (SMALL_LENGTH.text(length, ".0f") for length in (abs(sag.offset), sag.hole_radius))
+    offset, radius = (small_length().text(length) for length in (abs(sag.offset), sag.hole_radius))
     place = f"{UNITS['m'].text(sag.position)} behind the bit"
     when = "" if isnan(sag.drilled_length) else f" after {UNITS['m'].text(sag.drilled_length)}"
     return (

@@ -5,11 +5,10 @@ from math import degrees, log, pi
 
 from ...analysis.stability.chart import VERDICTS, Chart
 from ...analysis.stability.roots import CriticalEtaPi, Roots, Verdict
-from ...units import UNITS
+from ...units import BUILD_LENGTH, UNITS
 
 HEADINGS = ("growth, per ℓ₁", "frequency, per ℓ₁", "what it does", "wavelength")
 MODE_HEADINGS = ("in contact", "bit tilt", "verdict", "what it does", "wavelength", "the case")
-NOT_MET = "not met: no hole that turns by up to 10° over 30 m brings these stabilizers into contact"
 MOST_LINES = 20  # roots in a table: they fit on a screen
 
 
@@ -75,6 +74,12 @@ def mode_line(
     )
 
 
+def not_met() -> str:
+    """What "not met" means under `MODE_HEADINGS`."""
+    over = UNITS["m"].text(BUILD_LENGTH, ".3g")
+    return f"not met: no hole that turns by up to 10° over {over} brings these stabilizers into contact"
+
+
 def contact_text(contact: tuple[int, ...]) -> str:
     """Which stabilizers touch, in words."""
     numbers = ", ".join(map(str, contact))
@@ -103,7 +108,8 @@ def wavelength(root: complex, length_scale: float) -> str:
 
 def metres(length: float) -> str:
     """A length, m, as text of three digits."""
-    return f"{float(f'{length:.3g}'):.15g} m"
+    unit = UNITS["m"]
+    return f"{float(unit.number(length, '.3g')):.15g} {unit.shown}"
 
 
 def caption(found: Roots) -> str | None:
@@ -123,5 +129,5 @@ def stability_limit(contact: tuple[int, ...], critical: CriticalEtaPi | None) ->
 
 
 def weight(active_weight_on_bit: float) -> str:
-    """An active weight on bit, N, as text in kN."""
+    """An active weight on bit, N, as text."""
     return UNITS["N"].text(active_weight_on_bit, ".4g")

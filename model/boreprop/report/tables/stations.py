@@ -47,7 +47,7 @@ def _cells(unit: str, values: Floats, digits: str = "") -> list[str]:
 
 def caption(stations: Stations) -> str:
     """What the columns of `lines` mean."""
-    over = f"{stations.averaging_length:.3g} m"
+    over = UNITS["m"].text(stations.averaging_length, ".3g")
     text = (
         "MD: measured depth. TVD, displ.: vertical and horizontal distance from the bit at the start. "
         f"Inclinations: means over the last {over} of hole. "

@@ -20,14 +20,6 @@ from .sag import outside_the_hole
 USUAL_FORCE = 30e3  # N: about the force of the pads of a large tool
 READABLE = 0.01  # ° per `BUILD_LENGTH`: surveys do not resolve less
 NEAR_REVERSAL = 0.8  # of the ηΠ at which the response is zero: from there on it is below a fifth, and a warning is due
-HEADINGS = (
-    f"force\n({UNITS['N'].shown})",
-    f"build rate\n({UNITS['rad/m'].shown})",
-    f"per {UNITS['N'].shown}\n",
-    f"bit tilt\n({UNITS['rad'].shown})",
-    "on a wall\n",
-    f"reverses at\n{UNITS['N'].shown} (ηΠ)",
-)
 WALLS = {1: "low", -1: "high"}
 
 
@@ -110,10 +102,10 @@ def summarize(case: Case, inclination: float | None = None, force_limit: float |
 
 def lines(summary: SteeringSummary) -> list[tuple[str, str]]:
     """The lines of a table, each a name and a value with its unit; warnings come last."""
-    limit = kilonewtons(summary.curve[-1].end.rss_force)
+    limit = force_text(summary.curve[-1].end.rss_force)
     sag, force = summary.sag
     holding = " or ".join(
-        kilonewtons(response.rss_force, "+") + " (tilt at its limit)" * bool(response.bit_tilt_saturation)
+        force_text(response.rss_force, "+") + " (tilt at its limit)" * bool(response.bit_tilt_saturation)
         for response in summary.holding
     )
     error = per_build_length(
@@ -122,7 +114,7 @@ def lines(summary: SteeringSummary) -> list[tuple[str, str]]:
     left_out = f"less than {READABLE:g}" if error < READABLE else f"up to {error:.2f}"
     return [
         ("inclination at which the weight acts", UNITS["rad"].text(summary.inclination)),
-        ("active weight on bit", f"{kilonewtons(summary.active_weight_on_bit)}, ηΠ = {summary.eta_pi:.3g}"),
+        ("active weight on bit", f"{force_text(summary.active_weight_on_bit)}, ηΠ = {summary.eta_pi:.3g}"),
         ("force limit", f"±{limit}"),
         ("build rate without force", f"{rate(summary.free.build_rate)}, on a wall: {touching(summary.free)}"),
         ("force that holds the inclination", holding or f"none up to ±{limit}"),
@@ -130,12 +122,24 @@ def lines(summary: SteeringSummary) -> list[tuple[str, str]]:
         ("lowest build rate", at_force(summary.lowest)),
         ("left out: gravity changes along the arc", f"{left_out} {UNITS['rad/m'].shown}"),
         *(("warning", text) for text in warnings(summary.curve, summary.eta_pi)),
-        *(("warning", f"{kilonewtons(force, '+')}: {text}") for text in [outside_the_hole(sag)] if text),
+        *(("warning", f"{force_text(force, '+')}: {text}") for text in [outside_the_hole(sag)] if text),
     ]
 
 
+def headings() -> tuple[str, ...]:
+    """The headings of the columns of `piece_lines`, with their units."""
+    return (
+        f"force\n({UNITS['N'].shown})",
+        f"build rate\n({UNITS['rad/m'].shown})",
+        f"per {UNITS['N'].shown}\n",
+        f"bit tilt\n({UNITS['rad'].shown})",
+        "on a wall\n",
+        f"reverses at\n{UNITS['N'].shown} (ηΠ)",
+    )
+
+
 def piece_lines(curve: tuple[Piece, ...]) -> list[tuple[str, ...]]:
-    """The lines of a table with a line for each piece of the curve, and a cell for each of `HEADINGS`."""
+    """The lines of a table with a line for each piece of the curve, and a cell for each of `headings`."""
     return [
         (
             forces(piece.start, piece.end),
@@ -173,12 +177,12 @@ def _warning(piece: Piece, eta_pi: float) -> str:
     if eta_pi < NEAR_REVERSAL * piece.reversal_eta_pi:
         return ""
     where = "above" if eta_pi > piece.reversal_eta_pi else "close to"
-    reversal = f"{piece.reversal_eta_pi:.3g} ({kilonewtons(piece.reversal_weight)} of active weight on bit)"
+    reversal = f"{piece.reversal_eta_pi:.3g} ({force_text(piece.reversal_weight)} of active weight on bit)"
     return f"ηΠ is {where} {reversal}, beyond which a push to the high side drops the hole"
 
 
 def forces(start: SteadyResponse, end: SteadyResponse) -> str:
-    """The range of forces between two responses, in kN."""
+    """The range of forces between two responses, as text without the unit."""
     return " to ".join(UNITS["N"].number(response.rss_force, "+z.2f") for response in (start, end))
 
 
@@ -195,7 +199,7 @@ def touching(*responses: SteadyResponse) -> str:
 
 
 def per_build_length(build_rate: float) -> float:
-    """A build rate, rad/m, in degrees per `BUILD_LENGTH`."""
+    """A build rate, rad/m, in the unit in which it is shown."""
     return UNITS["rad/m"].factor * build_rate
 
 
@@ -206,9 +210,9 @@ def rate(build_rate: float) -> str:
 
 def at_force(response: SteadyResponse) -> str:
     """The build rate of a response, and its force, as text."""
-    return f"{rate(response.build_rate)} at {kilonewtons(response.rss_force, '+')}"
+    return f"{rate(response.build_rate)} at {force_text(response.rss_force, '+')}"
 
 
-def kilonewtons(force: float, sign: str = "") -> str:
-    """A force, N, as text in kN."""
+def force_text(force: float, sign: str = "") -> str:
+    """A force, N, as text."""
     return UNITS["N"].text(force, f"{sign}z.2f")

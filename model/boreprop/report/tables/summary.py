@@ -2,13 +2,13 @@
 
 from ...analysis.rippling import Rippling, State, Stretch
 from ...analysis.summary import Summary
-from ...units import BUILD_LENGTH, SMALL_LENGTH, UNITS
+from ...units import BUILD_LENGTH, UNITS, small_length
 from .sag import outside_the_hole
 
 
 def lines(summary: Summary) -> list[tuple[str, str]]:
     """The lines of a table, each a name and a value in the units people use."""
-    mean = f"mean over {summary.averaging_length:.3g} m"
+    mean = f"mean over {length_text(summary.averaging_length, '.3g')}"
     stabilizers = enumerate(zip(summary.largest_contact_force, summary.contact_share, strict=True), 1)
     table = [
         ("drilled length", UNITS["m"].text(summary.drilled_length)),
@@ -16,7 +16,10 @@ def lines(summary: Summary) -> list[tuple[str, str]]:
         (f"inclination at the start, {mean}", UNITS["rad"].text(summary.start_inclination)),
         (f"inclination at the end, {mean}", UNITS["rad"].text(summary.end_inclination)),
         ("build rate, mean", UNITS["rad/m"].text(summary.build_rate)),
-        (f"build rate, largest over {BUILD_LENGTH:g} m", UNITS["rad/m"].text(summary.largest_build_rate)),
+        (
+            f"build rate, largest over {length_text(BUILD_LENGTH, '.3g')}",
+            UNITS["rad/m"].text(summary.largest_build_rate),
+        ),
         *(
             line
             for i, (force, share) in stabilizers
@@ -39,24 +42,32 @@ def _wave_lines(wave: Rippling) -> list[tuple[str, str]]:
     return [
         ("rippling", whether_it_ripples(wave)),
         ("ripple of the inclination", f"±{UNITS['rad'].text(wave.amplitude, '.3g')}"),
-        ("ripple of the hole axis", f"±{SMALL_LENGTH.text(wave.axis_amplitude)}"),
-        ("ripple, from wave to wave", f"length ±{wave.spread:.2f} m"),
-        ("ripple, from stand to stand", f"amplitude {100 * wave.growth_over(BUILD_LENGTH):+.1f} %/{BUILD_LENGTH:g} m"),
-        ("ripple, at least half as large since", f"{wave.since:.0f} m"),
+        ("ripple of the hole axis", f"±{small_length().text(wave.axis_amplitude)}"),
+        ("ripple, from wave to wave", f"length ±{length_text(wave.spread, '.2f')}"),
+        (
+            "ripple, from stand to stand",
+            f"amplitude {100 * wave.growth_over(BUILD_LENGTH):+.1f} %/{length_text(BUILD_LENGTH, '.3g')}",
+        ),
+        ("ripple, at least half as large since", length_text(wave.since, ".0f")),
         ("modes of a wave", "\n".join(map(_words, wave.modes))),
     ]
 
 
 def whether_it_ripples(wave: Rippling) -> str:
     """Whether a run ends rippling, and with what wave, in words."""
-    length = f"{wave.wavelength:.2f} m long"
+    length = f"{length_text(wave.wavelength, '.2f')} long"
     return {
         State.NONE: "no",
-        State.DYING: f"no, dying out over {wave.fading_length:.3g} m: waves {length}",
+        State.DYING: f"no, dying out over {length_text(wave.fading_length, '.3g')}: waves {length}",
         State.LASTING: f"yes: {length}",
         State.GROWING: f"yes, growing: {length}",
         State.STEERED: f"no, but force or weight change too often to tell: waves {length}",
     }[wave.state]
+
+
+def length_text(length: float, digits: str) -> str:
+    """A length, m, as text."""
+    return UNITS["m"].text(length, digits)
 
 
 def _words(stretch: Stretch) -> str:

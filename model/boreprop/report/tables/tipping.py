@@ -39,7 +39,7 @@ def _amount(found: CriticalDogleg, length: float, limit: float) -> str:
     if found.angle == 0.0:
         return "any: it ripples from a straight hole"
     severity = UNITS["rad/m"].text(found.curvature, ".1f")
-    return f"{degrees(found.angle):.2f}° over {length:.4g} m ({severity}){exception}"
+    return f"{degrees(found.angle):.2f}° over {UNITS['m'].text(length, '.4g')} ({severity}){exception}"
 
 
 def left_out(found: DoglegMap) -> str:
