@@ -95,10 +95,11 @@ class Scales:
         shown = np.concatenate((np.transpose((self.section.x, self.section.y)), bit_positions(rows)))
         section = section_bounds(shown, around=float(np.ptp(shown, axis=0).max()) / 2)
         top, bottom = self.strip.bounds.y
+        begin = top + STRIP_TOP * (bottom - top)
         deepest = max(self.strip.start + float(rows["drilled_length"][-1]), 2 * bottom - top)
-        return replace(
-            self, section=section, strip=replace(self.strip, bounds=Bounds(self.strip.bounds.x, (top, deepest)))
-        )
+        top = (begin - STRIP_TOP * deepest) / (1 - STRIP_TOP)  # there is room for text above the beginning again
+        bounds = Bounds(self.strip.bounds.x, (top, deepest))
+        return replace(self, section=section, strip=replace(self.strip, bounds=bounds))
 
 
 def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) -> Scales:
