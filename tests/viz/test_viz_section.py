@@ -266,3 +266,15 @@ def test_a_plan_is_drawn_for_each_start(case: Case, run: Trajectory, tmp_path: P
         assert np.ravel(list(curve.values())) == pytest.approx(expected, abs=1e-3)
     [paths] = static(tmp_path / "plans.rrd", f"{SECTION}/plan", STRIPS)
     assert len(paths) == 2
+
+
+def test_the_depths_are_beside_a_flat_hole_where_they_are(case: Case, tmp_path: Path) -> None:
+    flat = replace(case, survey=replace(case.survey, inclination=(np.pi / 2,) * 3), length=300.0)
+    run = simulate(flat, sample_interval=0.5)
+    record(run, save=tmp_path / "flat.rrd")
+    labels = list(read(tmp_path / "flat.rrd", f"{SECTION}/depths", "Points2D:labels").values())[-1]
+    places = list(read(tmp_path / "flat.rrd", f"{SECTION}/depths", POINTS).values())[-1]
+    for label, (x, _) in zip(labels[:2], places[:2], strict=True):
+        length = float(label.removeprefix("MD ").removesuffix(" m")) - case.survey.measured_depth[-1]
+        assert x == pytest.approx(np.interp(length, run["drilled_length"], run["displacement"]), abs=0.1)
+    assert len({y for _, y in places}) == len(places) > 2
