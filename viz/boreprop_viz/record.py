@@ -21,7 +21,7 @@ from .furniture import log_furniture, log_grid, log_plan
 from .key import entries, log_key
 from .layout import blueprint
 from .listing import Listing
-from .scales import Scales, choose_scales
+from .scales import Extremes, Scales, choose_scales
 from .scene import Array, planned_path
 from .section import log_severities
 from .sinks import flush, open_recording
@@ -165,24 +165,30 @@ class Drawing:
         log_key(rec, key)
         rec.send_blueprint(blueprint(scales, tracks, key))
         card, listing = Card(rec, scales, sources), Listing(rec, self.plan)
-        done = 0
-        for i, (source, track) in enumerate(zip(sources, tracks, strict=True)):
-            stream = RunStream(replace(track, scales=scales))
-            with (
-                listing.listed(source, stream.verdict) as follow,
-                card.ending(i, stream.verdict, source.beginning.stopped),
-            ):
-                for stretch in source.stretches:
-                    if not scales.hold(stretch.rows):
-                        scales = scales.widened(stretch.rows)
-                        stream.rescale(scales)
-                        log_frames(rec, scales)
-                        rec.send_blueprint(blueprint(scales, tracks, key))
-                    flush(rec)  # the stretch before this one, which would else pile up in memory if the disk is slow
-                    card.say(i, stream.send(stretch))
-                    follow(stretch.rows)
-                    done += stretch.rows.row_count
-                    progress(done)
+        extremes, done = Extremes(), 0
+        try:
+            for i, (source, track) in enumerate(zip(sources, tracks, strict=True)):
+                stream = RunStream(replace(track, scales=scales))
+                with (
+                    listing.listed(source, stream.verdict) as follow,
+                    card.ending(i, stream.verdict, source.beginning.stopped),
+                ):
+                    for stretch in source.stretches:
+                        if not scales.hold(stretch.rows):
+                            scales = scales.widened(stretch.rows)
+                            stream.rescale(scales)
+                            log_frames(rec, scales)
+                            rec.send_blueprint(blueprint(scales, tracks, key))
+                        # the stretch before this one would pile up in memory if the disk is slow
+                        flush(rec)
+                        card.say(i, stream.send(stretch))
+                        follow(stretch.rows)
+                        extremes.take(stretch.rows)
+                        done += stretch.rows.row_count
+                        progress(done)
+        finally:
+            if any(source.live for source in sources):
+                rec.send_blueprint(blueprint(extremes.complete(scales), tracks, key))
 
 
 def planned_paths(plan: Survey, sources: Sequence[Source]) -> list[Array]:

@@ -207,6 +207,28 @@ def plot_range(plot: Plot, curves: Sequence[Array]) -> tuple[float, float]:
     return with_ticks(low - margin, high + margin)
 
 
+class Extremes:
+    """The smallest and largest values of all plots so far: those of a live run have no ranges before its end."""
+
+    def __init__(self) -> None:
+        self.found: dict[str, Array] = {}
+
+    def take(self, rows: Trajectory) -> None:
+        """Look at the next rows of a run."""
+        for name, plot in PLOTS.items():
+            values = np.concatenate([self.found.get(name, np.empty(0)), *plot.curves([rows])])
+            finite = values[np.isfinite(values)]
+            if len(finite):
+                self.found[name] = np.array([finite.min(), finite.max()])
+
+    def complete(self, scales: Scales) -> Scales:
+        """The same scales with a range for each plot."""
+        ranges = dict(scales.ranges)
+        for name, found in self.found.items():
+            ranges[name] = ranges[name] or plot_range(PLOTS[name], [found])
+        return replace(scales, ranges=ranges)
+
+
 def with_ticks(low: float, high: float, most_steps: float = MOST_STEPS) -> tuple[float, float]:
     """A range of a plot, widened as little as possible until two of the values that the viewer numbers lie in it.
 
