@@ -11,6 +11,8 @@ from pathlib import Path
 def replacing(path: Path) -> Iterator[Path]:
     """Yield the path of a draft beside `path`. At the end the draft replaces `path`; after an error it is removed.
 
+    Of several processes that write the same file, on whatever machines, the last one wins, with a whole file.
+
     Raises
     ------
     FileNotFoundError
@@ -18,7 +20,7 @@ def replacing(path: Path) -> Iterator[Path]:
     """
     if not path.parent.is_dir():
         raise FileNotFoundError(ENOENT, "the folder does not exist", str(path))
-    draft = path.with_name(f".{os.getpid()}.{path.name}")
+    draft = path.with_name(f".{os.urandom(4).hex()}.{path.name}")  # no process number: two containers may have the same
     try:
         yield draft
         os.replace(draft, path)

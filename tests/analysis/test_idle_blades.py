@@ -25,7 +25,7 @@ from boreprop.run.trajectory import Trajectory
 
 pytestmark = pytest.mark.usefixtures("kernel")
 
-IDLE = 0.2  # m of clearance
+IDLE = 0.1  # m of clearance: hardly a blade
 
 
 def with_blade(case: Case, position: float) -> Case:

@@ -244,7 +244,7 @@ def test_the_case_is_on_its_usual_map(case: Case) -> None:
 
 def test_a_map_varies_the_first_stabilizer_that_touches() -> None:
     bha = paper_case().bha
-    idle = replace(bha, stabilizer_positions=(1.2, 3.66, 7.32), stabilizer_clearances=(0.2, *bha.stabilizer_clearances))
+    idle = replace(bha, stabilizer_positions=(1.2, 3.66, 7.32), stabilizer_clearances=(0.1, *bha.stabilizer_clearances))
     bladed = replace(paper_case(), bha=idle)
     assert dogleg_map(bladed, np.array([0.02]), np.array([3e-3]), tolerance=1.0, workers=1).stabilizer == 2
     assert usual_map(bladed)[1] == pytest.approx(usual_map(paper_case())[1])

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from boreprop.case.case import Case, Schedule
 from boreprop.case.file import dump_case, load_case, parse_case
+from boreprop.case.schema import PATHS
 from boreprop.case.tables import read_schedule, read_survey
 from boreprop.core.errors import ParameterError
 from boreprop.core.survey import Survey
@@ -128,6 +129,11 @@ def test_a_byte_order_mark_and_windows_line_ends_are_no_trouble(paper_text: str,
         ("= 0.6", "= 1979-05-27", "bha.rss_position: must be a valid number, got datetime.date(1979, 5, 27)"),
         ("= 2.0", "= 95", "bit.tilt_limit_deg: must be <= 90, got 95"),
         ("= 0.2159", "= 0", "bit.diameter: must be > 0, got 0.0"),
+        ("= 0.2159", "= 8.5", "bit.diameter: must be <= 1.5, got 8.5"),
+        ("[3.66e-3]", "[0.10795]", "bha.stabilizer_clearances[1]: must be < bit.diameter/2 = 0.10795, got 0.10795"),
+        ("[3.66e-3]", "[3.66]", "bha.stabilizer_clearances[1]: must be < bit.diameter/2 = 0.10795, got 3.66"),
+        ("[0.0, 0.0, 0.5]", "[0.0, -999.25, 0.5]", "hole.inclination_deg[2]: must be >= -180, got -999.25"),
+        ("[0.0, 0.0, 0.5]", "[0.0, 0.0, 180.1]", "hole.inclination_deg[3]: must be <= 180, got 180.1"),
         ("= 1612.469", "= -1", "drilling.active_weight_on_bit: must be > 0, got -1.0"),
         ("= 219.6", f"= 1{'0' * 400}", "drilling.length: must be "),
         ("= 219.6", "= inf", "drilling.length: must be a finite number, got inf"),
@@ -167,6 +173,30 @@ def test_a_garbled_file_is_a_case_or_a_one_line_error(paper_text: str, data: st.
     assert "\n" not in message
 
 
+BACKSLASH = (
+    "must be a path with forward slashes or in single quotes, since in double quotes a backslash begins an escape"
+)
+
+
+@pytest.mark.parametrize("path", ["C:/Me/me/s.csv", "data/survey.csv", "C:/new/temp/s.csv", "C:/x/", "//pc/s.csv"])
+def test_a_path_as_windows_writes_it_is_refused_with_the_remedy(paper_text: str, tmp_path: Path, path: str) -> None:
+    windows = path.replace("/", "\\")
+    text = paper_text.partition("[hole]")[0] + f'[hole]\nsurvey = "{windows}"\n'
+    with pytest.raises(InputError, match=rf"case\.toml: .*{PATHS}, got ") as caught:
+        parse_case(text, tmp_path / "case.toml")
+    assert "\n" not in str(caught.value)
+    for readable in (f'"{path}"', f"'{windows}'"):
+        with pytest.raises(InputError, match="must be a readable CSV file, got: "):
+            parse_case(text.replace(f'"{windows}"', readable), tmp_path / "case.toml")
+
+
+def test_a_case_file_in_another_encoding_is_refused_with_the_remedy(paper_text: str, tmp_path: Path) -> None:
+    file = tmp_path / "case.toml"
+    file.write_bytes(b"# 40\xb0 51 N\n" + paper_text.encode())
+    with pytest.raises(InputError, match=r"case\.toml: must be a TOML file in UTF-8 .*, got the byte 0xb0"):
+        load_case(file)
+
+
 def test_a_long_wrong_column_is_shown_by_its_beginning(paper_text: str) -> None:
     text = paper_text.replace("drilled_length = [0.0]", f"drilled_length = {[0.0] * 1000}")
     with pytest.raises(InputError, match=r"must increase, got .{1,80}$"):
@@ -180,7 +210,10 @@ def test_a_long_wrong_column_is_shown_by_its_beginning(paper_text: str) -> None:
         ("drilled_length,force\n0,1\n5,nan\n", ":3: force: must be a finite number, got 'nan'"),
         ("drilled_length,force\n0,1\n5,2\n4,3\n", ": drilled_length: must increase, got "),
         ("drilled_length,force\n", ": drilled_length: must start at 0, got ()"),
-        ("length,force\n0,1\n", ": must have a column 'drilled_length', got ['length', 'force']"),
+        (
+            "length,force\n0,1\n",
+            ": must have a column 'drilled_length' (m) or 'drilled_length_ft' (ft), got ['length', ",
+        ),
     ],
 )
 def test_a_wrong_schedule_file_is_named(tmp_path: Path, content: str, message: str) -> None:

@@ -116,14 +116,6 @@ def test_a_wrong_argument(
     assert not list(tmp_path.iterdir())
 
 
-def test_a_run_does_not_overwrite_the_case_it_reads(command: Command, tmp_path: Path, paper_text: str) -> None:
-    (tmp_path / "paper.case.toml").write_text(paper_text)
-    assert_refused(
-        command("boreprop", "simulate", "paper.case.toml", "--output", "paper.csv"), "paper.csv", "case file"
-    )
-    assert (tmp_path / "paper.case.toml").read_text() == paper_text
-
-
 def test_simulate_writes_a_row_at_each_multiple_of_the_sample_interval(
     command: Command, tmp_path: Path, paper_case: Path
 ) -> None:
@@ -288,3 +280,29 @@ def test_ctrl_c_ends_a_run_with_130_and_no_file(tmp_path: Path, paper_case: Path
     assert run.wait(timeout=60) == 130
     os.close(terminal)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("program", "arguments"),
+    [
+        ("boreprop", ["simulate", "case.toml", "--output", "run.csv"]),
+        ("boreprop", ["steering", "case.toml"]),
+        ("boreprop", ["roots", "case.toml"]),
+        ("boreprop-fmu", ["build", "case.toml", "--output", "b.fmu"]),
+        ("boreprop-view", ["case.toml", "--save", "run.rrd"]),
+    ],
+)
+def test_what_is_far_from_any_bha_is_a_warning_of_one_line(
+    command: Command, tmp_path: Path, paper_text: str, program: str, arguments: list[str]
+) -> None:
+    text = (
+        paper_text.replace("= 219.6", "= 0.5").replace("= 1080.0", "= 1.08").replace("[0.0, 3.66, 7.32]", "[2, 3, 4]")
+    )
+    (tmp_path / "case.toml").write_text(text)
+    result = command(program, *arguments)
+    assert result.returncode == 0, result.stderr
+    assert result.stderr == (
+        "warning: case.toml: bha.distributed_weight: is usually 100 to 6000 N/m, got 1.08; "
+        "hole.measured_depth: spans 2 m, less than the 7.32 m of the BHA: "
+        "the hole is extended straight above its first station\n"
+    )

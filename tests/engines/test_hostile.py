@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 from itertools import accumulate
-from math import inf, nan
+from math import inf, nan, nextafter, pi
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -96,9 +97,19 @@ def test_what_follows_from_a_number_out_of_range_is_named(
 
 
 def test_a_state_from_which_nothing_can_start_is_refused(engine: str, case: Case) -> None:
+    long = replace(case.bha, stabilizer_positions=(3.66, 366e3), distributed_weight=1e305)
     with pytest.raises(ParameterError) as refused:
-        drilling(engine, case, survey=Survey((-5.0, 0.0), (1e308, -1e308)))
+        drilling(engine, replace(case, bha=long))
     assert str(refused.value) == "parameters: must give a finite state where the run starts, got nan"
+
+
+def test_a_hole_that_is_inclined_by_more_than_a_half_turn_is_refused(engine: str, case: Case) -> None:
+    beyond = nextafter(pi, inf)
+    for inclination in (beyond, -beyond):
+        survey = SimpleNamespace(measured_depth=(0.0, 5.0), inclination=(0.5, inclination))
+        with pytest.raises(ParameterError, match=r"^inclination\[2\]: must be [<>]= -?3\.14159, got -?3\.14"):
+            drilling(engine, case, survey=survey if engine == "native" else Survey(**vars(survey)))
+    drilling(engine, case, survey=Survey((0.0, 5.0), (-pi, pi)))
 
 
 # both say the same
@@ -123,7 +134,7 @@ def hostile_runs(draw: st.DrawFn) -> dict[str, Any]:
                 draw(hostile(1e7)),
             ),
             "bit": BitRock(draw(hostile(10.0)), draw(hostile(1.0)), min(draw(hostile(0.02)), 1.0)),
-            "survey": Survey((0.0, draw(hostile(5.0))), (draw(hostile(0.5)), draw(hostile(0.5)))),
+            "survey": Survey((0.0, draw(hostile(5.0))), (min(draw(hostile(0.5)), pi), min(draw(hostile(0.5)), pi))),
             "inputs": (draw(hostile(1e3)), draw(hostile(1e4))),
             "next_inputs": (-draw(hostile(1e3)), draw(hostile(1e4))),
         }

@@ -26,6 +26,7 @@ def written(path: Path, content: bytes) -> str:
         b"\xef\xbb\xbfmeasured_depth,inclination_deg\r\n0,1\r\n\r\n4,2.5\r\n10,4",
         b'name,inclination_deg,measured_depth\n"a, ""b""\n",1,0\nc,2.5,4\nd,+4e0,1.0e+1\n',
         b'\n inclination_deg ,"measured_depth"\n"1" , .0\n2.5," 4 "\n0.4e1,10.\n',
+        b'"",\r\n , ,\r\nmeasured_depth,inclination_deg,remark\r\n,,\r\n0,1,\r\n"", ,\r\n4,2.5,x\r\n10,4,\r\n,,',
         b"measured_depth,inclination_deg\r0,1\r4,2.500000000000000000000000000000000000000000000000000001\r10,4\r",
     ],
 )
@@ -51,6 +52,12 @@ def test_a_survey_file_is_read_as_in_python(one: Instance, tmp_path: Path, conte
         b"measured_depth,inclination_deg\n1e999,0\n",
         b'measured_depth,inclination_deg\n"1,5",0\n',
         b"measured_depth,inclination_deg\n0x10,0\n",
+        b"measured_depth,inclination_deg\n,\n0,-999.25\n",
+        b"measured_depth,inclination_deg\n0,180.00000001\n",
+        b"measured_depth;inclination_deg\n0;1\n",
+        b"measured_depth_ft,inclination_deg\n0,1\n",
+        b"measured_depth,inclination_deg,\xb0\n0,1,2\n",
+        b" ,,",
     ],
 )
 def test_a_bad_survey_file_is_refused_in_the_same_words(one: Instance, tmp_path: Path, content: bytes) -> None:

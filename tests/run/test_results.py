@@ -1,6 +1,7 @@
 """Result files: every number comes back, with its case, and a write that fails changes nothing."""
 
 import sys
+import tracemalloc
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -77,9 +78,9 @@ def test_integers_are_written_as_integers(trajectory: Trajectory, tmp_path: Path
         ("drilled_length,bit_tilt\n0,1\n1,2,3\n", ":3: must have 2 values like the header, got 3"),
         ("drilled_length,bit_tilt\n0,high\n", ":2: bit_tilt: must be a finite number, got 'high'"),
         ("drilled_length,bit_tilt\n0,nan\n", ":2: bit_tilt: must be a finite number, got 'nan'"),
-        ("time,bit_tilt\n0,1\n", ": must have a column 'drilled_length', got ['time', 'bit_tilt']"),
+        ("time,bit_tilt\n0,1\n", ": must have a column 'drilled_length' (m), got ['time', 'bit_tilt']"),
         ("drilled_length\n", ": must have at least one row, got none"),
-        ("", ": must have a column 'drilled_length', got []"),
+        ("", ": must have a column 'drilled_length' (m), got []"),
     ],
 )
 def test_a_wrong_csv_file_is_named_with_the_line_and_the_value(tmp_path: Path, content: str, message: str) -> None:
@@ -106,7 +107,7 @@ def test_a_wrong_parquet_file_is_named(tmp_path: Path) -> None:
 
     file = tmp_path / "run.parquet"
     for content, message in [
-        ({"time": [0.0]}, "must have a column 'drilled_length', got ['time']"),
+        ({"time": [0.0]}, "must have a column 'drilled_length' (m), got ['time']"),
         ({"drilled_length": ["a"]}, "drilled_length: must hold numbers, got string"),
         ({"drilled_length": [0.0, None]}, "drilled_length: row 2: must be a finite number, got nan"),
     ]:
@@ -180,3 +181,16 @@ def test_a_parquet_write_that_fails_half_way_leaves_no_file(
     with pytest.raises(KeyboardInterrupt):
         write_trajectory(trajectory, tmp_path / "run.parquet")
     assert not list(tmp_path.iterdir())
+
+
+def test_a_long_csv_file_is_written_row_by_row_in_little_memory(tmp_path: Path) -> None:
+    rows = 12 * results.BLOCK + 1
+    values = np.random.default_rng(1).normal(size=(5, rows))
+    names = ("drilled_length", "bit_tilt", "bit_inclination", "bit_moment", "displacement")
+    tracemalloc.start()
+    write_trajectory(Trajectory(dict(zip(names, values, strict=True))), tmp_path / "run.csv")
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    lines = [",".join(map(repr, row)) for row in values.T.tolist()]
+    assert (tmp_path / "run.csv").read_bytes() == "".join(f"{line}\n" for line in (",".join(names), *lines)).encode()
+    assert peak < values.nbytes

@@ -12,7 +12,8 @@ from boreprop.case.case import Case, Schedule
 from boreprop.case.file import dump_case, load_case
 from boreprop.cli.options import tolerance
 from boreprop.errors import BorepropError, InputError
-from boreprop.run.results import case_path, read_trajectory, write_trajectory
+from boreprop.run.files import case_path
+from boreprop.run.results import read_trajectory, write_trajectory
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Stopped, Trajectory
 from boreprop_fmu.host.drive import FmuRun

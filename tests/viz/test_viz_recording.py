@@ -383,15 +383,19 @@ def test_the_command_runs_a_case_file(command: Command, paper_text: str, tmp_pat
         (["run.csv", "--pace", "2"], "--pace: must be given with an FMU to run, got run.csv"),
         (["Borehole.fmu", "--pace", "0"], "Invalid value for '--pace': must be a number > 0, got '0'"),
         (["run.csv", "./run.csv", "run.csv"], "run.csv: must be given once, got it twice"),
+        (["paper.toml", "--plan", "plan.csv", "--save", "x.rrd"], "plan.csv: measured_depth of the plan: must include"),
         (["a.toml", "--case", "b.toml"], "a.toml: must be a result file with --case or --fmu, got a case file"),
     ],
 )
 def test_bad_input_is_one_line_and_leaves_no_file(
-    command_here: Command, run: Trajectory, tmp_path: Path, arguments: list[str], error: str
+    command_here: Command, run: Trajectory, paper_text: str, tmp_path: Path, arguments: list[str], error: str
 ) -> None:
     write_trajectory(replace(run, case=None), tmp_path / "run.csv")
+    (tmp_path / "paper.toml").write_text(paper_text, encoding="utf-8")
+    (tmp_path / "plan.csv").write_text("measured_depth,inclination_deg\n8510.5,26.37\n9884,53.43\n", encoding="utf-8")
+    before = set(tmp_path.iterdir())
     done = command_here("boreprop-view", *arguments)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith(f"error: {error}")
     assert done.stderr.count("\n") == 1
-    assert [path.name for path in tmp_path.iterdir()] == ["run.csv"]
+    assert set(tmp_path.iterdir()) == before

@@ -153,6 +153,16 @@ def test_half_way_there_is_half_of_the_hole(
     assert 0.3 < (half - key) / (whole - key) < 0.7  # the BHA covers some of the section, and a ripple has to grow
 
 
+def test_the_plots_show_the_whole_run_wherever_the_cursor_is(shown: Viewer) -> None:
+    [view] = [view for view in shown.views() if view.name.startswith("Inclination")]
+    curves = []
+    for length in (0.0, LENGTH):
+        shown.client.set_time(TIMELINE, sequence=round(1000 * length), play_state="paused")
+        curves.append(coloured(np.asarray(shown.picture(view), dtype=int), [HOLE]))
+    assert curves[0] > 1000
+    assert curves[1] == pytest.approx(curves[0], rel=0.1)
+
+
 def test_the_section_shows_where_rippling_sets_in(shown: Viewer) -> None:
     """The hole is darker above than below, and the key beside it has all the colours."""
     [section] = [view for view in shown.views() if view.name.startswith("Vertical section")]

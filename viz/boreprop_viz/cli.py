@@ -1,12 +1,6 @@
 """The command `boreprop-view`: draws runs with Rerun."""
 
-import os
-import signal
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
 from pathlib import Path
-from types import FrameType
 from typing import Annotated, NoReturn
 
 import typer
@@ -19,39 +13,12 @@ from boreprop.errors import InputError
 
 from .ports import check_free
 
-ENDINGS = ("SIGTERM", "SIGHUP")  # signals that ask a process to end: by another one, by a terminal that is closed
 app = new_app("Show runs in Rerun: vertical section, bit frame, ripple, plots over the drilled length.")
 
 
 def main() -> NoReturn:
     """Run the command `boreprop-view`."""
-    with endings_like_interrupt():
-        console.execute(app)
-
-
-@contextmanager
-def endings_like_interrupt() -> Iterator[None]:
-    """Let a signal that asks for the end do what Ctrl-C does, which ends viewers and keeps files, and then end us."""
-    received: list[int] = []
-
-    def interrupt(number: int, _: FrameType | None) -> None:
-        if not received:  # another one must not disturb the end
-            received.append(number)
-            raise KeyboardInterrupt
-
-    numbers = [getattr(signal, name) for name in ENDINGS if hasattr(signal, name)]
-    ours = [number for number in numbers if signal.getsignal(number) is signal.SIG_DFL]  # nohup ignores one of them
-    for number in ours:
-        signal.signal(number, interrupt)
-    try:
-        yield
-    finally:
-        for number in ours:
-            signal.signal(number, signal.SIG_DFL)
-        if received:
-            with suppress(OSError):  # the terminal may be gone
-                sys.stdout.flush()
-            os.kill(os.getpid(), received[0])  # so that the exit status says why
+    console.execute(app)
 
 
 @app.command()
@@ -122,7 +89,9 @@ def view(
 ) -> None:
     """Draw runs with Rerun. A case is simulated first; an FMU is drawn while it runs."""
     if save is not None:
-        console.check_output(save, (".rrd",))
+        from boreprop.run.files import files_read  # imported here, since reading cases takes longer than help
+
+        console.check_output(save, (".rrd",), reads=files_read(*sources, case, fmu, plan, schedule))
     if case is not None and fmu is not None:
         raise InputError("--case, --fmu: at most one must be given, got both")
     if (viewers := spawn + serve + (connect is not None)) > 1:

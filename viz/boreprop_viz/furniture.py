@@ -37,6 +37,7 @@ from .style import (
 from .track import DEPTH_TIMELINE, Track, points
 
 PALE = 0.5  # share of white in the colour of a run's text, which is read on the grey ground of a label
+APART = 1.4  # lines of text from one name to the next
 LINE = 0.045  # height of a line of text over that of its view, which is some 20 lines high
 # Other places in a view are parts of its width and height, chosen so that text neither is cut nor covers other text.
 
@@ -170,12 +171,18 @@ def log_places(rec: rr.RecordingStream, scales: Scales, cases: Sequence[Case]) -
         for name, s in ({"bit": 0.0, "RSS": bha.rss_position} | stabilizers).items():
             if name not in names.get(s, ""):
                 names[s] = f"{names[s]}, {name}" if s in names else name
-    (left, right), up = scales.frame.x, -np.array(list(names))
+    places = sorted(names)
+    (left, right), up = scales.frame.x, -np.array(places)
     lines = list(points(np.array([left, right]), up[:, None]))
     rec.log("bit_frame/places", rr.LineStrips2D.from_fields(strips=lines), static=True)
-    beside = up + LINE * scales.frame.y[0] * np.where(up < 0.0, 1.0, -1.0)  # the bit's are below, clear of the pads'
-    log_labels(rec, "bit_frame/places/names", points(0.72 * left, beside), list(names.values()))
-    log_labels(rec, "bit_frame/places/distances", points(0.82 * right, beside), [f"{s:.4g} m" for s in names])
+    line = LINE * scales.frame.y[0]
+    beside = [up[0] - line, *(up[1:] + line)]  # the bit's are below its mark, the others above theirs, …
+    for i in range(2, len(beside)):
+        beside[i] = min(beside[i], beside[i - 1] + APART * line)  # … clear of each other
+    log_labels(rec, "bit_frame/places/names", points(0.72 * left, np.array(beside)), [names[s] for s in places])
+    log_labels(
+        rec, "bit_frame/places/distances", points(0.82 * right, np.array(beside)), [f"{s:.4g} m" for s in places]
+    )
 
 
 def log_scale(rec: rr.RecordingStream, scales: Scales) -> None:

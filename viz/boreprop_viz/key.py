@@ -7,9 +7,11 @@ is a pixel of a small window, and in a larger window it grows.
 from collections.abc import Iterator, Sequence
 from itertools import zip_longest
 
+import numpy as np
 import rerun as rr
 
-from .style import BIT, BY_STABILIZER, GREY, HOLE, PLAN, RSS, WHITE, Colour
+from .furniture import log_labels
+from .style import BIT, BY_STABILIZER, GREY, HOLE, OLIVE, PLAN, RSS, Colour
 from .track import Track
 
 KEY = "key"
@@ -26,11 +28,11 @@ def entries(tracks: Sequence[Track], planned: bool) -> list[Entry]:
     n = max(len(track.case.bha.stabilizer_positions) for track in tracks)
     plan = [("plan", PLAN)] if planned else []
     if len(tracks) == 1:
-        parts = [("hole", HOLE), ("BHA, bit", BIT), *plan, ("RSS", RSS)]
-        return [*parts, *((f"stabilizer {i}", colour) for i, colour in enumerate(BY_STABILIZER[: n - 1], 1))]
+        stabilizers = [(f"stabilizer {i}", colour) for i, colour in enumerate(BY_STABILIZER[: n - 1], 1)]
+        return [("hole", HOLE), ("BHA, bit", BIT), *plan, ("RSS", RSS), *stabilizers, ("dogleg severity", OLIVE)]
     runs = [(shortened(track.name), track.colour or GREY) for track in tracks]
-    stabilizers = [f"stabilizer {i}" for i in range(1, n)]
-    firsts = zip_longest(("hole, build rate", "bit, dogleg severity"), stabilizers, ("low, +", "high, −"))
+    numbers = [f"stabilizer {i}" for i in range(1, n)]
+    firsts = zip_longest(("hole, build rate", "bit, dogleg severity"), numbers, ("low, +", "high, −"))
     kinds = [", ".join(filter(None, first)) for first in firsts]
     return [*runs, *plan, *zip(kinds, tracks[0].shades(BY_STABILIZER[: len(kinds)]), strict=True)]
 
@@ -74,11 +76,4 @@ def log_key(rec: rr.RecordingStream, entries: Sequence[Entry]) -> None:
     )
     widths = [width(name) - SWATCH for name, _ in entries]
     middles = [(x + SWATCH + wide / 2, y - ABOVE) for (x, y), wide in zip(starts, widths, strict=True)]
-    names = rr.Points2D(
-        middles,
-        labels=[name for name, _ in entries],
-        colors=WHITE,
-        radii=rr.Radius.ui_points(0.0),
-        show_labels=True,
-    )
-    rec.log(f"{KEY}/names", names, static=True)
+    log_labels(rec, f"{KEY}/names", np.array(middles), [name for name, _ in entries])

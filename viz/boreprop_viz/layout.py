@@ -51,7 +51,7 @@ def blueprint(scales: Scales, tracks: Sequence[Track], key: Sequence[Entry]) -> 
                 rrb.Tabs(*(one for one in tabs if one), card(), stations(), active_tab=2 if scales.rippling else 0),
                 row_shares=[high, TAB],
             ),
-            column_shares=[0.19, 0.1, 0.23, 0.48],
+            column_shares=[0.185, 0.095, 0.215, 0.505],
         ),
         TimePanel(scales),
         rrb.BlueprintPanel(state="hidden"),
@@ -123,7 +123,7 @@ def strip(scales: Scales, tracks: Sequence[Track]) -> rrb.Spatial2DView:
 
 def verdict() -> rrb.TextDocumentView:
     """Whether the holes ripple, at the cursor."""
-    return rrb.TextDocumentView(origin=VERDICT, name="Verdict at the cursor")
+    return rrb.TextDocumentView(origin=VERDICT, name="At the cursor")
 
 
 def card() -> rrb.TextDocumentView:
@@ -140,7 +140,7 @@ def bit_frame(scales: Scales) -> rrb.Spatial2DView:
     """Hole, BHA and forces around the BHA."""
     return rrb.Spatial2DView(
         origin="bit_frame",
-        name=f"Bit frame, lateral × {scales.lateral:g} (m)",
+        name=f"Bit frame, lateral × {scales.lateral:g}",
         background=GROUND,
         visual_bounds=_bounds(scales.frame),
     )

@@ -12,17 +12,16 @@ import numpy as np
 import rerun as rr
 from numpy.typing import ArrayLike
 
+from boreprop.analysis.plan import planned_hole, read_plan
 from boreprop.case.case import Case
 from boreprop.case.file import load_case
 from boreprop.case.packed import read_packed_case
-from boreprop.case.tables import read_survey
 from boreprop.cli.console import check_output, warn
 from boreprop.core.quantities import BY_NAME, INPUTS, OUTPUTS, scalar_names
 from boreprop.core.survey import Survey
 from boreprop.errors import InputError, shown
 
 from .record import Drawing, application_of_its_own
-from .scene import planned_path
 from .sinks import open_recording
 from .source import live as live_source
 from .source import rows_of
@@ -99,9 +98,10 @@ def live(
     """
     skip_pandas_check()  # which the thread would do, and hold the loop up
     case = case_from(case_or_fmu)
-    planned = read_survey(plan) if isinstance(plan, str | Path) else plan
+    start = case.survey.measured_depth[-1]
+    planned = read_plan(plan, start) if isinstance(plan, str | Path) else plan
     if planned is not None:
-        planned_path(planned, case)  # raises if it does not reach the start
+        planned_hole(planned, start)  # raises if it does not reach the start
     check_sinks(spawn, serve, connect, save)
     name = name or ("run" if isinstance(case_or_fmu, Case) else Path(case_or_fmu).stem)
     ended = None

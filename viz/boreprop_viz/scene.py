@@ -3,10 +3,7 @@
 In the vertical plane x points to the side to which inclination grows and z points down; the origin is the bit at the
 start of the run.
 
-The bit frame has its origin at the bit, and its axis passes through the centre of the hole at the last stabilizer, so
-its inclination is the mean over the BHA. s grows up the hole; lateral offsets are positive to the high side, as in the
-model. The model is linear in lateral offsets: turning its frame from the axis of the bit to that of the bit frame, by a
-small angle, adds that angle times s.
+The bit frame is that of `boreprop.analysis.sag.BeamInHole`.
 """
 
 from dataclasses import dataclass
@@ -16,10 +13,9 @@ from numpy.typing import NDArray
 
 from boreprop.analysis.hole import HoleAxis, bit_positions
 from boreprop.analysis.plan import planned_hole
+from boreprop.analysis.sag import BeamInHole
 from boreprop.case.case import Case
-from boreprop.core.beam import Beam
 from boreprop.core.survey import Survey
-from boreprop.core.system import scale
 from boreprop.run.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -64,55 +60,23 @@ class BitFrame:
     """
 
     def __init__(self, case: Case) -> None:
-        bha, scaled = case.bha, scale(case.bha, case.bit)
+        bha = case.bha
         self.stabilizer: Array = np.array(bha.stabilizer_positions)
         self.rss, self.radius = bha.rss_position, case.bit_diameter / 2
         self.blade_radius = np.maximum(self.radius - np.append(bha.stabilizer_clearances, 0.0), 0.0)
 
-        reach = self.stabilizer[-1]
-        even = np.linspace(0.0, reach, POINTS_ALONG_BHA)
-        self.s = np.unique(np.concatenate((even, self.stabilizer, [self.rss])))
-        self.s_hole = np.append(self.s, np.arange(reach, REACH_ABOVE_BHA * reach, even[1])[1:])
+        self.beam = BeamInHole(case, POINTS_ALONG_BHA)
+        self.s, reach = self.beam.s, self.stabilizer[-1]
+        self.s_hole = np.append(self.s, np.arange(reach, REACH_ABOVE_BHA * reach, reach / (POINTS_ALONG_BHA - 1))[1:])
         self.at_stabilizer = np.searchsorted(self.s, self.stabilizer)
         self.at_rss = int(np.searchsorted(self.s, self.rss))
         self.along_bha = np.union1d(np.arange(0, self.s.size, 2), np.append(self.at_stabilizer, self.at_rss))
 
-        # The shape is linear in the loads e_n, F_1 … F_{n−1}, F_RSS, sin⟨Θ⟩_1; these are the shapes under unit loads.
-        beam = Beam(scaled)
-        units = np.eye(self.stabilizer.size + 2).tolist()
-        shapes = [[beam.shape(s, e_n, F, rss, g) for s in self.s / bha.length_scale] for e_n, *F, rss, g in units]
-        load_scales = np.array([bha.length_scale] + [bha.force_scale] * self.stabilizer.size + [1.0])
-        self._shape_per_load = bha.length_scale * np.array(shapes) / load_scales[:, None]
-
     def shapes(self, rows: Trajectory, hole: HoleAxis) -> "Shapes":
         """The shapes at each row; `hole` must reach from the bit of the last row to the top of the first row's BHA."""
-        mean = rows.stack("average_inclination") @ np.diff(self.stabilizer, prepend=0.0) / self.stabilizer[-1]
-        return Shapes(self, rows, mean, self._hole_axis(rows, hole, mean), self._bha_axis(rows, mean))
-
-    def _hole_axis(self, rows: Trajectory, hole: HoleAxis, mean: Array) -> Array:
-        """The axis of the hole in the bit frame, (m, k').
-
-        It is corrected for the errors of the small angles and of the spacing of the rows, so that at the stabilizers it
-        has exactly the lateral coordinates Y(ξ−s_i) − Y(ξ) that follow from the averages ⟨Θ⟩_i.
-        """
-        behind = hole.at(rows["drilled_length"][:, None] - self.s_hole) - bit_positions(rows)[:, None]
-        axis: Array = behind[..., 0] * np.cos(mean)[:, None] - behind[..., 1] * np.sin(mean)[:, None]
-        turns = (rows.stack("average_inclination") - mean[:, None]) * np.diff(self.stabilizer, prepend=0.0)
-        shift = -np.cumsum(turns, axis=1) - axis[:, self.at_stabilizer]
-        nodes = np.append(0.0, self.stabilizer)
-        hats = np.array([np.interp(self.s_hole, nodes, unit) for unit in np.eye(nodes.size)[1:]])
-        axis += shift @ hats
-        return axis
-
-    def _bha_axis(self, rows: Trajectory, mean: Array) -> Array:
-        """The bent axis of the BHA under the loads of each row, turned from the bit's axis to the frame's, (m, k)."""
-        turn = mean - rows["bit_inclination"]
-        e_n = turn * self.stabilizer[-1]
-        sin_Theta_1 = np.sin(rows.stack("average_inclination")[:, 0])
-        loads = np.column_stack((e_n, rows.stack("stabilizer_force"), rows["rss_force"], sin_Theta_1))
-        shape: Array = loads @ self._shape_per_load
-        shape += turn[:, None] * self.s
-        return shape
+        beam = self.beam
+        hole_axis = beam.hole_axis(rows, hole, self.s_hole)
+        return Shapes(self, rows, beam.mean_inclination(rows), hole_axis, beam.bha_axis(rows))
 
 
 @dataclass(frozen=True)
@@ -142,6 +106,14 @@ class Shapes:
         force = self.rows.stack("stabilizer_force")
         wall = self.hole_axis[:, self.frame.at_stabilizer[:-1]] - np.sign(force) * self.frame.radius
         return np.where(force == 0.0, np.nan, wall)
+
+    @property
+    def outside(self) -> dict[str, Array]:
+        """By how much the axis of the BHA is beyond the wall, m, negative inside, and where, m behind the bit, (m,)."""
+        offset = np.abs(self.bha_axis - self.hole_axis[:, : self.frame.s.size])
+        farthest = offset.argmax(axis=1)
+        beyond = offset[np.arange(len(offset)), farthest] - self.frame.radius
+        return {"beyond_wall": beyond, "beyond_wall_at": self.frame.s[farthest]}
 
     @property
     def bit_turn(self) -> Array:

@@ -73,4 +73,4 @@ class RunStream:
             log_along(self.track, rows, length, ripple, self.rippled)
         self.rippled = max([self.rippled, *length[-1:]])
         log_modes(self.track, rows, stretch.rows.row_count)
-        return self.verdict.follow(stretch.rows)
+        return self.verdict.follow(replace(stretch.rows, columns=stretch.rows.columns | shapes.outside))

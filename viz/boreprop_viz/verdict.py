@@ -56,8 +56,9 @@ class Verdict:
         self.ended: tuple[float, Rippling] | None = None  # a ripple that is over, until it is known where it ended
         self.past = ""  # the last ripple that is over, in words
         self.off_plan = 0.0  # the distance from the plan that was told last, m
+        self.beyond = 0.0  # by how much the BHA was told to leave the hole, m
         self.hidden = 0.0  # the longest wave that was told to be too short for its rows, m
-        self.ripple, self.unseen, self.plan, self.said = SO_FAR, "", "", ""  # in words
+        self.ripple, self.unseen, self.plan, self.sag, self.said = SO_FAR, "", "", "", ""  # in words
 
     @property
     def next(self) -> float:
@@ -71,6 +72,7 @@ class Verdict:
             self.start = float(rows["drilled_length"][0])
             first = between(rows, self.start, self.start)
             self._see_plan(first)
+            self._see_sag(first)
             sayings += self._say(first)
         else:
             rows = joined(self.rows, rows)
@@ -97,7 +99,7 @@ class Verdict:
 
     def _say(self, recent: Trajectory, end: str = "") -> list[Saying]:
         """What is to be said from the last of some rows on: nothing if it was said already."""
-        words = f"{self.ripple}{self.unseen}{self.plan}{end}"
+        words = f"{self.ripple}{self.unseen}{self.plan}{self.sag}{end}"
         if words == self.said:
             return []
         self.said = words
@@ -110,12 +112,13 @@ class Verdict:
         going_on = self.began is not None and wave.amplitude > STILL * self.told.amplitude
         if wave.state is State.STEERED and going_on:
             wave = replace(wave, state=State.LASTING)
-        self.checked = float(recent["drilled_length"][-1])
+        before, self.checked = self.checked, float(recent["drilled_length"][-1])
         confirmed, self.state = sure or wave.state is self.state, wave.state
         if sure or (confirmed and (wave.state is not self.told.state or _changed(wave, self.told))):
             self._tell(replace(find_rippling(recent), state=wave.state), recent)
         self._see_spacing(recent)
         self._see_plan(recent, sure)
+        self._see_sag(between(recent, before, np.inf))
 
     def _tell(self, wave: Rippling, recent: Trajectory) -> None:
         """Put a wave into words that was found in the last rows."""
@@ -162,6 +165,19 @@ class Verdict:
         elif sure or not self.plan or abs(distance - self.off_plan) > max(NEAR, NOTICEABLE * abs(self.off_plan)):
             self.off_plan = distance
             self.plan = f"; {beside(distance, '.1f')} of the plan" if abs(distance) > NEAR / 2 else "; on the plan"
+
+    def _see_sag(self, recent: Trajectory) -> None:
+        """Look whether the axis of the BHA leaves the hole in some rows, where the model does not hold."""
+        if "beyond_wall" not in recent or not recent.row_count:
+            return
+        row = int(recent["beyond_wall"].argmax())
+        beyond, at = float(recent["beyond_wall"][row]), UNITS["m"].text(recent["beyond_wall_at"][row])
+        if beyond <= 0.0:
+            self.beyond, self.sag = 0.0, ""
+        elif not self.sag or abs(beyond - self.beyond) > NOTICEABLE * self.beyond:
+            self.beyond = beyond
+            by = rounded(beyond, SMALL_LENGTH)
+            self.sag = f"; {at} behind the bit the axis of the BHA leaves the hole, by {by}: the model does not hold"
 
 
 def _end(recent: Trajectory, began: float, ripple: Rippling) -> float | None:

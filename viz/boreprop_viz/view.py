@@ -4,10 +4,13 @@ from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from boreprop.analysis.plan import read_plan
+from boreprop.case.case import Case
 from boreprop.case.file import load_case
 from boreprop.case.packed import read_packed_case
-from boreprop.case.tables import read_schedule, read_survey
+from boreprop.case.tables import read_schedule
 from boreprop.cli import console
+from boreprop.cli.cases import open_case
 from boreprop.core.survey import Survey
 from boreprop.errors import InputError
 from boreprop.run.results import SUFFIXES, read_trajectory
@@ -29,7 +32,7 @@ class Opener:
     case, fmu
         The case of the result files, or the FMU that holds it. None: the case stored with each file.
     plan
-        The planned hole.
+        The file with the planned hole.
     schedule
         The force schedule for an FMU. None: the one packed in it.
     step, stop
@@ -40,7 +43,7 @@ class Opener:
 
     case: Path | None
     fmu: Path | None
-    plan: Survey | None
+    plan: Path | None
     schedule: Path | None
     step: float | None
     stop: float | None
@@ -53,7 +56,8 @@ class Opener:
             from boreprop_fmu.host.drive import FmuRun  # imported here, since importing fmpy takes long
 
             forces = None if self.schedule is None else read_schedule(self.schedule)
-            return live(name, FmuRun(path, forces, step=self.step, stop=self.stop), self.plan, pace=self.pace)
+            fmu_run = FmuRun(path, forces, step=self.step, stop=self.stop)
+            return live(name, fmu_run, self.planned(fmu_run.case), pace=self.pace)
         try:
             run = self._run(path)
         except Stopped as error:
@@ -61,17 +65,23 @@ class Opener:
                 raise
             self.stopped.append(error)
             run = error.trajectory
+        plan = self.planned(run.case)
         try:
-            return stored(name, run, self.plan)
+            return stored(name, run, plan)
         except InputError as error:
             raise InputError(f"{path}: {error}") from error
+
+    def planned(self, case: Case | None) -> Survey | None:
+        """The plan for a run of a case; `InputError` if it does not include where the case starts."""
+        return None if self.plan is None or case is None else read_plan(self.plan, case.survey.measured_depth[-1])
 
     def _run(self, path: Path) -> Trajectory:
         """The run in a result file, or that of a case file, which is simulated now."""
         if path.suffix == ".toml":
             if self.case or self.fmu:
                 raise InputError(f"{path}: must be a result file with --case or --fmu, got a case file")
-            case = load_case(path)
+            case = open_case(path)
+            self.planned(case)  # raises before anything is drilled
             with console.progress("drilling", case.length) as drilled:
                 return simulate(case, progress=drilled)
         if path.suffix not in SUFFIXES:
@@ -102,10 +112,9 @@ def show(
 ) -> None:
     """Draw runs, see the options of the command."""
     skip_pandas_check()
-    planned = None if plan is None else read_survey(plan)
-    opener = Opener(case, fmu, planned, schedule, step, stop, pace)
+    opener = Opener(case, fmu, plan, schedule, step, stop, pace)
     opened = [opener.open(name, path) for name, path in zip(names(sources), sources, strict=True)]
-    drawing = Drawing.of(opened, planned)
+    drawing = Drawing.of(opened, opener.planned(opened[0].case))
     rows = sum(source.row_count or 0 for source in opened)
     with (
         open_recording(drawing.application, save=save, spawn=spawn, serve=serve, connect=connect, port=port) as rec,

@@ -6,11 +6,13 @@ from zipfile import ZipFile
 
 import typer
 
-from boreprop.case.file import load_case
 from boreprop.cli import console
+from boreprop.cli.cases import open_case
 from boreprop.cli.options import CaseFile, one_of
 from boreprop.errors import InputError
 from boreprop.kernel.compiler import CompilerError
+from boreprop.report.tables.sag import steadily_outside
+from boreprop.run.files import files_read
 
 from ..native.binaries import PLATFORMS, build_binaries, check_platform, is_compiled
 from ..pack.build import IDENTIFIER, RUNTIMES, build_fmu
@@ -42,10 +44,12 @@ def build_command(
     ] = None,
 ) -> None:
     """Pack a case, and the model with it, as an FMU."""
-    console.check_output(output, (".fmu",))
-    case, chosen = load_case(case_file), None if platforms is None else _chosen(platforms)
+    console.check_output(output, (".fmu",), reads=files_read(case_file))
+    case, chosen = open_case(case_file), None if platforms is None else _chosen(platforms)
     if runtime != "python":
         _compile_missing(chosen or [])
+    if warning := steadily_outside(case):
+        console.warn(f"{case_file}: {warning}")
     build_fmu(case, output, runtime=runtime, name=name, platforms=chosen)
     with ZipFile(output) as archive:
         folders = [path.split("/") for path in archive.namelist()]

@@ -8,7 +8,9 @@ import typer
 from boreprop.case.tables import read_schedule
 from boreprop.cli import console
 from boreprop.cli.options import Tolerance, positive
-from boreprop.run.results import SUFFIXES, keeping_rows, write_trajectory
+from boreprop.cli.outputs import check_run_output
+from boreprop.run.files import files_read
+from boreprop.run.results import keeping_rows, write_trajectory
 
 from ..host.drive import FmuRun
 
@@ -33,10 +35,12 @@ def run_command(
 ) -> None:
     """Run an FMU and write the run to a file.
 
+    To run an FMU is to run the code in it, with all your rights: run only those from people whom you trust.
+
     Its rows are at whole multiples of the communication step, from 0. If the FMU cannot go on to the end, the rows up
     to there are written, and the exit status is 3.
     """
-    console.check_output(output, SUFFIXES)
+    check_run_output(output, files_read(fmu, schedule))
     forces = None if schedule is None else read_schedule(schedule)
     fmu_run = FmuRun(fmu, forces, step=step, stop=stop, relative_tolerance=tolerance)
     with keeping_rows(output), console.progress("drilling", fmu_run.stop) as done:

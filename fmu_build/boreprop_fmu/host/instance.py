@@ -13,12 +13,15 @@ import fmpy
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Slave, defaultCallbacks, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2Fatal
 
+from boreprop.case.archive import open_archive
 from boreprop.errors import InputError
 from boreprop.kernel.compiler import host_platform
 
 
 def read_description(fmu: Path) -> Any:
-    """Read modelDescription.xml; `InputError` unless it is that of an FMI 2.0 co-simulation FMU."""
+    """Read modelDescription.xml; `InputError` unless it is that of a sound FMI 2.0 co-simulation FMU."""
+    with open_archive(fmu):
+        pass
     try:
         description = fmpy.read_model_description(fmu)
     except Exception as error:  # fmpy raises what its parsers raise
@@ -34,7 +37,7 @@ def read_description(fmu: Path) -> Any:
 def open_instance(
     fmu: Path, description: Any, messages: deque[str], *, start: float, stop: float, platform: str | None = None
 ) -> Iterator[Any]:
-    """Yield an instance of an FMU in initialization mode; terminate and free it at the end.
+    """Yield an instance of an FMU in initialization mode; terminate and free it at the end. This runs the FMU's code.
 
     Parameters
     ----------
@@ -57,7 +60,8 @@ def open_instance(
     callbacks = _log_to(messages)
     identifier = description.coSimulation.modelIdentifier
     with TemporaryDirectory(prefix="boreprop-fmu-") as directory:
-        fmpy.extract(fmu, directory)
+        with open_archive(fmu) as archive:
+            archive.extractall(directory)
         if Path(directory, "resources", "slavemodule.txt").exists():
             _check_readable(directory)
         try:

@@ -1,4 +1,5 @@
-/* Surveys from CSV files: columns measured_depth (m) and inclination_deg, by name; others are ignored. */
+/* Surveys from plain CSV files: columns measured_depth (m) and inclination_deg, by name; others, and rows of empty cells,
+   are ignored. What core/columns.py reads in Python. */
 #ifndef BOREPROP_SURVEY_FILE_H
 #define BOREPROP_SURVEY_FILE_H
 
@@ -8,6 +9,8 @@
 enum { COLUMNS = 2 };
 
 static const char *const COLUMN[COLUMNS] = {"measured_depth", "inclination_deg"};
+static const char PLAIN[] = "plain CSV: UTF-8, commas, decimal points, depths in m, inclinations in degrees";
+static const double LARGEST_VALUE[COLUMNS] = {INFINITY, 180.0};       /* of either sign */
 static const double UNIT[COLUMNS] = {1.0, 3.141592653589793 / 180.0}; /* m, rad */
 
 /* Take one field of a row: `*from` moves behind it, `*field` is its text. Gives the character that ended it. */
@@ -29,6 +32,8 @@ static char next_field(char **from, char **field) {
     return end;
 }
 
+static int is_blank(const char *field) { return field[strspn(field, " \t\v\f\r\n")] == '\0'; }
+
 /* Positions of the columns in the header row, and how many values it has: 0 with `why` if a column is missing. */
 static int read_header(const char *path, char **from, int position[COLUMNS], char why[LINE]) {
     char got[LINE / 4] = "", shown[SHOWN], *field;
@@ -44,7 +49,8 @@ static int read_header(const char *path, char **from, int position[COLUMNS], cha
         count++;
     }
     for (int i = 0; i < COLUMNS; i++)
-        if (position[i] < 0) return explain(why, "%s: must have a column '%s', got [%s]", path, COLUMN[i], got);
+        if (position[i] < 0)
+            return explain(why, "%s: must have a column '%s' (%s), got [%s]", path, COLUMN[i], PLAIN, got);
     return count;
 }
 
@@ -56,25 +62,24 @@ static long read_rows(
     long rows = 0;
     for (; *from; line++) {
         char *field, *text[COLUMNS] = {NULL}, end, shown[SHOWN];
-        int count = 0;
-        if (*from == '\r' || *from == '\n') {
-            next_field(&from, &field);
-            continue;
-        }
+        int count = 0, empty = 1;
         do {
             end = next_field(&from, &field);
             for (int i = 0; i < COLUMNS; i++)
                 if (count == position[i]) text[i] = field;
+            empty = empty && is_blank(field);
             count++;
         } while (end == ',');
+        if (empty) continue;
         if (count != width) {
             explain(why, "%s:%ld: must have %d values like the header, got %d", path, line, width, count);
             return -1;
         }
         for (int i = 0; i < COLUMNS; i++) {
-            if (parse_number(text[i], &columns[i][rows]) && isfinite(columns[i][rows])) continue;
-            quoted(text[i], shown);
-            explain(why, "%s:%ld: %s: must be a finite number, got %s", path, line, COLUMN[i], shown);
+            int number = parse_number(text[i], &columns[i][rows]) && isfinite(columns[i][rows]);
+            if (number && fabs(columns[i][rows]) <= LARGEST_VALUE[i]) continue;
+            const char *must = number ? "between -180 and 180" : "a finite number";
+            explain(why, "%s:%ld: %s: must be %s, got %s", path, line, COLUMN[i], must, quoted(text[i], shown));
             return -1;
         }
         for (int i = 0; i < COLUMNS; i++) columns[i][rows] *= UNIT[i];
@@ -92,7 +97,14 @@ static double *read_survey(const char *path, Survey *survey, char why[LINE]) {
     Problem problem;
     if (!text) return NULL;
     if (!strncmp(text, "\xEF\xBB\xBF", 3)) from += 3;
-    for (; *from == '\r' || *from == '\n'; line++) next_field(&from, &blank);
+    for (;; line++) { /* rows of empty cells */
+        size_t length = strspn(from, " \t,\"");
+        int end = !from[length];
+        if (!end && !strchr("\r\n", from[length])) break;
+        from += length;
+        if (end) break;
+        next_field(&from, &blank);
+    }
     for (const char *at = from; *at; at++) lines += *at == '\n' || *at == '\r';
     width = read_header(path, &from, position, why);
     if (width) {

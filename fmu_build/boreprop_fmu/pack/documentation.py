@@ -8,6 +8,7 @@ from string import Template
 
 from boreprop.case.case import Case
 from boreprop.core.quantities import VARIABLES, Quantity
+from boreprop.report.tables.sag import steadily_outside
 
 from .licenses import license_text
 
@@ -128,7 +129,9 @@ def page(case: Case, identifier: str, runtime: str, start: Mapping[str, float | 
         f"the existing hole ends at {degrees(case.survey.inclination[-1]):.3g}°"
     )
     lines = [_line(quantity, quantity.names(n), start) for quantity in VARIABLES if quantity.names(n)]
-    own = {"case": facts, "identifier": identifier, "variables": "\n".join(lines)}
+    warning = steadily_outside(case)
+    outside = f" Of this case, drilled on steadily: {warning}." if warning else ""
+    own = {"case": facts, "identifier": identifier, "variables": "\n".join(lines), "outside": outside}
     texts = {name: Template(text).substitute(own) for name, text in TEXTS[runtime].items()}
     return frame.substitute(own, **texts)
 

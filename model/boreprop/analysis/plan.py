@@ -5,10 +5,12 @@ Inclinations are compared at equal measured depth, by which a plan is read.
 """
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from ..arrays import Floats
+from ..case.tables import read_survey
 from ..core.survey import Survey
 from ..errors import InputError
 from ..run.completion import case_of
@@ -35,6 +37,22 @@ class Deviation:
     distance: Floats
     inclination: Floats
     planned_inclination: Floats
+
+
+def read_plan(path: str | Path, start: float) -> Survey:
+    """Read a plan, a file like that of a survey; errors name it.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or the plan does not include the measured depth `start`, m, of the start of the run.
+    """
+    plan = read_survey(path)
+    try:
+        planned_hole(plan, start)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+    return plan
 
 
 def planned_hole(plan: Survey, start: float) -> SurveyedHole:

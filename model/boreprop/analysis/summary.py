@@ -9,11 +9,13 @@ from numpy.typing import NDArray
 from ..arrays import Floats
 from ..core.survey import Survey
 from ..core.system import BottomHoleAssembly
+from ..errors import MissingColumn
 from ..run.completion import case_of
 from ..run.trajectory import Trajectory
 from ..units import BUILD_LENGTH
 from .hole import chord_inclination, hole_of
 from .rippling import Rippling, State, find_rippling, visible_waves
+from .sag import Sag, largest_sag
 
 SHORT_WAVE, LONG_WAVE = 0.25, 1.8  # half lengths of the BHA: the usual wavelengths of ripples lie in between
 
@@ -46,6 +48,8 @@ class Summary:
         Which waves that this BHA may make cannot be seen in the rows of the run, and what to do; empty if none.
     stopped
         The reason why the run ended early; None if it reached its end.
+    sag
+        Where the axis of the BHA is farthest from that of the hole; None if the run does not say.
     """
 
     drilled_length: float
@@ -60,6 +64,7 @@ class Summary:
     rippling: Rippling
     hidden_waves: str = ""
     stopped: str | None = None
+    sag: Sag | None = None
 
 
 def summarize(trajectory: Trajectory) -> Summary:
@@ -88,11 +93,15 @@ def summarize(trajectory: Trajectory) -> Summary:
     (True, 0.81)
     """
     hidden = hidden_waves(trajectory["drilled_length"], case_of(trajectory).bha)
-    return replace(sum_up(trajectory, find_rippling(trajectory)), hidden_waves=hidden)
+    try:
+        sag = largest_sag(trajectory)
+    except MissingColumn:  # the other figures need fewer columns
+        sag = None
+    return replace(sum_up(trajectory, find_rippling(trajectory)), hidden_waves=hidden, sag=sag)
 
 
 def sum_up(trajectory: Trajectory, rippling: Rippling) -> Summary:
-    """`summarize` a run without its hidden waves, once `find_rippling` or `last_wave` has found the rippling."""
+    """`summarize` a run without hidden waves and sag, once `find_rippling` or `last_wave` has found the rippling."""
     case = case_of(trajectory)
     length = trajectory["drilled_length"]
     over = averaging_length(case.bha, rippling)

@@ -1,8 +1,9 @@
 """A case: the drilling system, the existing hole, the active weight on bit, the steering force and the length."""
 
 from dataclasses import dataclass
+from itertools import repeat
 
-from ..core.checks import check_increasing, check_part
+from ..core.checks import check_increasing, check_part, checked_float
 from ..core.errors import ParameterError
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly, eta_pi
@@ -36,6 +37,8 @@ class Schedule:
     rss_force: tuple[float, ...] = (0.0,)
 
     def __post_init__(self) -> None:
+        for name in ("drilled_length", "rss_force"):
+            object.__setattr__(self, name, tuple(map(checked_float, repeat(name), getattr(self, name))))
         if not self.drilled_length or self.drilled_length[0] != 0.0:
             raise ParameterError("drilled_length", "must start at 0", self.drilled_length)
         check_increasing("drilled_length", self.drilled_length)
@@ -56,7 +59,7 @@ class Case:
     bit
         The law of bit and rock.
     bit_diameter
-        Diameter of the hole, m. It is used for drawing only and does not enter the physics.
+        Diameter of the hole, m. It does not enter the physics; no clearance can be as large as half of it.
     active_weight_on_bit
         The part of the weight on bit that drills, Π F* in the paper, N.
     length
@@ -69,7 +72,7 @@ class Case:
     Raises
     ------
     ParameterError
-        If the diameter, the weight or the length is not finite and positive.
+        If the diameter, the weight or the length is not finite and positive, or a value is beyond what can be.
 
     Examples
     --------
@@ -89,6 +92,10 @@ class Case:
 
     def __post_init__(self) -> None:
         check_part("", self)
+        widest = max(self.bha.stabilizer_clearances, default=0.0)
+        if widest >= self.bit_diameter / 2:
+            name = f"stabilizer_clearance[{self.bha.stabilizer_clearances.index(widest) + 1}]"
+            raise ParameterError(name, f"must be < bit.diameter/2 = {self.bit_diameter / 2:g}", widest)
 
     @property
     def length_scale(self) -> float:

@@ -4,7 +4,6 @@ A file has angles in degrees, a `Case` in radians. The table of quantities says 
 the case.
 """
 
-import tomllib
 from math import degrees, radians
 from operator import attrgetter
 from pathlib import Path
@@ -12,10 +11,11 @@ from typing import Any
 
 import tomli_w
 
+from ..core.columns import regular
 from ..core.quantities import QUANTITIES
 from ..errors import InputError
 from .case import Case
-from .schema import TABLES, parse
+from .schema import OF_FILES, TABLES, parse, read_toml
 
 
 def load_case(path: str | Path) -> Case:
@@ -54,9 +54,12 @@ def load_case(path: str | Path) -> Case:
     bha: must be given, got nothing (and 3 more)
     """
     try:
-        text = Path(path).read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: must be a readable TOML file, got: {getattr(error, 'strerror', error)}") from error
+        text = regular(path).read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise InputError(f"{path}: must be a readable TOML file, got: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        constraint = "must be a TOML file in UTF-8 (save it with that encoding)"
+        raise InputError(f"{path}: {constraint}, got the byte 0x{error.object[error.start]:02x}") from error
     return parse_case(text, path)
 
 
@@ -78,12 +81,24 @@ def parse_case(text: str, source: str | Path) -> Case:
     return parse(text, Path(source))
 
 
+def files_named(path: Path) -> list[Path]:
+    """The files that a case file names, there or not; none if it cannot be read, as `load_case` then says."""
+    try:
+        document = read_toml(regular(path).read_text(encoding="utf-8-sig"), path)
+    except (OSError, UnicodeDecodeError, InputError):
+        return []
+    places = [where.split(".") for where in OF_FILES]
+    tables = [(document.get(table), key) for table, key in places]
+    names = [content.get(key) for content, key in tables if isinstance(content, dict)]
+    return [path.parent / name for name in names if isinstance(name, str)]
+
+
 def read_run(text: str) -> dict[str, str]:
     """The table [run] of a case file, which `dump_case` wrote; empty if the text has none or is not TOML."""
     try:
-        run = tomllib.loads(text).get("run", {})
+        run = read_toml(text, Path()).get("run", {})
         return {key: str(value) for key, value in run.items()}
-    except (tomllib.TOMLDecodeError, AttributeError):
+    except (InputError, AttributeError):
         return {}
 
 

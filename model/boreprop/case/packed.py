@@ -1,9 +1,8 @@
 """The case file inside the FMUs of boreprop-fmu, which writes it when it packs a case."""
 
-import zipfile
 from pathlib import Path
 
-from ..errors import InputError
+from .archive import open_archive
 from .case import Case
 from .file import parse_case
 
@@ -25,12 +24,10 @@ def read_packed_case(fmu: str | Path) -> Case | None:
     Raises
     ------
     InputError
-        If the file is not a ZIP archive, or its case breaks a constraint.
+        If the file is not an archive that `open_archive` opens, or its case breaks a constraint.
     """
-    try:
-        with zipfile.ZipFile(fmu) as archive:
-            if CASE_FILE not in archive.namelist():
-                return None
-            return parse_case(archive.read(CASE_FILE).decode(), Path(fmu, CASE_FILE))
-    except zipfile.BadZipFile as error:
-        raise InputError(f"{fmu}: must be an FMU, got: {error}") from error
+    with open_archive(fmu) as archive:
+        if CASE_FILE not in archive.namelist():
+            return None
+        text = archive.read(CASE_FILE).decode()
+    return parse_case(text, Path(fmu, CASE_FILE))

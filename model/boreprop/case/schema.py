@@ -4,6 +4,7 @@ The keys are those of the table of quantities; the types are those of the datacl
 """
 
 import json
+import re
 import tomllib
 from collections.abc import Callable
 from contextlib import suppress
@@ -27,6 +28,7 @@ from .tables import read_schedule, read_survey
 Document = dict[str, dict[str, Any]]  # table → key → value
 
 BY_KEY = {quantity.key: quantity for quantity in QUANTITIES if quantity.key}
+DEEPEST = 100  # parts that a dotted key may have
 TABLES = ("bha", "bit", "drilling", "hole", "rss", "run")  # of a file, in the order in which they are written
 OF_FILES: dict[str, tuple[str, Callable[[Path], Survey | Schedule]]] = {
     "hole.survey": ("survey", read_survey),
@@ -34,15 +36,14 @@ OF_FILES: dict[str, tuple[str, Callable[[Path], Survey | Schedule]]] = {
 }
 """Key that names a CSV file → the field of a `Case` that the file holds, and the function that reads it."""
 
+PATHS = "must be a path with forward slashes or in single quotes, since in double quotes a backslash begins an escape"
+
 _CASE = TypeAdapter(Case)
 
 
 def parse(text: str, source: Path) -> Case:
     """See `boreprop.case.file.parse_case`."""
-    try:
-        document = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{source}: must be TOML, got: {error}") from error
+    document = read_toml(text, source)
     check_keys(document, source)
     fields = case_fields(document) | read_files(document, source)
     try:
@@ -52,6 +53,35 @@ def parse(text: str, source: Path) -> Case:
         errors = error.errors(include_url=False)
         more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
         raise InputError(f"{source}: {_message(errors[0], document)}{more}") from error
+
+
+def _no_toml(error: tomllib.TOMLDecodeError, text: str) -> str:
+    """What is wrong with a text that is no TOML: most often a path as Windows writes it."""
+    at = re.search(r"\(at line (\d+)", str(error))
+    if at:
+        line = text.split("\n")[int(at[1]) - 1].strip()
+        if re.search(r'"[^"]*\\', line):
+            return f"line {at[1]}: {PATHS}, got {shown(line)}"
+    return f"must be TOML, got: {error}"
+
+
+def read_toml(text: str, source: Path) -> dict[str, Any]:
+    """The document that a TOML text is; `InputError` if it is none, or holds what no case has and Python chokes on."""
+    parts = re.split(r"[][{}=,#\n]", text)
+    if any(len(re.findall(r"[^.]\.", part)) > DEEPEST for part in parts):  # tomllib's time goes with the square
+        raise InputError(f"{source}: must be TOML with keys of at most {DEEPEST} parts, got more dots in one")
+    try:
+        document = tomllib.loads(text)
+        json.dumps(document, default=str)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{source}: {_no_toml(error, text)}") from error
+    except RecursionError as error:
+        raise InputError(f"{source}: must be TOML without lists in lists, got hundreds in one another") from error
+    except ValueError as error:  # an int of more digits than Python reads or writes
+        raise InputError(
+            f"{source}: must be TOML with numbers of usual size, got one of thousands of digits"
+        ) from error
+    return document
 
 
 def check_keys(document: dict[str, Any], source: Path) -> None:
@@ -70,6 +100,8 @@ def check_keys(document: dict[str, Any], source: Path) -> None:
                 raise InputError(f"{source}: {where}: {_unknown(key)}, got {shown(value)}")
             if BY_KEY[where].kind == "String" and not isinstance(value, str):
                 raise InputError(f"{source}: {where}: must be text in quotes, got {shown(value)}")
+            if where in OF_FILES and not value.isprintable():  # "\temp" begins with a tab
+                raise InputError(f"{source}: {where}: {PATHS}, got {shown(value)}")
     for where in OF_FILES:
         table, _, file = where.partition(".")
         columns = columns_of(table)

@@ -1,6 +1,6 @@
 """Options that several commands share, and the parsers of their values."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from math import inf, nan
 from pathlib import Path
 from typing import Annotated
@@ -8,6 +8,8 @@ from typing import Annotated
 import typer
 
 from ..core.quantities import BY_NAME
+from ..errors import InputError
+from .console import check_output
 
 
 def positive(text: str) -> float:
@@ -55,6 +57,12 @@ Tolerance = Annotated[
 ]
 """The option --tolerance of a command that drills: ``tolerance: Tolerance = None``."""
 
+AsJson = Annotated[
+    bool,
+    typer.Option("--json", help="Print JSON instead: SI units, the names of the Python API, null for nothing."),
+]
+"""The option --json: ``as_json: AsJson = False``."""
+
 Inclination = Annotated[
     float | None,
     typer.Option(
@@ -71,3 +79,11 @@ ClearanceRange = Annotated[
     typer.Option(metavar="START:STOP:COUNT", help="Clearances, mm, of the first stabilizer that can touch the wall."),
 ]
 """The option --clearance-mm: ``clearance_mm: ClearanceRange = None``; see `ranges.parse_range`."""
+
+
+def check_asked(output: Path | None, as_json: bool, *, reads: Iterable[Path]) -> None:
+    """Raise `InputError` unless a picture that can be written, or JSON, is asked for; see `check_output`."""
+    if output is not None:
+        check_output(output, (".png",), reads=reads)
+    elif not as_json:
+        raise InputError("--output, --json: one must be given, got neither")

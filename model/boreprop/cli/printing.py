@@ -1,7 +1,12 @@
-"""Tables on the terminal."""
+"""Tables and JSON on the terminal."""
 
-from collections.abc import Iterable, Sequence
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from math import isfinite
+from typing import Any
 
+import numpy as np
 from rich.console import Console
 from rich.table import Table
 
@@ -19,3 +24,23 @@ def print_table(
     for line in lines:
         table.add_row(*line)
     Console(width=width).print(table)
+
+
+def print_json(document: Any) -> None:
+    """Print a document as JSON, see `plain`."""
+    print(json.dumps(plain(document)))
+
+
+def plain(value: Any) -> Any:
+    """A value as what JSON has: fields of records by name, arrays as lists, null for what is not a finite number."""
+    if is_dataclass(value):
+        return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
+    if isinstance(value, Mapping):
+        return {str(key): plain(one) for key, one in value.items()}
+    if isinstance(value, tuple) and hasattr(value, "_asdict"):
+        return plain(value._asdict())
+    if isinstance(value, np.ndarray | np.generic):
+        return plain(value.tolist())
+    if isinstance(value, list | tuple):
+        return [plain(one) for one in value]
+    return None if isinstance(value, float) and not isfinite(value) else value

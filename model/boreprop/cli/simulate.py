@@ -6,15 +6,16 @@ from typing import Annotated
 
 import typer
 
-from ..case.file import load_case
 from ..core.checks import check_number
 from ..core.options import RELATIVE_TOLERANCE
-from ..errors import InputError
 from ..run.engines import ENGINES
-from ..run.results import SUFFIXES, case_path, keeping_rows, write_trajectory
+from ..run.files import files_read
+from ..run.results import keeping_rows, write_trajectory
 from ..run.simulate import SAMPLE_INTERVAL, simulate
 from . import console
+from .cases import open_case
 from .options import CaseFile, Tolerance, one_of, positive
+from .outputs import check_run_output
 
 MAX_ROWS = 10_000_000  # more would be a file of many gigabytes
 
@@ -44,10 +45,8 @@ def simulate_command(
     Its rows are at whole multiples of the sample interval, from 0. If the run cannot go on to its end, the rows up to
     there are written, and the exit status is 3.
     """
-    console.check_output(output, SUFFIXES)
-    if case_path(output).resolve() == case_file.resolve():
-        raise InputError(f"{output}: must have another name, since its case would overwrite the case file {case_file}")
-    case = load_case(case_file)
+    check_run_output(output, files_read(case_file))
+    case = open_case(case_file)
     if length is not None:
         case = replace(case, length=length)
     check_number("--sample-interval", sample_interval, at_least=case.length / MAX_ROWS)

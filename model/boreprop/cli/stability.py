@@ -12,13 +12,14 @@ from ..analysis.stability.chart import stability_chart, usual_grid
 from ..analysis.stability.contacts import all_contacts, charted, contacts_met, steady_mode
 from ..analysis.stability.roots import Roots, critical_eta_pi, find_roots, parse_contact
 from ..case.case import Case
-from ..case.file import load_case
 from ..core.checks import check_number
 from ..errors import InputError
 from ..report.tables import stability as tables
+from ..run.files import files_read
 from . import console
-from .options import CaseFile, EtaPiRange, Inclination, positive
-from .printing import print_table
+from .cases import open_case
+from .options import AsJson, CaseFile, EtaPiRange, Inclination, check_asked, positive
+from .printing import print_json, print_table
 from .ranges import parse_range
 
 WIDE = 110  # characters, so that the line of a mode is not wrapped
@@ -51,7 +52,7 @@ def roots_command(
     touching = parse_contact(contact or "")
     if inclination_deg is not None:
         check_number("--inclination-deg", inclination_deg)
-    case = load_case(case_file)
+    case = open_case(case_file)
     inclination = case.survey.inclination[-1] if inclination_deg is None else radians(inclination_deg)
     at = case.eta_pi if eta_pi is None else eta_pi
     if every or (contact is None and not as_json):
@@ -94,7 +95,7 @@ def _weight(case: Case, eta_pi: float) -> float:
 
 def stability_command(
     case_file: CaseFile,
-    output: Annotated[Path, typer.Option(metavar="CHART.png", help="The picture.")],
+    output: Annotated[Path | None, typer.Option(metavar="CHART.png", help="The picture.")] = None,
     eta_pi: EtaPiRange = None,
     lambda2: Annotated[
         str | None,
@@ -103,6 +104,7 @@ def stability_command(
             help="Values of λ₂, the distance from stabilizer 1 to 2 over that from the bit to 1.",
         ),
     ] = None,
+    as_json: AsJson = False,
 ) -> None:
     """Draw the stability chart of a case over ηΠ and λ₂, and print its limits.
 
@@ -110,13 +112,10 @@ def stability_command(
     are shown, among them the set with which the case drills steadily. For each there are two panels, with the bit tilt
     not saturated and saturated.
     """
-    from ..report.figures.drawing import save  # imported here, since `roots` needs no matplotlib
-    from ..report.figures.stability import draw
-
-    console.check_output(output, (".png",))
+    check_asked(output, as_json, reads=files_read(case_file))
     across = parse_range("--eta-pi", eta_pi) if eta_pi else None
     up = parse_range("--lambda2", lambda2) if lambda2 else None
-    case = load_case(case_file)
+    case = open_case(case_file)
     bha, bit, inclination, forces = case.bha, case.bit, case.survey.inclination[-1], case.schedule.rss_force
     here, _ = steady_mode(case, forces[0], inclination)
     contacts = charted(bha, bit, inclination, forces, here)
@@ -126,7 +125,16 @@ def stability_command(
     across, up = usual_across if across is None else across, usual_up if up is None else up
     with console.progress("chart", 1.0) as done:
         chart = stability_chart(case, across, up, contacts=contacts, progress=done)
+    if as_json:
+        print_json(tables.chart_as_plain(chart, limits))
+    if output is None:
+        return
+    from ..report.figures.drawing import save  # imported here, since only a picture needs matplotlib
+    from ..report.figures.stability import draw
+
     save(draw(chart, case), output)
+    if as_json:
+        return
     print(
         f"{output}: {len(across)} × {len(up)} points; {tables.stability_limit(contacts[0], limits[contacts[0]])}; "
         f"the case: ηΠ = {case.eta_pi:.4g} ({tables.weight(case.active_weight_on_bit)})"

@@ -6,12 +6,13 @@ from typing import Annotated
 
 import typer
 
-from ..case.file import load_case
 from ..core.checks import check_number
 from ..report.tables.steering import HEADINGS, lines, piece_lines, summarize
+from ..run.files import files_read
 from . import console
-from .options import CaseFile, Inclination, positive
-from .printing import print_table
+from .cases import open_case
+from .options import AsJson, CaseFile, Inclination, positive
+from .printing import print_json, print_table
 
 
 def steering_command(
@@ -28,19 +29,24 @@ def steering_command(
             help="Largest force, N. Default: the largest of the case's schedule, or 30 kN if that has none.",
         ),
     ] = None,
+    as_json: AsJson = False,
 ) -> None:
     """Print how fast a steady steering force turns the hole, and draw it."""
     if output is not None:
-        console.check_output(output, (".png",))
+        console.check_output(output, (".png",), reads=files_read(case_file))
     if inclination_deg is not None:
         check_number("--inclination-deg", inclination_deg)
-    case = load_case(case_file)
+    case = open_case(case_file)
     summary = summarize(case, None if inclination_deg is None else radians(inclination_deg), force_limit)
-    print_table(lines(summary), (str(case_file), ""))
-    print_table(piece_lines(summary.curve), HEADINGS)
+    if as_json:
+        print_json(summary)
+    else:
+        print_table(lines(summary), (str(case_file), ""))
+        print_table(piece_lines(summary.curve), HEADINGS)
     if output is not None:
         from ..report.figures.drawing import save  # imported here, since only a picture needs matplotlib
         from ..report.figures.steering import draw
 
         save(draw(summary), output)
-        print(f"{output}: build rate and bit tilt over the steering force")
+        if not as_json:
+            print(f"{output}: build rate and bit tilt over the steering force")

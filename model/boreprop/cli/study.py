@@ -10,11 +10,12 @@ from ..analysis.study.cluster import on_cluster
 from ..analysis.study.compute import study
 from ..analysis.study.design import Study, grid, sample
 from ..analysis.study.figures import key_figures
-from ..case.file import load_case
 from ..core.checks import check_number
 from ..errors import InputError
 from ..report.tables.study import lines, outcome
+from ..run.files import files_read
 from . import console
+from .cases import open_case
 from .options import CaseFile, Tolerance
 from .printing import print_table
 from .ranges import parse_axis, parse_distribution, parse_each
@@ -59,7 +60,7 @@ def study_command(
     NAME is an input or parameter of the case, such as stabilizer_clearance[1], in SI units; or eta_pi; or
     bit_tilt_limit_deg.
     """
-    console.check_output(output, (".parquet",))
+    console.check_output(output, (".parquet",), reads=files_read(case_file))
     check_number("--sample", draws, at_least=1)
     check_number("--seed", seed, at_least=0)
     if workers is not None:
@@ -84,7 +85,7 @@ def _cases(case_file: Path, vary: list[str], uncertain: list[str], draws: int, s
     """The cases of the study: a grid, or a sample."""
     if bool(vary) == bool(uncertain):
         raise InputError(f"--vary, --uncertain: exactly one must be given, got {'both' if vary else 'neither'}")
-    case = load_case(case_file)
+    case = open_case(case_file)
     if vary:
         return grid(case, parse_each(parse_axis, vary))
     return sample(case, parse_each(parse_distribution, uncertain), draws, seed)

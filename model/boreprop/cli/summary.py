@@ -5,18 +5,16 @@ from typing import Annotated
 
 import typer
 
-from ..analysis.hole import SurveyedHole
-from ..analysis.plan import deviation_of, planned_hole
+from ..analysis.plan import deviation_of, planned_hole, read_plan
 from ..analysis.stations import list_stations
 from ..analysis.summary import summarize
 from ..case.file import load_case
-from ..case.tables import read_survey
 from ..errors import InputError
 from ..report.tables import stations as tables
 from ..report.tables.summary import lines
 from ..run.results import read_trajectory
-from .options import positive
-from .printing import print_table
+from .options import AsJson, positive
+from .printing import plain, print_json, print_table
 
 
 def summary_command(
@@ -37,6 +35,7 @@ def summary_command(
             help="Say how far the hole is off this plan: columns measured_depth, inclination_deg.",
         ),
     ] = None,
+    as_json: AsJson = False,
 ) -> None:
     """Print a run in a dozen numbers, and whether it ripples."""
     trajectory = read_trajectory(run_file, load_case(case_file) if case_file else None)
@@ -44,20 +43,16 @@ def summary_command(
         raise InputError(f"{run_file}: must come with its case, got none: give it with --case")
     if trajectory.row_count < 2:
         raise InputError(f"{run_file}: must have at least 2 rows, got {trajectory.row_count}")
-    plan = None if plan_file is None else _planned(plan_file, trajectory.case.survey.measured_depth[-1])
+    start = trajectory.case.survey.measured_depth[-1]
+    plan = None if plan_file is None else planned_hole(read_plan(plan_file, start), start)
     summary = summarize(trajectory)
     over = summary.averaging_length
-    off_plan = [] if plan is None else tables.plan_lines(trajectory, deviation_of(trajectory, plan, over))
-    print_table([*lines(summary), *off_plan], (str(run_file), ""))
-    if stations is not None:
-        listed = list_stations(trajectory, stations, plan, averaged_over=over)
+    off = None if plan is None else deviation_of(trajectory, plan, over)
+    listed = None if stations is None else list_stations(trajectory, stations, plan, averaged_over=over)
+    if as_json:
+        off_plan = None if off is None else {"distance": off.distance[-1], "inclination": off.inclination[-1]}
+        print_json(plain(summary) | {"off_plan": off_plan, "stations": listed})
+        return
+    print_table([*lines(summary), *([] if off is None else tables.plan_lines(trajectory, off))], (str(run_file), ""))
+    if listed is not None:
         print_table(tables.lines(listed), tables.headings(listed), caption=tables.caption(listed))
-
-
-def _planned(path: Path, start: float) -> SurveyedHole:
-    """The planned hole in a file; `InputError` if it does not include the measured depth of the start, m."""
-    plan = read_survey(path)
-    try:
-        return planned_hole(plan, start)
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from error

@@ -11,14 +11,15 @@ from ..analysis.stability.contacts import first_that_touches
 from ..analysis.tipping import critical_dogleg_or_why, dogleg_map, usual_map
 from ..arrays import Floats
 from ..case.case import Case
-from ..case.file import load_case
 from ..core.options import RELATIVE_TOLERANCE
 from ..errors import InputError
 from ..report.tables.hysteresis import loop
 from ..report.tables.tipping import SIDES, left_out, lines
+from ..run.files import files_read
 from . import console
-from .options import CaseFile, ClearanceRange, EtaPiRange, Tolerance, positive
-from .printing import print_table
+from .cases import open_case
+from .options import AsJson, CaseFile, ClearanceRange, EtaPiRange, Tolerance, check_asked, positive
+from .printing import print_json, print_table
 from .ranges import parse_range
 
 
@@ -33,6 +34,7 @@ def dogleg_command(
         float, typer.Option(parser=positive, metavar="A", help="Largest turn that is tried, degrees.")
     ] = 10.0,
     tolerance: Tolerance = None,
+    as_json: AsJson = False,
 ) -> None:
     """Print the smallest kink in the existing hole that starts rippling, and map it.
 
@@ -40,18 +42,25 @@ def dogleg_command(
     clearance. Without --eta-pi or --clearance-mm, the values include those of the case.
     """
     if output is not None:
-        console.check_output(output, (".png",))
+        console.check_output(output, (".png",), reads=files_read(case_file))
     across = parse_range("--eta-pi", eta_pi) if eta_pi else None
     up = parse_range("--clearance-mm", clearance_mm) / 1e3 if clearance_mm else None
-    case, limit = load_case(case_file), radians(limit_deg)
+    case, limit = open_case(case_file), radians(limit_deg)
     error = tolerance or RELATIVE_TOLERANCE
     found = {side: critical_dogleg_or_why(case, side=side, limit=limit, relative_tolerance=error) for side in SIDES}
-    print_table(lines(case, found, limit), (str(case_file), ""))
+    if as_json:
+        stopped = {side: {"stopped": why} for side, why in found.items() if isinstance(why, str)}
+        print_json({SIDES[side]: dogleg for side, dogleg in (found | stopped).items()})
+    else:
+        print_table(lines(case, found, limit), (str(case_file), ""))
     if output is not None:
-        _draw_map(case, output, across, up, limit, error)
+        text = _draw_map(case, output, across, up, limit, error)
+        if not as_json:
+            print(text)
 
 
-def _draw_map(case: Case, output: Path, across: Floats | None, up: Floats | None, limit: float, error: float) -> None:
+def _draw_map(case: Case, output: Path, across: Floats | None, up: Floats | None, limit: float, error: float) -> str:
+    """Draw the map; returns what there is to say of it."""
     from ..report.figures.drawing import save  # imported here, since only a picture needs matplotlib
     from ..report.figures.tipping import draw
 
@@ -60,12 +69,12 @@ def _draw_map(case: Case, output: Path, across: Floats | None, up: Floats | None
     with console.progress("doglegs", len(across) * len(up)) as done:
         found = dogleg_map(case, across, up, limit=limit, relative_tolerance=error, progress=done)
     save(draw(case, found, limit), output)
-    print(f"{output}: the smallest kink that starts rippling, over weight and clearance{left_out(found)}")
+    return f"{output}: the smallest kink that starts rippling, over weight and clearance{left_out(found)}"
 
 
 def hysteresis_command(
     case_file: CaseFile,
-    output: Annotated[Path, typer.Option(metavar="LOOP.png", help="The picture.")],
+    output: Annotated[Path | None, typer.Option(metavar="LOOP.png", help="The picture.")] = None,
     eta_pi: EtaPiRange = None,
     clearance_mm: ClearanceRange = None,
     dogleg_deg: Annotated[
@@ -77,18 +86,16 @@ def hysteresis_command(
         ),
     ] = 0.5,
     tolerance: Tolerance = None,
+    as_json: AsJson = False,
 ) -> None:
     """Draw where a ripple dies out on the way up, and returns on the way down.
 
     Either the weight goes up and down (--eta-pi) or the clearance (--clearance-mm).
     """
-    from ..report.figures.drawing import save  # imported here, since `dogleg` can do without matplotlib
-    from ..report.figures.hysteresis import draw
-
-    console.check_output(output, (".png",))
+    check_asked(output, as_json, reads=files_read(case_file))
     if (eta_pi is None) == (clearance_mm is None):
         raise InputError(f"--eta-pi, --clearance-mm: exactly one must be given, got {'both' if eta_pi else 'neither'}")
-    case = load_case(case_file)
+    case = open_case(case_file)
     if eta_pi is not None:
         name, values = "eta_pi", parse_range("--eta-pi", eta_pi).tolist()
     else:
@@ -97,5 +104,12 @@ def hysteresis_command(
     error = tolerance or RELATIVE_TOLERANCE
     with console.progress("values", 2 * len(values)) as done:
         found = hysteresis(case, name, values, radians(dogleg_deg), relative_tolerance=error, progress=done)
-    save(draw(case, found), output)
-    print(f"{output}: {loop(case, found)}")
+    if as_json:
+        print_json(found)
+    if output is not None:
+        from ..report.figures.drawing import save  # imported here, since only a picture needs matplotlib
+        from ..report.figures.hysteresis import draw
+
+        save(draw(case, found), output)
+        if not as_json:
+            print(f"{output}: {loop(case, found)}")

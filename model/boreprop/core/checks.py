@@ -8,12 +8,22 @@ from .problems import Problem
 from .quantities import BY_NAME
 
 
+def checked_float(name: str, value: float, *, index: int = 0) -> float:
+    """`value` as a float; `ParameterError` unless it is finite."""
+    try:
+        number = float(value)
+    except OverflowError:  # an int with hundreds of digits
+        number = inf if value > 0 else -inf
+    if not isfinite(number):
+        raise error_of(Problem("not a number", name, index, number))
+    return number
+
+
 def check_number(
     name: str, value: float, *, index: int = 0, above: float = -inf, at_least: float = -inf, at_most: float = inf
 ) -> None:
     """Raise `ParameterError` unless `value` is finite, > above, >= at_least and <= at_most."""
-    if not isfinite(value):
-        raise error_of(Problem("not a number", name, index, value))
+    checked_float(name, value, index=index)
     if value <= above:
         raise error_of(Problem("not above", name, index, value, limit=above))
     if value < at_least:

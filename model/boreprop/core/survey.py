@@ -16,12 +16,12 @@ class Survey:
     measured_depth
         Stations along the hole, m, increasing, at least one. The last one is the bit at the start of the run.
     inclination
-        Inclination at each station, rad.
+        Inclination at each station, rad, within ±π.
 
     Raises
     ------
     ParameterError
-        If a value is not finite, the depths do not increase, or the counts differ.
+        If a value is not finite, an inclination is beyond ±π, the depths do not increase, or the counts differ.
     """
 
     measured_depth: tuple[float, ...]

@@ -4,6 +4,8 @@
 
 #include "checks.h"
 
+#define HALF_TURN 3.141592653589793 /* rad: no hole is inclined by more, to either side */
+
 /* The existing hole: inclination (rad) at measured depths (m), linear in between, straight above the first station.
    The last station is the bit at the start of the run. */
 typedef struct {
@@ -15,7 +17,8 @@ static inline int check_survey(const Survey *survey, Problem *problem) {
     if (survey->count < 1) return wrong(problem, NO_STATION, Q_MEASURED_DEPTH, 0, NAN, NAN);
     if (!check_increasing(Q_MEASURED_DEPTH, survey->count, survey->measured_depth, problem)) return 0;
     for (Count k = 0; k < survey->count; k++)
-        if (!check_finite(Q_INCLINATION, (int)k + 1, survey->inclination[k], problem)) return 0;
+        if (!check_number(Q_INCLINATION, (int)k + 1, survey->inclination[k], -INFINITY, -HALF_TURN, HALF_TURN, problem))
+            return 0;
     return 1;
 }
 

@@ -10,7 +10,6 @@ Other tools write our columns under longer names. OMSimulator and fmpy put the p
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from csv import reader
 from pathlib import Path
 from typing import Any
 
@@ -19,14 +18,17 @@ from numpy.typing import NDArray
 
 from ..case.case import Case
 from ..case.file import dump_case, load_case, parse_case, read_run
-from ..core.columns import read_columns
+from ..case.sheet import read_sheet
+from ..core.columns import regular
 from ..core.quantities import BY_NAME, INPUTS, OUTPUTS
-from ..errors import InputError
+from ..errors import InputError, shown
 from ..replacing import replacing
+from .files import MARK, case_path, check_case_beside
 from .trajectory import Stopped, Trajectory, plain_name
 
 SUFFIXES = (".csv", ".parquet")
 CASE_KEY = b"boreprop.case"
+BLOCK = 1000  # rows of a CSV file that are written at once: the numbers of more are never Python objects together
 
 
 def write_trajectory(trajectory: Trajectory, path: str | Path) -> None:
@@ -44,7 +46,8 @@ def write_trajectory(trajectory: Trajectory, path: str | Path) -> None:
     Raises
     ------
     InputError
-        If `path` ends in neither .csv nor .parquet, or if it ends in .parquet and pyarrow is not installed.
+        If `path` ends in neither .csv nor .parquet, if it ends in .parquet and pyarrow is not installed, or if a file
+        that is not ours lies where the case goes.
     OSError
         If the file cannot be written.
     """
@@ -88,7 +91,7 @@ def read_trajectory(path: str | Path, case: Case | None = None) -> Trajectory:
 
     Raises
     ------
-    InputError, TableError
+    InputError
         If the file cannot be read, drilled_length is missing or no single component has every output, a line has too
         few or too many values, a value is not a finite number, or the case has another number of stabilizers.
 
@@ -117,27 +120,27 @@ def read_trajectory(path: str | Path, case: Case | None = None) -> Trajectory:
     return trajectory
 
 
-def case_path(path: Path) -> Path:
-    """The file with the case of a CSV file: run.case.toml beside run.csv."""
-    return path.with_suffix(".case.toml")
-
-
 IO_NAMES = {quantity.name for quantity in INPUTS + OUTPUTS}
 OUTPUT_NAMES = {quantity.name for quantity in OUTPUTS}
 # the heading of a column of another tool: component.name [reference type causality]
 HEADING = re.compile(r"(?:(?P<component>.+)\.)?(?P<name>[^.\s]+)(?: \[\d+ [\w ]+\])?")
 
 
+def _taken_apart(heading: str) -> re.Match[str] | None:
+    """The parts of the heading of one of our inputs or outputs; None for any other heading."""
+    match = HEADING.fullmatch(heading)
+    return match if match and plain_name(match["name"]) in IO_NAMES else None
+
+
 def _ours(path: Path, headings: list[str]) -> dict[str, str]:
     """Scalar names of the time and of one borehole's inputs and outputs → their headings in the file."""
     components: dict[str, dict[str, str]] = {}
     for heading in headings:
-        match = HEADING.fullmatch(heading)
-        if match and plain_name(match["name"]) in IO_NAMES:
+        if match := _taken_apart(heading):
             components.setdefault(match["component"] or "", {}).setdefault(match["name"], heading)
     drilling = [names for names in components.values() if "drilled_length" in names]
     if not drilling:
-        raise InputError(f"{path}: must have a column 'drilled_length', got {headings}")
+        raise InputError(f"{path}: must have a column 'drilled_length' (m), got {shown(headings)}")
     outputs = [{name for name in names if plain_name(name) in OUTPUT_NAMES} for names in drilling]
     ours = [names for names, own in zip(drilling, outputs, strict=True) if own >= set().union(*outputs)]
     if len(ours) != 1:
@@ -160,29 +163,29 @@ def _case_text(trajectory: Trajectory, case: Case) -> str:
 
 def _write_csv(trajectory: Trajectory, path: Path) -> None:
     columns = _typed(trajectory)
-    # repr is the shortest text that reads back as the same number
-    rows = zip(*(map(repr, column.tolist()) for column in columns.values()), strict=True)
+    check_case_beside(path)
     with replacing(path) as draft:
         with open(draft, "w", encoding="utf-8", newline="\n") as file:
             file.write(",".join(columns) + "\n")
-            file.writelines(",".join(row) + "\n" for row in rows)
+            for start in range(0, trajectory.row_count, BLOCK):
+                # repr is the shortest text that reads back as the same number
+                cells = (map(repr, column[start : start + BLOCK].tolist()) for column in columns.values())
+                file.writelines(",".join(row) + "\n" for row in zip(*cells, strict=True))
         if trajectory.case is None:
             case_path(path).unlink(missing_ok=True)  # it belonged to the run that is overwritten
         else:
             with replacing(case_path(path)) as case_draft:
-                case_draft.write_text(_case_text(trajectory, trajectory.case), encoding="utf-8")
+                case_draft.write_text(MARK + _case_text(trajectory, trajectory.case), encoding="utf-8")
 
 
 def _read_csv(path: Path, case: Case | None) -> Trajectory:
-    read_columns(path, ())  # raises if the file is not sound, so the next lines need not check
-    with open(path, newline="", encoding="utf-8-sig") as file:
-        headings = [heading.strip() for heading in next(filter(None, reader(file)), [])]
-    ours = _ours(path, headings)
-    columns = {name: np.array(c) for name, c in zip(ours, read_columns(path, tuple(ours.values())), strict=True)}
+    sheet = read_sheet(path, lambda heading: _taken_apart(heading) is not None)
+    ours = _ours(path, sheet.headings)
+    columns = {name: np.array(c) for name, c in zip(ours, sheet.numbers(list(ours.values())), strict=True)}
     own = case_path(path)
     if not own.exists():
         return Trajectory(columns, case)
-    about = read_run(own.read_text("utf-8-sig", errors="replace"))
+    about = read_run(regular(own).read_text("utf-8-sig", errors="replace"))
     return Trajectory(columns, load_case(own) if case is None else case, about.get("stopped"), about.get("engine"))
 
 
@@ -196,7 +199,7 @@ def _write_parquet(trajectory: Trajectory, path: Path) -> None:
 def _read_parquet(path: Path, case: Case | None) -> Trajectory:
     pyarrow, parquet = _pyarrow(path)
     try:
-        with parquet.ParquetFile(path) as file:
+        with parquet.ParquetFile(regular(path)) as file:
             ours = _ours(path, file.schema_arrow.names)
             table, metadata = file.read(columns=list(ours.values())), file.schema_arrow.metadata or {}
     except (OSError, pyarrow.ArrowException) as error:

@@ -10,6 +10,7 @@ from time import monotonic, thread_time
 from typing import Any
 
 from ...case.file import dump_case
+from ...core.columns import regular
 from ...errors import InputError, shown
 from ...replacing import replacing
 from ...run.results import CASE_KEY
@@ -100,7 +101,7 @@ class Table:
         import pyarrow.parquet
 
         try:
-            table = pyarrow.parquet.read_table(path)
+            table = pyarrow.parquet.read_table(regular(path))
         except (OSError, pyarrow.ArrowException) as error:
             raise InputError(f"{path}: must be a readable Parquet file, got: {error}") from error
         metadata = table.schema.metadata or {}

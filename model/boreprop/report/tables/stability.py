@@ -1,8 +1,9 @@
 """The roots of modes in tables and titles."""
 
-from collections.abc import Container
+from collections.abc import Container, Mapping
 from math import degrees, log, pi
 
+from ...analysis.stability.chart import VERDICTS, Chart
 from ...analysis.stability.roots import CriticalEtaPi, Roots, Verdict
 from ...units import UNITS
 
@@ -19,6 +20,24 @@ def as_plain(found: Roots) -> dict[str, object]:
         "mode": {"contact": found.contact, "saturated": found.saturated},
         "roots": [[root.real, root.imag] for root in found.roots],
         "verdict": found.verdict,
+    }
+
+
+def chart_as_plain(chart: Chart, limits: Mapping[tuple[int, ...], CriticalEtaPi | None]) -> dict[str, object]:
+    """A chart as a document for JSON: for each mode its limit, and its verdicts over λ₂, then ηΠ."""
+    return {
+        "eta_pi": chart.eta_pi,
+        "lambda2": chart.lambda2,
+        "inclination": chart.inclination,
+        "limits": [{"contact": contact, "critical": limit} for contact, limit in limits.items()],
+        "panels": [
+            {
+                "contact": panel.contact,
+                "saturated": panel.saturated,
+                "verdicts": [[VERDICTS[code] for code in row] for row in panel.verdicts],
+            }
+            for panel in chart.panels
+        ],
     }
 
 

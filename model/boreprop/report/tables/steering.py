@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from itertools import groupby
 from math import isfinite
 
+from ...analysis.sag import Sag, steady_sag
 from ...analysis.steering import (
     Piece,
     SteadyResponse,
@@ -14,6 +15,7 @@ from ...analysis.steering import (
 )
 from ...case.case import Case
 from ...units import UNITS
+from .sag import outside_the_hole
 
 USUAL_FORCE = 30e3  # N: about the force of the pads of a large tool
 READABLE = 0.01  # ° per `BUILD_LENGTH`: surveys do not resolve less
@@ -47,6 +49,9 @@ class SteeringSummary:
         The response without force, and those with the highest and the lowest build rate.
     holding
         The responses that hold the inclination, the smallest force first.
+    sag
+        Where the axis of the BHA is farthest from that of the hole, and under which force, N: without force if it
+        leaves the hole even then, otherwise at one of the ends of the pieces of the curve.
     """
 
     inclination: float
@@ -58,6 +63,7 @@ class SteeringSummary:
     highest: SteadyResponse
     lowest: SteadyResponse
     holding: tuple[SteadyResponse, ...]
+    sag: tuple[Sag, float]
 
 
 def summarize(case: Case, inclination: float | None = None, force_limit: float | None = None) -> SteeringSummary:
@@ -84,22 +90,28 @@ def summarize(case: Case, inclination: float | None = None, force_limit: float |
     if force_limit is None:
         force_limit = max(map(abs, case.schedule.rss_force)) or USUAL_FORCE
     highest, lowest = largest_build_rate(case, inclination, force_limit)
+    curve = build_rate_curve(case, inclination, force_limit)
+    free = steady_response(case, 0.0, inclination)
+    ends = [response for piece in curve for response in (piece.start, piece.end)]
+    sags = [(steady_sag(case, response, inclination), response.rss_force) for response in (free, *ends)]
     return SteeringSummary(
         inclination=inclination,
         active_weight_on_bit=case.active_weight_on_bit,
         eta_pi=case.eta_pi,
-        curve=build_rate_curve(case, inclination, force_limit),
+        curve=curve,
         without_gravity=build_rate_curve(case, inclination, force_limit, gravity=False),
-        free=steady_response(case, 0.0, inclination),
+        free=free,
         highest=highest,
         lowest=lowest,
         holding=holding_forces(case, inclination, force_limit),
+        sag=sags[0] if sags[0][0].outside else max(sags, key=lambda at: abs(at[0].offset)),
     )
 
 
 def lines(summary: SteeringSummary) -> list[tuple[str, str]]:
     """The lines of a table, each a name and a value with its unit; warnings come last."""
     limit = kilonewtons(summary.curve[-1].end.rss_force)
+    sag, force = summary.sag
     holding = " or ".join(
         kilonewtons(response.rss_force, "+") + " (tilt at its limit)" * bool(response.bit_tilt_saturation)
         for response in summary.holding
@@ -118,6 +130,7 @@ def lines(summary: SteeringSummary) -> list[tuple[str, str]]:
         ("lowest build rate", at_force(summary.lowest)),
         ("left out: gravity changes along the arc", f"{left_out} {UNITS['rad/m'].shown}"),
         *(("warning", text) for text in warnings(summary.curve, summary.eta_pi)),
+        *(("warning", f"{kilonewtons(force, '+')}: {text}") for text in [outside_the_hole(sag)] if text),
     ]
 
 

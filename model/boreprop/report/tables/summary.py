@@ -3,6 +3,7 @@
 from ...analysis.rippling import Rippling, State, Stretch
 from ...analysis.summary import Summary
 from ...units import BUILD_LENGTH, SMALL_LENGTH, UNITS
+from .sag import outside_the_hole
 
 
 def lines(summary: Summary) -> list[tuple[str, str]]:
@@ -27,6 +28,7 @@ def lines(summary: Summary) -> list[tuple[str, str]]:
         ("bit tilt saturated", f"{summary.saturation_share:.0%} of the length"),
         *_wave_lines(summary.rippling),
         ("waves that would not show", summary.hidden_waves),
+        ("warning", outside_the_hole(summary.sag) if summary.sag else ""),
     ]
     return [(what, amount) for what, amount in table if amount]
 
