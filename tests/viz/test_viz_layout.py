@@ -14,11 +14,13 @@ from boreprop.run.trajectory import Trajectory
 from boreprop_viz import live
 from boreprop_viz.record import record
 
+RIPPLE = 50.0  # beyond which a range must be that of the ripple, mm
+
 
 def time_panel(path: Path) -> dict[str, Any]:
-    """The values that the last layout in a recording gives the time panel."""
+    """The values that each layout in a recording gives the time panel."""
     reader = RrdReader(path)
-    [layout] = reader.blueprints()
+    layout = reader.blueprints()[0]
     panel = {}
     for chunk in reader.stream(store=layout).filter(content="/time_panel"):
         batch = chunk.to_record_batch()
@@ -73,3 +75,24 @@ def test_a_run_of_one_row_has_a_layout_too(case: Case, saved: Path) -> None:
     panel = time_panel(saved)
     assert panel["fps"] > 0.0
     assert panel["playback_speed"] > 0.0
+
+
+def test_at_its_end_the_plots_of_a_live_run_have_those_ranges_of_the_stored_one(
+    case: Case, saved: Path, tmp_path: Path
+) -> None:
+    run = simulate(replace(case, length=20.0), sample_interval=0.5)
+    record(run, save=tmp_path / "stored.rrd")
+    with live(run.case or case, save=saved) as view:
+        for time, row in enumerate(np.column_stack(list(run.values())).tolist()):
+            view.send(time=time, **dict(zip(run, row, strict=True)))
+    assert len(plot_ranges(tmp_path / "stored.rrd")) >= 6
+    assert plot_ranges(saved) == plot_ranges(tmp_path / "stored.rrd")
+
+
+def plot_ranges(path: Path) -> set[tuple[float, float]]:
+    """The ranges of all plots in the layouts, but that of the ripple, which is that of a ripple to be expected."""
+    reader = RrdReader(path)
+    chunks = [chunk.to_record_batch() for layout in reader.blueprints() for chunk in reader.stream(store=layout)]
+    columns = [chunk.column("ScalarAxis:range") for chunk in chunks if "ScalarAxis:range" in chunk.schema.names]
+    found = {tuple(span) for column in columns for [span] in column.to_pylist()}
+    return {span for span in found if abs(span[0]) < RIPPLE}

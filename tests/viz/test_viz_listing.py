@@ -48,4 +48,5 @@ def test_a_ripple_does_not_show_in_the_listing_of_any_run(tmp_path: Path, spacin
     text = tables(tmp_path / "two.rrd")
     late = [float(row[1]) for row in cells(text, "a")[1:] if float(row[0]) > 60.0]
     assert max(late) - min(late) < 0.1
+    assert cells(text, "a")[1:] == lines(list_stations(ripples, 30.0))
     assert cells(text, "b")[1:] == lines(list_stations(heavier, 30.0))

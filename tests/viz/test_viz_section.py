@@ -10,8 +10,10 @@ import pytest
 from boreprop.analysis.hole import bit_positions
 from boreprop.case.case import Case
 from boreprop.case.file import load_case
+from boreprop.core.survey import Survey
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
+from boreprop_viz import live
 from boreprop_viz.record import record
 from boreprop_viz.scales import Scales, choose_scales
 from boreprop_viz.scene import Array, section_bounds
@@ -208,6 +210,9 @@ def test_what_is_drilled_beyond_the_end_widens_section_and_strip(scales: Scales,
     deeper = Trajectory(run.columns | {"drilled_length": 3 * run["drilled_length"]}, run.case)
     assert not scales.hold(deeper)
     assert scales.widened(deeper).hold(deeper)
+    (top, bottom), (wider, deep) = scales.strip.bounds.y, scales.widened(deeper).strip.bounds.y
+    begin = scales.strip.start
+    assert (begin - wider) / (deep - wider) == pytest.approx((begin - top) / (bottom - top))  # the room for text
     below = Trajectory(run.columns | {"true_vertical_depth": 3 * run["true_vertical_depth"]}, run.case)
     assert not scales.hold(below)
     assert scales.widened(below).hold(below)
@@ -231,3 +236,45 @@ def test_the_depths_of_a_hole_of_centimetres_are_told_apart(run: Trajectory, tmp
     record(Trajectory({name: values[:1] for name, values in run.columns.items()}, run.case), save=tmp_path / "one.rrd")
     [depths] = static(tmp_path / "one.rrd", "strip/grid/depth", "Points2D:labels")
     assert len(set(depths)) == len(depths) > 1
+
+
+def test_of_a_live_run_beyond_its_end_the_depths_fit_the_wider_view(
+    run: Trajectory, case: Case, tmp_path: Path
+) -> None:
+    with live(replace(case, length=5.0), save=tmp_path / "long.rrd") as view:
+        for time, row in enumerate(np.column_stack(list(run.columns.values())).tolist()):
+            view.send(time=time, **dict(zip(run.columns, row, strict=True)))
+    labels = list(read(tmp_path / "long.rrd", f"{SECTION}/depths", "Points2D:labels").values())
+    places = list(read(tmp_path / "long.rrd", f"{SECTION}/depths", POINTS).values())
+    start = case.survey.measured_depth[-1]
+    shown = [float(label.removeprefix("MD ").removesuffix(" m")) for label in labels[-1]]
+    step = shown[0]
+    assert shown == list(np.arange(step, start + LENGTH + 1e-9, step))
+    down = np.interp(np.array(shown) - start, run["drilled_length"], run["true_vertical_depth"])
+    there = np.array(shown) > start
+    np.testing.assert_allclose(np.array(places[-1])[there, 1], down[there], atol=1e-3)
+
+
+def test_a_plan_is_drawn_for_each_start(case: Case, run: Trajectory, tmp_path: Path) -> None:
+    survey = case.survey
+    deeper = replace(case, survey=replace(survey, measured_depth=tuple(20.0 + md for md in survey.measured_depth)))
+    plan = Survey((0.0, 100.0), (0.0, 1.0))
+    record({"a": run, "b": replace(run, case=deeper)}, plan=plan, save=tmp_path / "plans.rrd")
+    for name, start in (("a", survey.measured_depth[-1]), ("b", 20.0 + survey.measured_depth[-1])):
+        curve = read(tmp_path / "plans.rrd", f"plots/inclination/0_plan/{name}/planned", "Scalars:scalars")
+        expected = np.degrees((start + run["drilled_length"]) / 100.0)
+        assert np.ravel(list(curve.values())) == pytest.approx(expected, abs=1e-3)
+    [paths] = static(tmp_path / "plans.rrd", f"{SECTION}/plan", STRIPS)
+    assert len(paths) == 2
+
+
+def test_the_depths_are_beside_a_flat_hole_where_they_are(case: Case, tmp_path: Path) -> None:
+    flat = replace(case, survey=replace(case.survey, inclination=(np.pi / 2,) * 3), length=300.0)
+    run = simulate(flat, sample_interval=0.5)
+    record(run, save=tmp_path / "flat.rrd")
+    labels = list(read(tmp_path / "flat.rrd", f"{SECTION}/depths", "Points2D:labels").values())[-1]
+    places = list(read(tmp_path / "flat.rrd", f"{SECTION}/depths", POINTS).values())[-1]
+    for label, (x, _) in zip(labels[:2], places[:2], strict=True):
+        length = float(label.removeprefix("MD ").removesuffix(" m")) - case.survey.measured_depth[-1]
+        assert x == pytest.approx(np.interp(length, run["drilled_length"], run["displacement"]), abs=0.1)
+    assert len({y for _, y in places}) == len(places) > 2

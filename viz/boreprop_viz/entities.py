@@ -107,9 +107,13 @@ def curve(plot: str, scalar: str) -> str:
     return f"plots/{plot}/{scalar.replace('[', '_').rstrip(']')}"
 
 
-def planned_curve(plot: str) -> str:
-    """The entity of what is planned in a plot; it comes first, so that all runs are drawn over it."""
-    return f"plots/{plot}/0_plan"
+def planned_curve(track: Track, plot: str) -> str:
+    """The entity of what is planned in a plot; it comes first, so that all runs are drawn over it.
+
+    Over the drilled length, runs that start at different measured depths have different plans.
+    """
+    shared = f"plots/{plot}/0_plan"
+    return shared if track.scales.start is not None else track.entity(f"{shared}/planned")
 
 
 def log_plots(track: Track, shapes: Shapes) -> None:
@@ -117,7 +121,7 @@ def log_plots(track: Track, shapes: Shapes) -> None:
     rows = shapes.rows
     for name, plot in PLOTS.items():
         curves = {track.entity(curve(name, scalar)): scalar for scalar in plot.names(rows.n)}
-        for entity, scalar in (curves | {planned_curve(name): plot.planned}).items():
+        for entity, scalar in (curves | {planned_curve(track, name): plot.planned}).items():
             if scalar in rows.columns:
                 send_curve(track, entity, moments(rows), plot.unit.factor * rows[scalar])
 

@@ -75,7 +75,7 @@ def log_styles(track: Track) -> None:
             log_curve_style(track, curve(name, scalar), curve_label(scalar, plot.unit), colour, 2.0)
         if plot.planned:
             line = curve_style(curve_label(plot.planned, plot.unit), PLAN, 3.0)
-            rec.log(planned_curve(name), line, static=True)
+            rec.log(planned_curve(track, name), line, static=True)
     for side in ("lower", "upper"):
         log_curve_style(track, f"plots/bit_tilt/{side}_limit", f"{side} limit of the bit tilt (°)", GREY, 1.0)
     log_curve_style(track, RIPPLE, "ripple (mm)", track.colour or HOLE, 2.0)
@@ -157,9 +157,9 @@ def log_round_start(rec: rr.RecordingStream, scales: Scales) -> None:
         rec.send_columns(f"plots/{plot}/0_start", [tick], rr.Scalars.columns(scalars=np.full(1, np.nan)))
 
 
-def log_plan(rec: rr.RecordingStream, plan: Array) -> None:
-    """The planned path through points (N, 2)."""
-    rec.log("vertical_section/plan", rr.LineStrips2D.from_fields(strips=[plan]), static=True)
+def log_plan(rec: rr.RecordingStream, paths: Sequence[Array]) -> None:
+    """The planned paths, each through points (N, 2)."""
+    rec.log("vertical_section/plan", rr.LineStrips2D.from_fields(strips=paths), static=True)
 
 
 def log_places(rec: rr.RecordingStream, scales: Scales, cases: Sequence[Case]) -> None:

@@ -105,11 +105,7 @@ def vertical_section(scales: Scales, tracks: Sequence[Track]) -> rrb.Spatial2DVi
         name="Vertical section (m)",
         background=GROUND,
         visual_bounds=_bounds(scales.section),
-        overrides={
-            track.entity(f"vertical_section/{thing}"): _so_far()
-            for track in tracks
-            for thing in ("drilled_hole", "depths")
-        },
+        overrides={track.entity("vertical_section/drilled_hole"): _so_far() for track in tracks},
     )
 
 

@@ -1,7 +1,7 @@
 """Draws runs into a recording, which goes to a file, to a viewer, or to both."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
@@ -21,8 +21,8 @@ from .furniture import log_furniture, log_grid, log_plan
 from .key import entries, log_key
 from .layout import blueprint
 from .listing import Listing
-from .scales import Scales, choose_scales
-from .scene import planned_path
+from .scales import Extremes, Scales, choose_scales
+from .scene import Array, planned_path
 from .section import log_severities
 from .sinks import flush, open_recording
 from .source import LiveRun, Source, live, stored
@@ -106,11 +106,11 @@ class Drawing:
 
     @classmethod
     def of(cls, sources: Iterable[Source], plan: Survey | None = None) -> Self:
-        """Choose the scales; `InputError` if the plan does not reach the start of the first run."""
+        """Choose the scales; `InputError` if the plan does not reach the start of a run."""
         sources = list(sources)
         ahead = [source.likely_positions() for source in sources]
         if plan is not None:
-            ahead.append(planned_path(plan, sources[0].case))
+            ahead += planned_paths(plan, sources)
         scales = choose_scales(
             [source.beginning for source in sources],
             whole=not any(source.live for source in sources),
@@ -159,29 +159,42 @@ class Drawing:
         log_furniture(rec, scales, [source.case for source in sources])
         log_frames(rec, scales)
         if self.plan is not None:
-            log_plan(rec, planned_path(self.plan, sources[0].case))
+            log_plan(rec, planned_paths(self.plan, sources))
         tracks = make_tracks(rec, scales, sources)
         key = entries(tracks, planned=self.plan is not None)
         log_key(rec, key)
         rec.send_blueprint(blueprint(scales, tracks, key))
         card, listing = Card(rec, scales, sources), Listing(rec, self.plan)
-        done = 0
-        for i, (source, track) in enumerate(zip(sources, tracks, strict=True)):
-            stream = RunStream(track)
-            with (
-                listing.listed(source, stream.verdict) as follow,
-                card.ending(i, stream.verdict, source.beginning.stopped),
-            ):
-                for stretch in source.stretches:
-                    if not scales.hold(stretch.rows):
-                        scales = scales.widened(stretch.rows)
-                        log_frames(rec, scales)
-                        rec.send_blueprint(blueprint(scales, tracks, key))
-                    flush(rec)  # the stretch before this one, which would else pile up in memory if the disk is slow
-                    card.say(i, stream.send(stretch))
-                    follow(stretch.rows)
-                    done += stretch.rows.row_count
-                    progress(done)
+        extremes, done = Extremes(), 0
+        try:
+            for i, (source, track) in enumerate(zip(sources, tracks, strict=True)):
+                stream = RunStream(replace(track, scales=scales))
+                with (
+                    listing.listed(source, stream.verdict) as follow,
+                    card.ending(i, stream.verdict, source.beginning.stopped),
+                ):
+                    for stretch in source.stretches:
+                        if not scales.hold(stretch.rows):
+                            scales = scales.widened(stretch.rows)
+                            stream.rescale(scales)
+                            log_frames(rec, scales)
+                            rec.send_blueprint(blueprint(scales, tracks, key))
+                        # the stretch before this one would pile up in memory if the disk is slow
+                        flush(rec)
+                        card.say(i, stream.send(stretch))
+                        follow(stretch.rows)
+                        extremes.take(stretch.rows)
+                        done += stretch.rows.row_count
+                        progress(done)
+        finally:
+            if any(source.live for source in sources):
+                rec.send_blueprint(blueprint(extremes.complete(scales), tracks, key))
+
+
+def planned_paths(plan: Survey, sources: Sequence[Source]) -> list[Array]:
+    """The planned path from each measured depth at which runs start, as the pictures begin where drilling starts."""
+    starts = {source.case.survey.measured_depth[-1]: source.case for source in sources}
+    return [planned_path(plan, case) for case in starts.values()]
 
 
 def application_of_its_own(name: str) -> str:

@@ -95,10 +95,11 @@ class Scales:
         shown = np.concatenate((np.transpose((self.section.x, self.section.y)), bit_positions(rows)))
         section = section_bounds(shown, around=float(np.ptp(shown, axis=0).max()) / 2)
         top, bottom = self.strip.bounds.y
+        begin = top + STRIP_TOP * (bottom - top)
         deepest = max(self.strip.start + float(rows["drilled_length"][-1]), 2 * bottom - top)
-        return replace(
-            self, section=section, strip=replace(self.strip, bounds=Bounds(self.strip.bounds.x, (top, deepest)))
-        )
+        top = (begin - STRIP_TOP * deepest) / (1 - STRIP_TOP)  # there is room for text above the beginning again
+        bounds = Bounds(self.strip.bounds.x, (top, deepest))
+        return replace(self, section=section, strip=replace(self.strip, bounds=bounds))
 
 
 def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) -> Scales:
@@ -204,6 +205,28 @@ def plot_range(plot: Plot, curves: Sequence[Array]) -> tuple[float, float]:
     low, high = float(values.min()), float(values.max())
     margin = max(MARGIN * (high - low), SMALLEST_SPAN * max(abs(low), abs(high))) or 1.0
     return with_ticks(low - margin, high + margin)
+
+
+class Extremes:
+    """The smallest and largest values of all plots so far: those of a live run have no ranges before its end."""
+
+    def __init__(self) -> None:
+        self.found: dict[str, Array] = {}
+
+    def take(self, rows: Trajectory) -> None:
+        """Look at the next rows of a run."""
+        for name, plot in PLOTS.items():
+            values = np.concatenate([self.found.get(name, np.empty(0)), *plot.curves([rows])])
+            finite = values[np.isfinite(values)]
+            if len(finite):
+                self.found[name] = np.array([finite.min(), finite.max()])
+
+    def complete(self, scales: Scales) -> Scales:
+        """The same scales with a range for each plot."""
+        ranges = dict(scales.ranges)
+        for name, found in self.found.items():
+            ranges[name] = ranges[name] or plot_range(PLOTS[name], [found])
+        return replace(scales, ranges=ranges)
 
 
 def with_ticks(low: float, high: float, most_steps: float = MOST_STEPS) -> tuple[float, float]:

@@ -21,6 +21,8 @@ from .track import Indices, Track, arrivals, consecutive, moments, points, send,
 POINTS_IN_HALF = 20  # of the drawn hole over half the length of the BHA, at most: a wave shows no corners
 POINTS_IN_PIECE = 20  # of it: the fewer pieces, the sooner the view is drawn, see benchmarks/viewer_seek.py
 DEPTH_ASIDE = 0.22  # of the width of the view, from the hole to the middle of a measured depth beside it
+HALF_DEPTH = 0.14  # of its width: half the width of one
+DEPTH_ABOVE, TEXT = 0.05, 0.025  # of its height, from a flat hole to the middle of one, and half a line of text
 SWATCH = 0.055  # height of a colour of the key over that of the view, which is a line of text with some room
 
 
@@ -47,6 +49,8 @@ class DrilledHole:
         self.start = start  # drilled length at the first row, m
         self.begun = start  # drilled length at which the current piece begins, m
         self.drilled = start  # drilled length up to which the hole is logged, m
+        self.step = track.scales.grid_step  # between two depths that are shown beside the hole, m
+        self.places = np.empty((0, 5))  # depths at powers of ten; where the hole is there, and half a BHA before, m
 
     def log(self, stretch: Stretch, recent: Trajectory) -> None:
         """Log the hole that some rows drill; `recent` are these and those over half the length of the BHA before."""
@@ -64,7 +68,7 @@ class DrilledHole:
         through = np.append(drawn, 0)[consecutive(first, count)]
         through[np.cumsum(count) - 1] = new  # each row ends where its bit is
         self._send("newly_drilled", hole, through, count, recent)
-        log_depths(self.track, hole, self.drilled, recent)
+        self._log_depths(stretch.hole, hole.length[-1], recent)
         self.begun, self.drilled = hole.length[ends[-1]], hole.length[-1]
 
     def _send(self, thing: str, hole: HoleAxis, through: Indices, count: Indices, recent: Trajectory) -> None:
@@ -74,19 +78,36 @@ class DrilledHole:
         at, path = arrivals(recent, ends), hole.position[through]
         send_paths(self.track, f"vertical_section/{thing}", at, path, count, colours)
 
+    def _log_depths(self, hole: HoleAxis, last: float, recent: Trajectory) -> None:
+        """The round measured depths down to each that is reached, beside the hole; of one run alone.
 
-def log_depths(track: Track, hole: HoleAxis, drilled: float, recent: Trajectory) -> None:
-    """The round measured depths in the hole drilled beyond the length `drilled`, m, beside it; of one run alone."""
-    start, step = track.scales.start, track.scales.grid_step
-    if start is None or track.place:
-        return
-    depth = step * np.arange(np.floor((start + drilled) / step) + 1, np.floor((start + hole.length[-1]) / step) + 1)
-    left, right = track.scales.section.x
-    beside = hole.at(depth - start)
-    side = np.where(beside[:, 0] < 0.6 * left + 0.4 * right, 1.0, -1.0)  # that on which there is room
-    beside[:, 0] += side * DEPTH_ASIDE * (right - left)
-    labels = rr.Points2D.columns(positions=beside, labels=[f"MD {metres(value)} m" for value in depth])
-    send(track, "vertical_section/depths", arrivals(recent, depth - start), labels)
+        They are at the side of a steep hole, and by turns above and below a flat one. When the view has become wider,
+        fewer of them are shown.
+        """
+        start, step = self.track.scales.start, self.track.scales.grid_step
+        if start is None or self.track.place:
+            return
+        fine = 10.0 ** np.floor(np.log10(step))
+        reached = fine * np.arange(np.floor((start + self.drilled) / fine) + 1, np.floor((start + last) / fine) + 1)
+        there, before = hole.at(reached - start), hole.at(reached - start - POINTS_IN_HALF * self.apart)
+        self.places = np.concatenate((self.places, np.column_stack((reached, there, before))))
+        shown = self.places[np.isclose(self.places[:, 0], step * np.rint(self.places[:, 0] / step))]
+        new = shown[:, 0] > start + self.drilled
+        ends, count = shown[new, 0] - start, 1 + np.flatnonzero(new)
+        if step != self.step:
+            self.step, ends, count = step, np.append(ends, last), np.append(count, len(shown))
+        shown = shown[consecutive(np.zeros_like(count), count)]
+        depth, x, y, x_before, y_before = shown.T
+        (left, right), (top, bottom) = self.track.scales.section.x, self.track.scales.section.y
+        side = np.where(x < 0.6 * left + 0.4 * right, 1.0, -1.0)  # that on which there is room
+        turn = np.where(np.rint(depth / step) % 2 == 0, 1.0, -1.0)
+        flat = np.abs(x - x_before) > np.abs(y - y_before)
+        aside = np.where(flat, 0.0, side * DEPTH_ASIDE * (right - left))
+        above = np.where(flat, turn * DEPTH_ABOVE * (bottom - top), 0.0) - TEXT * (bottom - top) * flat
+        room = HALF_DEPTH * (right - left)
+        beside = points(np.clip(x + aside, left + room, right - room), y + above)
+        labels = rr.Points2D.columns(positions=beside, labels=[f"MD {metres(value)} m" for value in depth])
+        send(self.track, "vertical_section/depths", arrivals(recent, ends), labels.partition(count))
 
 
 def severity_colours(track: Track, rows: Trajectory, ends: Array) -> NDArray[np.uint8]:

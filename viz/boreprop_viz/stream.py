@@ -19,6 +19,7 @@ from .entities import (
     log_walls,
 )
 from .furniture import log_styles
+from .scales import Scales
 from .scene import BitFrame
 from .section import DrilledHole, log_bha_in_section, log_existing_hole
 from .source import Stretch, joined
@@ -38,6 +39,12 @@ class RunStream:
         self.rippled = -np.inf  # drilled length up to which its ripple is drawn, m
         self.verdict = Verdict(track.case, track.scales.start or 0.0)
         log_styles(track)
+
+    def rescale(self, scales: Scales) -> None:
+        """Draw what follows for views that have become wider."""
+        self.track = replace(self.track, scales=scales)
+        if self.hole is not None:
+            self.hole.track = self.track
 
     def send(self, stretch: Stretch) -> list[Saying]:
         """Log the next rows of the run; returns what there is to say of its ripple."""

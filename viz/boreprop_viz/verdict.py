@@ -114,7 +114,7 @@ class Verdict:
             wave = replace(wave, state=State.LASTING)
         before, self.checked = self.checked, float(recent["drilled_length"][-1])
         confirmed, self.state = sure or wave.state is self.state, wave.state
-        if confirmed and (wave.state is not self.told.state or _changed(wave, self.told)):
+        if sure or (confirmed and (wave.state is not self.told.state or _changed(wave, self.told))):
             self._tell(replace(find_rippling(recent), state=wave.state), recent)
         self._see_spacing(recent)
         self._see_plan(recent, sure)
