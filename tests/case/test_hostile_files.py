@@ -62,7 +62,7 @@ def test_rows_of_dots_and_long_lists_are_no_long_keys(paper_text: str) -> None:
 def test_what_is_no_file_is_not_read(tmp_path: Path, paper_text: str, name: str) -> None:
     os.mkfifo(tmp_path / "pipe")
     (tmp_path / "case.toml").write_text(f"{paper_text.partition('[hole]')[0]}[hole]\nsurvey = {name}\n")
-    with pytest.raises(InputError, match="must be a (readable CSV file|path with forward slashes)"):
+    with pytest.raises(InputError, match=r"must be a (readable CSV file|path with forward slashes)"):
         load_case(tmp_path / "case.toml")
 
 
