@@ -114,7 +114,7 @@ def test_an_fmu_of_such_a_bha_says_so_when_it_is_built_and_on_its_page(command_h
     (tmp_path / "case.toml").write_text(dump_case(PENDULUM))
     built = command_here("boreprop-fmu", "build", "case.toml", "--output", "x.fmu", "--runtime", "python")
     assert built.returncode == 0
-    assert built.stderr.startswith("warning: case.toml: 37.4 m behind the bit the axis of the BHA is 1")
+    assert "\nwarning: case.toml: 37.4 m behind the bit the axis of the BHA is 1" in f"\n{built.stderr}"
     with ZipFile(tmp_path / "x.fmu") as fmu:
         page = fmu.read("documentation/index.html").decode()
     assert "Of this case, drilled on steadily: 37.4 m behind the bit" in page

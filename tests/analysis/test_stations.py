@@ -20,7 +20,7 @@ from boreprop.run.trajectory import Trajectory
 def drilled_arc(start: float, curvature: float, length: float, zero: float) -> Trajectory:
     """A run along an arc that goes on from an existing hole of the same curvature."""
     s = np.arange(0.0, length + 0.01, 0.05)
-    hole = SurveyedHole.of(Survey((0.0, 1e4), (start, start + 1e4 * curvature)), 0.0)
+    hole = SurveyedHole.of(Survey((0.0, length + 1.0), (start, start + (length + 1.0) * curvature)), 0.0)
     x, z = hole.at(s).T
     survey = Survey((zero - 100.0, zero), (start - 100.0 * curvature, start))
     columns = {"drilled_length": s, "displacement": x, "true_vertical_depth": z}
