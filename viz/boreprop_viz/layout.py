@@ -157,16 +157,17 @@ def plot(entity: str, scales: Scales) -> rrb.TimeSeriesView:
 
 
 def waves(name: str, scales: Scales, tracks: Sequence[Track], *, whole: bool) -> rrb.Vertical:
-    """A tab of ripple, bit tilt and modes, over the whole run or over the last waves up to the cursor."""
-    views = [series("ripple", "Ripple: hole axis less its trend (mm)", scales, scales.ripple, whole=whole)]
+    """A tab of ripple and modes, over the whole run or over the last waves up to the cursor."""
     lanes = LANES_FRAME + LANE * sum(track.lanes for track in tracks)
-    if lanes <= TAB / 4:
-        views.append(series("bit_tilt", "Bit tilt (°)", scales, scales.ranges["bit_tilt"], whole=whole))
     modes = rrb.StateTimelineView(
         origin="modes", name="Contacts: low, high side; saturated tilt: +, −", time_view=_time_axis(scales, whole)
     )
-    plots = max(TAB - lanes, lanes / 2) / len(views)
-    return rrb.Vertical(*views, modes, name=name, row_shares=[*[plots] * len(views), lanes])
+    return rrb.Vertical(
+        series("ripple", "Ripple: hole axis less its trend (mm)", scales, scales.ripple, whole=whole),
+        modes,
+        name=name,
+        row_shares=[max(TAB - lanes, lanes / 2), lanes],
+    )
 
 
 def series(

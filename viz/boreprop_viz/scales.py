@@ -24,10 +24,9 @@ STRIP_TOP, STRIP_BOTTOM, STRIP_LEFT = 0.1, 0.02, 0.38  # of its height, of its w
 TREND = 0.75  # wavelengths, at most half the BHA: width of the trend, see `axis_ripple`, of which a wave leaves < 0.1 %
 FULL_RIPPLE = 0.25  # ψ* times the wavelength: the ripple of a hole whose bit tilts from limit to limit
 MARGIN = 0.1  # of the span of all curves, above and below them, so that they do not run along the edge
-MOST_STEPS, MOST_STEPS_OF_RIPPLE = (
-    6.0,
-    7.5,
-)  # powers of ten in the range of a plot for which it has room, in a small window, to number each
+# powers of ten in the range of a plot for which it has room, in a small window, to number each: of three plots, of the
+# ripple above the lanes of one run, and above those of several
+MOST_STEPS, MOST_STEPS_OF_RIPPLE, MOST_STEPS_OF_RIPPLES = 6.0, 10.0, 7.5
 SMALLEST_SPAN = 0.01  # of its largest value, which a plot shows to either side of a curve without a change
 EDGE = 0.1  # of such a power, between a number and the edge of the plot
 TILTS = 1.15  # tilt limits to either side in the plot of the tilt, so that a tilt at its limit does not lie on the edge
@@ -128,6 +127,7 @@ def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) ->
     ripples = [RIPPLES * wave.axis_amplitude for wave in waves] or [
         FULL_RIPPLE * wavelength * max(case.bit.tilt_limit for case in cases)
     ]
+    most_steps = MOST_STEPS_OF_RIPPLE if len(runs) == 1 else MOST_STEPS_OF_RIPPLES
     length, duration = extent(runs, cases, whole)
     limit = TILTS * max(case.bit.tilt_limit for case in cases)
     start = starts.pop() if len(starts) == 1 else None
@@ -141,7 +141,7 @@ def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) ->
         severities=severities(cases),
         window=min(WAVES * wavelength, max(length, wavelength)),
         rippling=bool(waves),
-        ripple=with_ticks(-1000 * max(ripples), 1000 * max(ripples), MOST_STEPS_OF_RIPPLE),
+        ripple=with_ticks(-1000 * max(ripples), 1000 * max(ripples), most_steps),
         trend=min(TREND * wavelength, *(case.bha.half_length for case in cases)),
         length=length,
         duration=duration,

@@ -20,6 +20,7 @@ from .track import Indices, Track, arrivals, consecutive, moments, points, send,
 
 POINTS_IN_HALF = 20  # of the drawn hole over half the length of the BHA, at most: a wave shows no corners
 POINTS_IN_PIECE = 20  # of it: the fewer pieces, the sooner the view is drawn, see benchmarks/viewer_seek.py
+FLAT = 2.5  # horizontal over vertical length of a hole that has its measured depths above and below, not aside
 DEPTH_ASIDE = 0.22  # of the width of the view, from the hole to the middle of a measured depth beside it
 HALF_DEPTH = 0.14  # of its width: half the width of one
 DEPTH_ABOVE, TEXT = 0.05, 0.025  # of its height, from a flat hole to the middle of one, and half a line of text
@@ -101,7 +102,7 @@ class DrilledHole:
         (left, right), (top, bottom) = self.track.scales.section.x, self.track.scales.section.y
         side = np.where(x < 0.6 * left + 0.4 * right, 1.0, -1.0)  # that on which there is room
         turn = np.where(np.rint(depth / step) % 2 == 0, 1.0, -1.0)
-        flat = np.abs(x - x_before) > np.abs(y - y_before)
+        flat = np.abs(x - x_before) > FLAT * np.abs(y - y_before)
         aside = np.where(flat, 0.0, side * DEPTH_ASIDE * (right - left))
         above = np.where(flat, turn * DEPTH_ABOVE * (bottom - top), 0.0) - TEXT * (bottom - top) * flat
         room = HALF_DEPTH * (right - left)
