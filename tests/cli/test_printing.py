@@ -50,24 +50,51 @@ def run(folder: Path, module: str, arguments: list[str], **environment: str) -> 
     return done.stdout
 
 
+COMMANDS = [
+    *(("boreprop.cli.app", table) for table in TABLES),
+    *((module, ["--help"]) for module in PROGRAMS),
+    *(("boreprop.cli.app", [command, "--help"]) for command in app.COMMANDS),
+    ("boreprop_fmu.cli", ["run", "--help"]),
+]
+ALL = """
+import sys
+from importlib import import_module
+
+for module, arguments in {commands}:
+    sys.argv = ["it", *arguments]
+    try:
+        import_module(module).main()
+    except SystemExit as end:
+        assert not end.code, end.code
+    print("=== next ===", flush=True)
+"""
+
+
+def run_all(folder: Path, encoding: str) -> list[str]:
+    """What each of the commands prints to a pipe of an encoding; one process runs them all, one after the other."""
+    files = {"CASE": str(CASE), "RUN": str(folder / "RUN.csv")}
+    given = [(module, [files.get(argument, argument) for argument in arguments]) for module, arguments in COMMANDS]
+    done = subprocess.run(
+        [sys.executable, "-c", ALL.format(commands=given)],
+        capture_output=True,
+        env=os.environ | {"PYTHONIOENCODING": encoding},
+        timeout=120,
+    )
+    assert (done.returncode, done.stderr) == (0, b"")
+    return done.stdout.decode(encoding).replace("\r\n", "\n").split("=== next ===\n")[:-1]
+
+
 @pytest.mark.parametrize("encoding", ["cp1252", "ascii"])
-@pytest.mark.parametrize(
-    ("module", "arguments"),
-    [("boreprop.cli.app", table) for table in TABLES]
-    + [(module, ["--help"]) for module in PROGRAMS]
-    + [("boreprop.cli.app", [command, "--help"]) for command in app.COMMANDS]
-    + [("boreprop_fmu.cli", ["run", "--help"])],
-    ids=lambda value: " ".join(value) if isinstance(value, list) else value,
-)
-def test_any_encoding_will_do(folder: Path, module: str, arguments: list[str], encoding: str) -> None:
-    utf_8 = run(folder, module, arguments, PYTHONIOENCODING="utf-8").decode()
-    narrow = run(folder, module, arguments, PYTHONIOENCODING=encoding).decode(encoding)
-    if "--help" in arguments:
-        assert narrow.replace("\r\n", "\n") == written(utf_8, encoding)
-    else:  # the lines of the frame are others
-        words = [word for word in narrow.split() if word.strip("+-|")]
-        assert words == [word for word in written(utf_8, encoding).split() if word.strip("+-|?")]
-        assert len({len(line) for line in narrow.splitlines() if line.startswith("|")}) <= 2
+def test_any_encoding_will_do(folder: Path, encoding: str) -> None:
+    wide, narrow = run_all(folder, "utf-8"), run_all(folder, encoding)
+    assert len(wide) == len(narrow) == len(COMMANDS)
+    for (_, arguments), utf_8, text in zip(COMMANDS, wide, narrow, strict=True):
+        if "--help" in arguments:
+            assert text == written(utf_8, encoding)
+        else:  # the lines of the frame are others
+            words = [word for word in text.split() if word.strip("+-|")]
+            assert words == [word for word in written(utf_8, encoding).split() if word.strip("+-|?")]
+            assert len({len(line) for line in text.splitlines() if line.startswith("|")}) <= 2
 
 
 def test_signs_and_words() -> None:

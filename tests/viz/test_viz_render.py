@@ -69,8 +69,7 @@ def test_every_view_draws_something_and_complains_of_nothing(shown: Viewer) -> N
     assert not shown.warnings()
 
 
-@pytest.mark.parametrize("size", [(1280, 720), (1600, 900)])
-@pytest.mark.parametrize("light", [False, True])
+@pytest.mark.parametrize(("size", "light"), [((1280, 720), True), ((1600, 900), False)])
 def test_by_day_and_by_night_a_window_of_either_size_shows_all_views(
     recorded: Path, size: tuple[int, int], light: bool
 ) -> None:
