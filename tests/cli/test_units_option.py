@@ -1,6 +1,7 @@
 """The option --units: the same numbers in the units of the field."""
 
 import re
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -120,10 +121,10 @@ def test_the_picture_of_a_comparison_is_in_feet(run: Path) -> None:
     np.testing.assert_allclose(FEET * np.asarray(panel.lines[-1].get_xdata()), found.measured_depth)
 
 
-def test_a_dogleg_is_over_feet(command_here: Command) -> None:
-    paper = str(EXAMPLES / "paper_case.toml")
-    si = command_here("boreprop", "dogleg", paper, "--tolerance", "1e-5").stdout
-    field = command_here("boreprop", "dogleg", paper, "--tolerance", "1e-5", "--units", "field").stdout
+def test_a_dogleg_is_over_feet(command_here: Command, paper_case: Path, tmp_path: Path) -> None:
+    shutil.copy(paper_case, tmp_path)
+    si = command_here("boreprop", "dogleg", "paper_case.toml", "--tolerance", "1e-5").stdout
+    field = command_here("boreprop", "dogleg", "paper_case.toml", "--tolerance", "1e-5", "--units", "field").stdout
     found = re.findall(r"([\d.]+)° over ([\d.]+) m +\(([-+\d.]+) °/30 m\)", " ".join(si.replace("│", " ").split()))
     there = re.findall(
         r"([\d.]+)° over ([\d.]+) ft +\(([-+\d.]+) °/100 ft\)", " ".join(field.replace("│", " ").split())

@@ -26,9 +26,17 @@ def tree(tmp_path: Path) -> Path:
     return tmp_path
 
 
+def make(folder: Path, *arguments: str) -> str:
+    """What make prints, as if nobody had called this suite by make: it would hand on its options and its level."""
+    alone = {name: value for name, value in os.environ.items() if not name.startswith(("MAKE", "MFLAGS"))}
+    return subprocess.run(
+        ["make", *arguments], cwd=folder, env=alone, capture_output=True, text=True, check=True
+    ).stdout
+
+
 def planned(tree: Path) -> str:
     """The commands that `make test` would run."""
-    return subprocess.run(["make", "-n", "test"], cwd=tree, capture_output=True, text=True, check=True).stdout
+    return make(tree, "-n", "test")
 
 
 def test_what_is_there_is_not_made_again(tree: Path) -> None:
@@ -51,7 +59,7 @@ def test_a_new_environment_is_compiled_for(tree: Path) -> None:
 
 
 def test_every_source_is_one_that_make_watches() -> None:
-    watched = subprocess.run(["make", "-pn", "clean"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    watched = make(ROOT, "-pn", "clean")
     rules = next(line for line in watched.splitlines() if line.startswith(".venv/%.compiled:"))
     sources = {path for folder in ("model", "fmu_build") for path in (ROOT / folder).rglob("*.[ch]")}
     assert sources == {ROOT / name for name in rules.split()[2:]}
