@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from itertools import repeat
 
-from ..core.checks import check_increasing, check_part, checked_float
+from ..core.checks import check_increasing, check_number, check_part, checked_float
 from ..core.errors import ParameterError
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly, eta_pi
@@ -68,6 +68,8 @@ class Case:
         The existing hole. Its last station is the bit at the start of the run.
     schedule
         The steering force over the drilled length; without it there is none.
+    weight_on_bit
+        All of the weight on bit, N, which presses a BHA with `axial_load`; 0: it is the active weight on bit.
 
     Raises
     ------
@@ -89,9 +91,12 @@ class Case:
     length: float
     survey: Survey
     schedule: Schedule = Schedule()
+    weight_on_bit: float = 0.0
 
     def __post_init__(self) -> None:
         check_part("", self)
+        if self.weight_on_bit:
+            check_number("weight_on_bit", self.weight_on_bit, at_least=self.active_weight_on_bit)
 
     @property
     def length_scale(self) -> float:

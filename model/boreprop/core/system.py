@@ -6,6 +6,7 @@ from itertools import pairwise
 from .checks import check_increasing, check_number, check_part
 from .errors import ParameterError, error_of
 from .problems import CONSTRAINTS, DERIVED, Problem
+from .quantities import MAX_SECTIONS, Structure
 from .quantities import MAX_STABILIZERS as MAX_STABILIZERS
 
 LEAST_SPAN = 0.01  # m between stabilizers, at least: none stand closer, and the forces there would be rounding errors
@@ -26,9 +27,18 @@ class BottomHoleAssembly:
     rss_position
         Distance of the steering pads from the bit, m, between the bit and the first stabilizer.
     distributed_weight
-        Buoyant weight per length, N/m.
+        Buoyant weight per length, N/m; of a beam in sections that of the section at the bit, whatever is given.
     flexural_stiffness
-        EI, N·m².
+        EI, N·m²; likewise.
+    section_lengths, section_distributed_weights, section_flexural_stiffnesses
+        A beam in up to 24 sections, from the bit up: length, m, weight per length, N/m, and EI, N·m², of each. Together
+        they are at least as long as the BHA. Without any the beam is uniform.
+    end_deflection
+        Of a beam in sections: how far from the axis of the hole the last stabilizer holds it, m, positive to the high
+        side. A string that lies on the low side of the hole there is off by the clearance of its body.
+    axial_load
+        Whether the weight on bit, and the weight along the hole, press and pull the beam, which makes it softer and
+        stiffer. The native engine only has this, and beams in sections.
 
     Raises
     ------
@@ -41,8 +51,15 @@ class BottomHoleAssembly:
     rss_position: float
     distributed_weight: float
     flexural_stiffness: float
+    section_lengths: tuple[float, ...] = ()
+    section_distributed_weights: tuple[float, ...] = ()
+    section_flexural_stiffnesses: tuple[float, ...] = ()
+    end_deflection: float = 0.0
+    axial_load: bool = False
 
     def __post_init__(self) -> None:
+        if self.section_lengths:
+            self._take_sections()
         n = len(self.stabilizer_positions)
         if not 1 <= n <= MAX_STABILIZERS:
             constraint = CONSTRAINTS["wrong count"][0].format(limit=MAX_STABILIZERS)
@@ -59,6 +76,28 @@ class BottomHoleAssembly:
             if after - before < LEAST_SPAN * (1 - 1e-9):  # 4.34 and 4.35 are that far apart, but for rounding
                 raise error_of(Problem("too close", "stabilizer_position", 0, after, before, LEAST_SPAN))
         check_number("rss_position", self.rss_position, at_most=self.length_scale)
+
+    def _take_sections(self) -> None:
+        """Check the sections together, and take weight and stiffness of the one at the bit."""
+        count, reach = len(self.section_lengths), self.stabilizer_positions[-1:]
+        columns = {
+            "section_distributed_weight": self.section_distributed_weights,
+            "section_flexural_stiffness": self.section_flexural_stiffnesses,
+        }
+        for name, values in columns.items():
+            if len(values) != count:
+                raise ParameterError(name, f"must hold one value per section, here {count}", values)
+        if count > MAX_SECTIONS:
+            raise ParameterError("section_length", f"must hold at most {MAX_SECTIONS} values", self.section_lengths)
+        if reach and sum(self.section_lengths) < reach[0] * (1 - 1e-9):
+            raise error_of(Problem("out of reach", "section_length", value=sum(self.section_lengths), limit=reach[0]))
+        object.__setattr__(self, "distributed_weight", self.section_distributed_weights[0])
+        object.__setattr__(self, "flexural_stiffness", self.section_flexural_stiffnesses[0])
+
+    @property
+    def structure(self) -> Structure:
+        """Numbers of stabilizers and sections, and whether the axial load counts."""
+        return Structure(len(self.stabilizer_positions), len(self.section_lengths), int(self.axial_load))
 
     @property
     def length_scale(self) -> float:
@@ -130,8 +169,12 @@ def scale(bha: BottomHoleAssembly, bit: BitRock) -> Scaled:
     Raises
     ------
     ParameterError
-        If one of them is not finite, though the parameters are in their ranges.
+        If one of them is not finite, though the parameters are in their ranges, or the beam is not the paper's.
     """
+    if not bha.structure.is_of_the_paper:
+        what = "must be off" if bha.axial_load else "must not be given"
+        name = "axial_load" if bha.axial_load else "section_length"
+        raise ParameterError(name, f"{what} for what is computed in Python: it has the uniform beam of the paper", True)
     l1 = bha.length_scale
     check_number(DERIVED["force_scale"], bha.force_scale, above=0.0)
     scaled = Scaled(

@@ -8,7 +8,7 @@
 #ifndef BOREPROP_BEAM_H
 #define BOREPROP_BEAM_H
 
-#include "system.h"
+#include "assembly.h"
 
 /* Deflection at `s` under a unit force at `p`, eq. (20); symmetric in s and p. */
 static inline double flexibility(double s, double p, double lambda_) {
@@ -41,24 +41,26 @@ static inline double force_reaction(double p, double lambda_) {
     return -(2 * cube - 3 * lambda_ * p * p + pow(p, 3)) / (2 * cube);
 }
 
-/* M, F_0 and δ of one BHA as linear functions of e, F, F_RSS and sin⟨Θ⟩_1.
+/* M, F_0 and δ of one BHA as linear functions of e, F, F_RSS and the sine g of an inclination.
 
    With n stabilizers and i, j = 1 … n−1:
 
-       δ_i = e_i + delta_e[i] e_n + Σ_j K_inv[i][j] F_j + delta_rss[i] F_RSS + delta_g[i] sin⟨Θ⟩_1      (5), (21)
-       M   =       M_e e_n        + Σ_j M_F[j] F_j      + M_rss F_RSS        + M_g sin⟨Θ⟩_1             (17), (23)
-       F_0 =       F0_e e_n       + Σ_j F0_F[j] F_j     + F0_rss F_RSS       + F0_g sin⟨Θ⟩_1            (14), (24)
+       δ_i = e_i + delta_e[i] (e_n − δ_n) + Σ_j K_inv[i][j] F_j + delta_rss[i] F_RSS + delta_g[i] g      (5), (21)
+       M   =       M_e (e_n − δ_n)        + Σ_j M_F[j] F_j      + M_rss F_RSS        + M_g g             (17), (23)
+       F_0 =       F0_e (e_n − δ_n)       + Σ_j F0_F[j] F_j     + F0_rss F_RSS       + F0_g g            (14), (24)
 
-   where M = −M_0 is the moment that turns the bit, εηΠ θ' = M. */
+   where M = −M_0 is the moment that turns the bit, εηΠ θ' = M. The paper has δ_n = 0 and g = sin⟨Θ⟩_1; where the axial
+   load counts, the weight across the axis of the bit goes with g = sin θ. */
 typedef struct {
     int n;
     double K_inv[MAX_STABILIZERS][MAX_STABILIZERS];
     double delta_e[MAX_STABILIZERS], delta_rss[MAX_STABILIZERS], delta_g[MAX_STABILIZERS];
     double M_e, M_F[MAX_STABILIZERS], M_rss, M_g;
     double F0_e, F0_F[MAX_STABILIZERS], F0_rss, F0_g;
+    double end; /* δ_n */
 } Beam;
 
-static inline Beam make_beam(const Scaled *scaled) {
+static inline Beam uniform_beam(const Scaled *scaled) {
     const double *s = scaled->s, Delta = scaled->Delta, w = scaled->w;
     double lambda_ = s[scaled->n - 1];
     Beam beam = {0};
@@ -78,6 +80,69 @@ static inline Beam make_beam(const Scaled *scaled) {
     beam.F0_rss = force_reaction(Delta, lambda_);
     beam.F0_g = 5.0 / 8 * w * lambda_;
     return beam;
+}
+
+/* A beam in sections as it answers unit loads: its deflection at each node under a unit moment at the bit, under a unit
+   shear there and under the weight, and what brings its end back to the hole. */
+typedef struct {
+    double bent[MAX_NODES], sheared[MAX_NODES], weighed[MAX_NODES];
+    Answer to_force[MAX_NODES], to_offset, to_weight; /* to a force at each node, to e_n − δ_n, to the weight */
+} Influence;
+
+static inline double deflection_at(const Influence *of, Answer answer, int k) {
+    return answer.m * of->bent[k] + answer.q * of->sheared[k];
+}
+
+/* Deflection at one node under a unit force at another. Below a force the line is the answer to it alone. */
+static inline double flexibility_at(const Influence *of, int j, int k) {
+    return j < k ? deflection_at(of, of->to_force[k], j) : deflection_at(of, of->to_force[j], k);
+}
+
+static inline void make_influence(Influence *of, const Nodes *nodes) {
+    double bent[LINE] = {0, 0, 1, 0}, sheared[LINE] = {0, 0, 0, 1}, weighed[LINE] = {0};
+    double reach[2][LINE] = {{1, 0, 0, 0}, {0, 0, 1, 0}}; /* from a line to deflection and moment at the end */
+    int last = nodes->count - 1;
+    for (int k = 0; k <= last; k++) {
+        of->bent[k] = bent[DEFLECTION], of->sheared[k] = sheared[DEFLECTION], of->weighed[k] = weighed[DEFLECTION];
+        if (k == last) break;
+        pass_stretch(&nodes->above[k], 0.0, bent);
+        pass_stretch(&nodes->above[k], 0.0, sheared);
+        pass_stretch(&nodes->above[k], 1.0, weighed);
+    }
+    for (int k = last; k >= 0; k--) {
+        if (k < last) look_down(&nodes->above[k], reach);
+        of->to_force[k] = answer_to(bent, sheared, reach[0][SHEAR], reach[1][SHEAR]);
+    }
+    of->to_offset = answer_to(bent, sheared, 1.0, 0.0);
+    of->to_weight = answer_to(bent, sheared, weighed[DEFLECTION], weighed[MOMENT]);
+}
+
+/* The beam in sections, under an axial load. */
+static inline Beam stepped_beam(const Scaled *scaled, Axial axial) {
+    int n = scaled->n;
+    Nodes nodes;
+    Influence of;
+    Beam beam = {0};
+    make_nodes(&nodes, scaled, axial);
+    make_influence(&of, &nodes);
+    int pads = node_at(&nodes, scaled->Delta);
+    beam.n = n, beam.end = scaled->end_deflection;
+    for (int i = 0; i < n - 1; i++) {
+        int k = node_at(&nodes, scaled->s[i]);
+        for (int j = 0; j < n - 1; j++) beam.K_inv[i][j] = flexibility_at(&of, k, node_at(&nodes, scaled->s[j]));
+        beam.delta_e[i] = deflection_at(&of, of.to_offset, k);
+        beam.delta_rss[i] = flexibility_at(&of, k, pads);
+        beam.delta_g[i] = deflection_at(&of, of.to_weight, k) + of.weighed[k];
+        beam.M_F[i] = -of.to_force[k].m, beam.F0_F[i] = of.to_force[k].q;
+    }
+    beam.M_e = -of.to_offset.m, beam.F0_e = of.to_offset.q;
+    beam.M_rss = -of.to_force[pads].m, beam.F0_rss = of.to_force[pads].q;
+    beam.M_g = -of.to_weight.m, beam.F0_g = of.to_weight.q;
+    return beam;
+}
+
+static inline Beam make_beam(const Scaled *scaled, Axial axial) {
+    return scaled->stepped ? stepped_beam(scaled, axial) : uniform_beam(scaled);
 }
 
 #endif

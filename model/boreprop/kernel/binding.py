@@ -88,9 +88,9 @@ def load(path: Path) -> ctypes.CDLL:
     inputs, options, problem = (ctypes.POINTER(struct) for struct in (Inputs, OptionsInC, ProblemInC))
     for name, result, arguments in (
         ("sentence", None, (problem, ctypes.c_char_p)),
-        ("start", run, (ctypes.c_int, reals, options, whole, reals, reals, inputs, problem)),
+        ("start", run, (_array(np.intc), reals, options, whole, reals, reals, inputs, problem)),
         ("end", None, (run,)),
-        ("follow", whole, (run, whole, reals, reals, ctypes.c_double, _array(np.intc), reals, problem)),
+        ("follow", whole, (run, whole, reals, reals, ctypes.c_double, ctypes.c_double, _array(np.intc), reals, problem)),
         ("outputs", ctypes.c_int, (run, reals)),
         ("length", ctypes.c_double, (run,)),
         ("step", ctypes.c_int, (run, problem)),
@@ -139,21 +139,23 @@ class NativeDrilling:
         *,
         active_weight_on_bit: float,
         rss_force: float = 0.0,
+        weight_on_bit: float = 0.0,
         options: Options = Options(),  # noqa: B008 - frozen
     ) -> None:
-        n = len(bha.stabilizer_positions)
+        structure = bha.structure
         given = values_of("bha", bha) | values_of("bit", bit) | {"relative_tolerance": options.relative_tolerance}
-        self._names = scalar_names(OUTPUTS, n)
+        self._weight_on_bit = weight_on_bit
+        self._names = scalar_names(OUTPUTS, structure)
         self._problem = ProblemInC()
         self._library = library()
         self._run = self._library.boreprop_start(
-            n,
-            numbers([given[name] for name in scalar_names(SYSTEM, n)]),
+            numbers(structure, np.intc),
+            numbers([given[name] for name in scalar_names(SYSTEM, structure)]),
             OptionsInC(*astuple(options)),
             len(survey.measured_depth),
             numbers(survey.measured_depth),
             numbers(survey.inclination),
-            Inputs(rss_force=rss_force, active_weight_on_bit=active_weight_on_bit),
+            Inputs(rss_force=rss_force, active_weight_on_bit=active_weight_on_bit, weight_on_bit=weight_on_bit),
             self._problem,
         )
         self._check(self._run)
@@ -199,7 +201,15 @@ class NativeDrilling:
         if table.shape != (len(table), len(self._names)):
             raise ValueError(f"table: must have {len(self._names)} columns, got shape {table.shape}")
         done = self._library.boreprop_follow(
-            self._run, legs, numbers(lengths), numbers(forces), active_weight_on_bit, on_rows, table, self._problem
+            self._run,
+            legs,
+            numbers(lengths),
+            numbers(forces),
+            active_weight_on_bit,
+            self._weight_on_bit,
+            on_rows,
+            table,
+            self._problem,
         )
         self._check(done == legs)
 

@@ -20,11 +20,11 @@ EXPORT const char *boreprop_quantities_digest(void);
 /* The sentence that says what a problem is. */
 EXPORT void boreprop_sentence(const Problem *problem, char line[MESSAGE]);
 
-/* A run of n stabilizers at the end of its survey, with parameters in the order of the table of quantities; NULL, and
+/* A run of this structure (numbers of stabilizers and of sections, whether the axial load counts) at the end of its survey, with parameters in the order of the table of quantities; NULL, and
    the problem, if a value is out of range. The caller ends it with `boreprop_end`. The tolerance is that of the
    parameters; the other options are not checked. */
 EXPORT Run *boreprop_start(
-    int n, const double *parameters, const Options *options, Count count, const double *measured_depth,
+    const int structure[3], const double *parameters, const Options *options, Count count, const double *measured_depth,
     const double *inclination, const Inputs *inputs, Problem *problem
 );
 EXPORT void boreprop_end(Run *run);
@@ -32,8 +32,8 @@ EXPORT void boreprop_end(Run *run);
 /* Drill leg after leg, to lengths[k] under forces[k]. Unless rows[k] is negative, the outputs there become that row of
    the table. Returns how many legs are drilled; if not all are, the problem is that of the next one. */
 EXPORT Count boreprop_follow(
-    Run *run, Count count, const double *lengths, const double *forces, double active_weight_on_bit, const int *rows,
-    double *table, Problem *problem
+    Run *run, Count count, const double *lengths, const double *forces, double active_weight_on_bit,
+    double weight_on_bit, const int *rows, double *table, Problem *problem
 );
 
 /* Drill on to the end of the integrator's next step, under the inputs as they are; 0, and the problem, if that fails. */

@@ -10,6 +10,7 @@ enum { LEAST_CAPACITY = 1024, MOST_PIECES = 1 << 19 }; /* of hole */
 typedef struct {
     System system;
     double drilled_length; /* m */
+    double buckling_weight; /* over F*: under it the BHA buckles; infinite if the axial load does not count */
     Integrator integrator;
 } Drilling;
 
@@ -19,13 +20,35 @@ static inline int check_inputs(Inputs inputs, Problem *problem) {
            check_quantity(&INPUT_TABLE[IN_ACTIVE_WEIGHT_ON_BIT], 0, inputs.active_weight_on_bit, problem);
 }
 
+/* Take the inclination, of which this is the cosine, as that at which the weight acts along the beam. */
+static inline void take_cosine(Drilling *d, double cosine) {
+    Integrator *p = &d->integrator;
+    p->now.cosine = p->scaled.axial ? cosine : 0.0;
+    d->buckling_weight = p->scaled.axial ? buckling_weight(&p->scaled, cosine) : INFINITY;
+}
+
+/* All of the weight on bit, N: the active weight if none is given. */
+static inline double whole_weight(Inputs inputs) {
+    return inputs.weight_on_bit == 0 ? inputs.active_weight_on_bit : inputs.weight_on_bit;
+}
+
+/* Whether a BHA under axial load bears the weight on bit. */
+static inline int check_weight(const Drilling *d, Inputs inputs, Problem *problem) {
+    double weight = whole_weight(inputs), least = inputs.active_weight_on_bit;
+    double most = d->buckling_weight * force_scale(&d->system);
+    if (!check_number(Q_WEIGHT_ON_BIT, 0, weight, -INFINITY, least, INFINITY, problem)) return 0;
+    return weight < most || wrong(problem, BUCKLES, Q_WEIGHT_ON_BIT, 0, weight, most);
+}
+
 /* The dimensionless inputs; 0, and the problem, if these numbers, or the inputs, are out of range. */
-static inline int scale_inputs(const System *system, Inputs inputs, ScaledInputs *scaled, Problem *problem) {
+static inline int scale_inputs(const Drilling *d, Inputs inputs, ScaledInputs *scaled, Problem *problem) {
+    const System *system = &d->system;
     double F_star = force_scale(system);
     scaled->F_rss = inputs.rss_force / F_star;
     scaled->F_rss_slope = inputs.rss_force_slope * length_scale(system) / F_star;
     scaled->eta_pi = eta_pi(system, inputs.active_weight_on_bit);
-    return check_inputs(inputs, problem) && check_finite(Q_SCALED_FORCE, 0, scaled->F_rss, problem) &&
+    scaled->W = system->structure.axial ? whole_weight(inputs) / F_star : 0.0;
+    return check_inputs(inputs, problem) && (!system->structure.axial || check_weight(d, inputs, problem)) && check_finite(Q_SCALED_FORCE, 0, scaled->F_rss, problem) &&
            check_finite(Q_SCALED_SLOPE, 0, scaled->F_rss_slope, problem) &&
            check_positive(Q_ETA_PI, scaled->eta_pi, problem) &&
            check_finite(Q_INVERSE_ETA_PI, 0, 1 / scaled->eta_pi, problem);
@@ -33,7 +56,7 @@ static inline int scale_inputs(const System *system, Inputs inputs, ScaledInputs
 
 /* The capacity, in pieces of hole, that a run needs if its inputs do not change often. */
 static inline Count drilling_capacity(const System *system, const Survey *survey) {
-    double l1 = length_scale(system), reach = LOOK_BACK + system->stabilizer_position[system->n - 1] / l1;
+    double l1 = length_scale(system), reach = LOOK_BACK + system->stabilizer_position[system->structure.n - 1] / l1;
     Count count, first = first_station(survey, l1, reach, &count), capacity = LEAST_CAPACITY;
     while (capacity < 4 * (count - first)) capacity *= 2;
     return capacity;
@@ -66,6 +89,7 @@ static inline Status drilling_prepare(
     d->drilled_length = 0.0;
     options.relative_tolerance = system->relative_tolerance;
     prepare(&d->integrator, &scaled, length_scale(system), options);
+    take_cosine(d, 0.0);
     drilling_move(d, memory, capacity);
     return DONE;
 }
@@ -74,7 +98,8 @@ static inline Status drilling_prepare(
 static inline Status drilling_start(Drilling *d, const Survey *survey, Inputs inputs, Problem *problem) {
     ScaledInputs scaled_inputs;
     if (!check_survey(survey, problem)) return FAILED;
-    if (!scale_inputs(&d->system, inputs, &scaled_inputs, problem)) return FAILED;
+    take_cosine(d, cos(survey->inclination[survey->count - 1]));
+    if (!scale_inputs(d, inputs, &scaled_inputs, problem)) return FAILED;
     if (d->integrator.now.hole.capacity < drilling_capacity(&d->system, survey)) return FULL;
     return begin(&d->integrator, survey, scaled_inputs, problem);
 }
@@ -83,7 +108,7 @@ static inline Status drilling_start(Drilling *d, const Survey *survey, Inputs in
    After FULL: `drilling_move`, and the same call again, which goes on; or `drilling_cancel`, and nothing has moved. */
 static inline Status drilling_advance(Drilling *d, double drilled_length, Inputs inputs, Problem *problem) {
     ScaledInputs scaled_inputs;
-    if (!scale_inputs(&d->system, inputs, &scaled_inputs, problem)) return FAILED;
+    if (!scale_inputs(d, inputs, &scaled_inputs, problem)) return FAILED;
     if (!check_number(Q_DRILLED_LENGTH, 0, drilled_length, -INFINITY, d->drilled_length, INFINITY, problem))
         return FAILED;
     double xi = drilled_length / length_scale(&d->system);
@@ -157,9 +182,9 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
 }
 
 /* How many values `drilling_outputs` writes. */
-static inline int output_count(int n) {
+static inline int output_count(Structure structure) {
     int count = 0;
-    for (int k = 0; k < OUTPUT_COUNT; k++) count += value_count(OUTPUT_SIZE[k], n);
+    for (int k = 0; k < OUTPUT_COUNT; k++) count += value_count(OUTPUT_SIZE[k], structure);
     return count;
 }
 
@@ -168,15 +193,15 @@ static inline int drilling_outputs(Drilling *d, double out[MOST_OUTPUTS]) {
     Present at = present(d);
     double *next = out;
     for (int k = 0; k < OUTPUT_COUNT; k++)
-        for (int i = 0; i < value_count(OUTPUT_SIZE[k], d->system.n); i++) *next++ = output(d, &at, (Output)k, i);
+        for (int i = 0; i < value_count(OUTPUT_SIZE[k], d->system.structure); i++) *next++ = output(d, &at, (Output)k, i);
     return (int)(next - out);
 }
 
 /* Whether the outputs are finite. */
-static inline int check_outputs(int n, const double *outputs, Problem *problem) {
+static inline int check_outputs(Structure structure, const double *outputs, Problem *problem) {
     for (int k = 0; k < OUTPUT_COUNT; k++)
-        for (int i = 0; i < value_count(OUTPUT_SIZE[k], n); i++)
-            if (!check_finite(OUTPUT_NAME[k], OUTPUT_SIZE[k] == ONE ? 0 : i + 1, *outputs++, problem)) return 0;
+        for (int i = 0; i < value_count(OUTPUT_SIZE[k], structure); i++)
+            if (!check_finite(OUTPUT_NAME[k], is_list(OUTPUT_SIZE[k]) ? i + 1 : 0, *outputs++, problem)) return 0;
     return 1;
 }
 

@@ -30,6 +30,7 @@ typedef struct {
     Regime regime;
     double path[2];            /* ∫ sin Θ dξ, ∫ cos Θ dξ up to the start of the present step */
     double origin[DIRECTIONS]; /* of the lateral coordinates */
+    double cosine; /* of the inclination at which the weight acts along the beam; 0 if the axial load does not count */
     Step step;
     Hole hole;
     Kinks kinks;
@@ -69,6 +70,14 @@ static inline const Law *present_law(Integrator *p) {
     if (!p->law_known) p->law = make_law(&p->scaled, &p->modes, p->now.regime, p->now.inputs, p->now.inputs_xi);
     p->law_known = 1;
     return &p->law;
+}
+
+/* Let the beam bear the weight on the bit W. */
+static inline void bear(Integrator *p, double W) {
+    Axial axial = {W, p->now.cosine};
+    if (axial.W == p->modes.axial.W && axial.cosine == p->modes.axial.cosine) return;
+    load_beam(&p->modes, &p->scaled, axial);
+    p->law_known = 0;
 }
 
 static inline void change_regime(Integrator *p, Regime regime) {
@@ -242,6 +251,7 @@ static inline void go_back(Integrator *p) {
     p->now = p->before;
     *kink(&p->now.kinks, p->now.kinks.end - 1) = p->last_kink;
     p->law_known = p->under_way = 0;
+    bear(p, p->now.inputs.W);
 }
 
 /* Remember the state where a call sets out; 0 if the rings have no room. */

@@ -4,8 +4,8 @@
        εηΠ θ' = M ,   Y' = Θ = θ − ψ ,   ψ = clip(F_0/(ηΠ), −ψ*, ψ*)                                      (16), (17)
 
    with M and F_0 from the beam in the hole it drilled, e_i = Y(ξ) − Y(ξ−s_i) − s_i θ. Within a regime (which stabilizers
-   touch which wall, tilt saturated or not) only sin⟨Θ⟩_1 is not linear, so one step is one linear solve of Radau
-   collocation.
+   touch which wall, tilt saturated or not) only the sine that goes with the weight is not linear, so one step is one
+   linear solve of Radau collocation. It is that of ⟨Θ⟩_1; where the axial load counts, of θ.
 
    The integrator uses of a law `make_law`, `law_try`, `law_at`, `law_along` and `displacement`, and of a `Law` the
    relaxation length, the bounds and the gains; modes.h tells it which regime lies beyond a bound. */
@@ -16,7 +16,7 @@
 #include "step.h"
 
 /* A `Row` under given inputs, on the state:
-   theta θ + Y Y + Σ_i delayed[i] Y(ξ−s_i) + g sin⟨Θ⟩_1 + constant + slope (ξ − ξ of the inputs). */
+   theta θ + Y Y + Σ_i delayed[i] Y(ξ−s_i) + g times the sine + constant + slope (ξ − ξ of the inputs). */
 typedef struct {
     double theta, Y, delayed[MAX_STABILIZERS], g, constant, slope;
 } Linear;
@@ -46,6 +46,7 @@ typedef struct {
 /* The right-hand side in one regime under given inputs, and the bounds within which it holds. */
 typedef struct {
     int n;
+    int axial;        /* whether the sine is that of θ */
     double inputs_xi; /* where the inputs were taken over */
     Linear theta_rate, Theta;
     double relaxation; /* length over which θ forgets */
@@ -68,7 +69,7 @@ static inline Law make_law(const Scaled *scaled, Modes *modes, Regime regime, Sc
     Law law = {0};
     Linear psi = make_linear(&mode->F_0, scaled, inputs, 1 / inputs.eta_pi);
     Linear saturated = {1.0, 0.0, {0}, 0.0, -regime.saturation * scaled->psi_star, 0.0};
-    law.n = n, law.inputs_xi = inputs_xi;
+    law.n = n, law.axial = scaled->axial, law.inputs_xi = inputs_xi;
     law.theta_rate = make_linear(&mode->M, scaled, inputs, 1 / (scaled->epsilon * inputs.eta_pi));
     law.Theta = regime.saturation ? saturated : less_tilt(psi, n);
     law.relaxation = 1 / fabs(law.theta_rate.theta + law.Theta.Y);
@@ -87,7 +88,7 @@ static inline Law make_law(const Scaled *scaled, Modes *modes, Regime regime, Sc
         for (int k = 0; k < law.bound_count; k++)
             law.gains[i] = larger(law.gains[i], fabs(law.bounds[k].value.delayed[i]));
     }
-    law.gains[0] += fabs(law.theta_rate.g / law.theta_rate.theta) + fabs(law.Theta.g);
+    if (!law.axial) law.gains[0] += fabs(law.theta_rate.g / law.theta_rate.theta) + fabs(law.Theta.g);
     return law;
 }
 
@@ -96,7 +97,7 @@ static inline double law_at(
     const Law *law, const Bound *bound, double xi, const double x[COMPONENTS], double delayed[][DIRECTIONS]
 ) {
     const Linear *f = &bound->value;
-    double sine = sin(x[LATERAL] - delayed[0][0]);
+    double sine = sin(law->axial ? x[ANGLE] : x[LATERAL] - delayed[0][0]);
     double value = f->theta * x[ANGLE] + f->Y * x[LATERAL] + f->g * sine + f->constant;
     for (int i = 0; i < law->n; i++) value += f->delayed[i] * delayed[i][0];
     return value + f->slope * (xi - law->inputs_xi);
@@ -130,30 +131,42 @@ static inline void linear_frozen(
     add_others(f, n, trial, values);
 }
 
-#define REST 0.03     /* what may be neglected of sin⟨Θ⟩_1, in tolerances of θ: little beside the error of a step */
+#define REST 0.03     /* what may be neglected of the sine, in tolerances of θ: little beside the error of a step */
 #define ITERATIONS 10 /* on what is neglected, at most; each gains two digits or more */
 
-/* sin⟨Θ⟩_1 about its value at the start of a step, where ⟨Θ⟩_1 = Y(ξ) − Y(ξ−1) is `average`. */
+/* The sine about its value at the start of a step, where its angle is `from`: it is part ANGLE or LATERAL of the state,
+   less what is `behind` at the points of the step, so that it is θ or ⟨Θ⟩_1 = Y(ξ) − Y(ξ−1). */
 typedef struct {
-    double average, sine, cosine;
+    int part;
+    const double *behind;
+    double from, sine, cosine;
 } Tangent;
 
-/* The sines of ⟨Θ⟩_1 at the points of a step that was solved with `frozen` sines. Returns whether these agree well
-   enough; if they do not, `frozen` becomes better ones, less the linear part in Y, which belongs to the Jacobian. */
+static inline Tangent tangent_of(const Law *law, const double x[COMPONENTS], const Trial *trial) {
+    static const double nothing[POINTS] = {0};
+    int part = law->axial ? ANGLE : LATERAL;
+    const double *behind = law->axial ? nothing : trial->delayed[0][0];
+    double from = x[part] - behind[0];
+    Tangent tangent = {part, behind, from, sin(from), cos(from)};
+    return tangent;
+}
+
+/* The sines at the points of a step that was solved from the state `x` with `frozen` sines. Returns whether these agree
+   well enough; if they do not, `frozen` becomes better ones, less the linear part, which belongs to the Jacobian. */
 static inline int sines_agree(
-    Tangent tangent, double Y, double gain, double allowed, Trial *trial, double frozen[POINTS]
+    Tangent tangent, const double x[COMPONENTS], double gain, double allowed, Trial *trial, double frozen[POINTS]
 ) {
-    const double *Ys = trial->x[LATERAL], *Y_1 = trial->delayed[0][0];
+    const double *at = trial->x[tangent.part], *behind = tangent.behind, start = x[tangent.part];
     double far = 0.0, largest = 0.0;
     for (int k = 0; k < POINTS; k++) {
-        double away = Ys[k] - Y_1[k] - tangent.average;
+        double away = at[k] - behind[k] - tangent.from;
         trial->sines[k] = tangent.sine + tangent.cosine * away;
         far = larger(far, fabs(away));
     }
     if (far * far / 2 * gain <= allowed) return 1; /* |sin(a + d) − sin a − d cos a| <= d²/2 */
     for (int k = 0; k < POINTS; k++) {
-        double assumed = frozen[k] + tangent.cosine * (Ys[k] - Y);
-        trial->sines[k] = sin(Ys[k] - Y_1[k]);
+        double assumed = frozen[k] + tangent.cosine * (at[k] - start);
+        trial->sines[k] = sin(at[k] - behind[k]);
         frozen[k] += trial->sines[k] - assumed;
         largest = larger(largest, fabs(trial->sines[k] - assumed));
     }
@@ -163,23 +176,25 @@ static inline int sines_agree(
 /* Collocation from the state `x` over a trial step, whose place, length and delayed hole are given. */
 static inline void law_try(const Law *law, const Options *options, const double x[COMPONENTS], Trial *trial) {
     const Linear *rate = &law->theta_rate, *Theta = &law->Theta;
-    const double theta = x[ANGLE], Y = x[LATERAL], h = trial->step.h, *Y_1 = trial->delayed[0][0];
+    const double theta = x[ANGLE], Y = x[LATERAL], h = trial->step.h;
     double frozen[POINTS], f_theta[POINTS], f_Y[POINTS], parts_theta[S], parts_Y[S];
-    Tangent tangent = {Y - Y_1[0], sin(Y - Y_1[0]), cos(Y - Y_1[0])};
-    Jacobian J = {rate->theta, rate->Y + rate->g * tangent.cosine, Theta->theta, Theta->Y + Theta->g * tangent.cosine};
+    Tangent tangent = tangent_of(law, x, trial);
+    Jacobian J = {rate->theta, rate->Y, Theta->theta, Theta->Y};
+    *(law->axial ? &J.theta_theta : &J.theta_Y) += rate->g * tangent.cosine;
+    *(law->axial ? &J.Y_theta : &J.Y_Y) += Theta->g * tangent.cosine;
     double allowed = REST * options->relative_tolerance * (fabs(rate->theta) + 1 / h);
     for (int k = 0; k < POINTS; k++) {
         trial->ahead[k] = trial->step.xi - law->inputs_xi + POINT[k] * h;
-        frozen[k] = tangent.sine + tangent.cosine * (Y - Y_1[k] - tangent.average);
+        frozen[k] = tangent.sine + tangent.cosine * (x[tangent.part] - tangent.behind[k] - tangent.from);
     }
     for (int iteration = 0; iteration < ITERATIONS; iteration++) {
         linear_frozen(rate, law->n, x, trial, frozen, f_theta);
         linear_frozen(Theta, law->n, x, trial, frozen, f_Y);
         collocate(h, J, f_theta, f_Y, parts_theta, parts_Y);
         radau_values(Y, parts_Y, trial->x[LATERAL]);
-        if (sines_agree(tangent, Y, fabs(rate->g), allowed, trial, frozen)) break;
+        radau_values(theta, parts_theta, trial->x[ANGLE]);
+        if (sines_agree(tangent, x, fabs(rate->g), allowed, trial, frozen)) break;
     }
-    radau_values(theta, parts_theta, trial->x[ANGLE]);
     radau_coefficients(theta, parts_theta, trial->step.x[ANGLE]);
     radau_coefficients(Y, parts_Y, trial->step.x[LATERAL]);
     double moved_theta = trial->x[ANGLE][AT_CHECK] - theta, moved_Y = trial->x[LATERAL][AT_CHECK] - Y;

@@ -8,11 +8,12 @@ const char *boreprop_quantities_digest(void) { return QUANTITIES_DIGEST; }
 void boreprop_sentence(const Problem *problem, char line[MESSAGE]) { sentence(problem, line); }
 
 Run *boreprop_start(
-    int n, const double *parameters, const Options *options, Count count, const double *measured_depth,
+    const int structure[3], const double *parameters, const Options *options, Count count, const double *measured_depth,
     const double *inclination, const Inputs *inputs, Problem *problem
 ) {
     Survey survey = {count, measured_depth, inclination};
-    System system = system_of(n, parameters);
+    Structure made = {structure[0], structure[1], structure[2]};
+    System system = system_of(made, parameters);
     Run *run = calloc(1, sizeof *run);
     met(problem, NO_MEMORY, MOST_PIECES, 0.0);
     if (run && run_prepare(run, &system, *options, problem) == DONE &&
@@ -25,12 +26,14 @@ Run *boreprop_start(
 void boreprop_end(Run *run) { run_end(run); }
 
 Count boreprop_follow(
-    Run *run, Count count, const double *lengths, const double *forces, double active_weight_on_bit, const int *rows,
-    double *table, Problem *problem
+    Run *run, Count count, const double *lengths, const double *forces, double active_weight_on_bit,
+    double weight_on_bit, const int *rows, double *table, Problem *problem
 ) {
-    Count width = output_count(run->drilling.system.n);
+    Count width = output_count(run->drilling.system.structure);
     for (Count k = 0; k < count; k++) {
-        Inputs inputs = {.rss_force = forces[k], .active_weight_on_bit = active_weight_on_bit};
+        Inputs inputs = {
+            .rss_force = forces[k], .active_weight_on_bit = active_weight_on_bit, .weight_on_bit = weight_on_bit
+        };
         if (run_advance(run, lengths[k], inputs, problem) != DONE) return k;
         if (rows[k] >= 0) drilling_outputs(&run->drilling, table + rows[k] * width);
     }

@@ -10,19 +10,19 @@
 
 #define ROUNDING 1e-13 /* how far a force or deflection of order one may lie beyond its bound by rounding alone */
 
-/* What bends the beam besides the contacts: offsets e_1 … e_n, F_RSS and sin⟨Θ⟩_1. */
+/* What bends the beam besides the contacts: offsets e_1 … e_n, F_RSS, and the sine that goes with the weight. */
 typedef struct {
-    double e[MAX_STABILIZERS], F_rss, sin_Theta_1;
+    double e[MAX_STABILIZERS], F_rss, g;
 } Loads;
 
-/* A linear function of the loads: e · e_i + rss · F_RSS + g · sin⟨Θ⟩_1 + constant. */
+/* A linear function of the loads: e · e_i + rss · F_RSS + g times the sine + constant. */
 typedef struct {
     double e[MAX_STABILIZERS], rss, g, constant;
 } Row;
 
 /* Value under `loads`. */
 static inline double row_value(const Row *row, const Loads *loads, int n) {
-    return dot(n, row->e, loads->e) + row->rss * loads->F_rss + row->g * loads->sin_Theta_1 + row->constant;
+    return dot(n, row->e, loads->e) + row->rss * loads->F_rss + row->g * loads->g + row->constant;
 }
 
 /* Add a sum of factors times rows. */
@@ -64,12 +64,13 @@ static inline Mode make_mode(const Beam *beam, const double *y_star, Contact con
         q[i].e[i] = 1.0;
         q[i].e[n - 1] = beam->delta_e[i];
         q[i].rss = beam->delta_rss[i], q[i].g = beam->delta_g[i];
+        q[i].constant = -beam->delta_e[i] * beam->end;
         if (contact.of[i]) C[touching++] = i;
     }
     for (int k = 0; k < touching; k++) {
         for (int l = 0; l < touching; l++) K_inv_CC[k][l] = beam->K_inv[C[k]][C[l]];
         to_wall[k] = q[C[k]];
-        to_wall[k].constant = contact.of[C[k]] * y_star[C[k]];
+        to_wall[k].constant += contact.of[C[k]] * y_star[C[k]];
     }
     inverse(touching, (const double (*)[SIZE])K_inv_CC, K_C);
     for (int k = 0; k < touching; k++) {
@@ -77,6 +78,7 @@ static inline Mode make_mode(const Beam *beam, const double *y_star, Contact con
         mode.F[C[k]] = row_plus(zero, touching, K_C[k], to_wall);
     }
     for (int i = 0; i < n - 1; i++) mode.delta[i] = row_plus(q[i], n - 1, beam->K_inv[i], mode.F);
+    mode.M.constant = -beam->M_e * beam->end, mode.F_0.constant = -beam->F0_e * beam->end;
     mode.M.e[n - 1] = beam->M_e, mode.M.rss = beam->M_rss, mode.M.g = beam->M_g;
     mode.M = row_plus(mode.M, n - 1, beam->M_F, mode.F);
     mode.F_0.e[n - 1] = beam->F0_e, mode.F_0.rss = beam->F0_rss, mode.F_0.g = beam->F0_g;
@@ -89,10 +91,18 @@ enum { MODES = 4 }; /* that are kept: a few take turns where a hole ripples */
 /* The modes of one beam that were asked for last. */
 typedef struct {
     Beam beam;
+    Axial axial; /* under which it is */
     double y_star[MAX_STABILIZERS - 1];
     Mode made[MODES];
     int count, next;
 } Modes;
+
+/* Make the beam as it is under an axial load; no mode is known then. */
+static inline void load_beam(Modes *modes, const Scaled *scaled, Axial axial) {
+    modes->beam = make_beam(scaled, axial);
+    modes->axial = axial;
+    modes->count = modes->next = 0;
+}
 
 static inline const Mode *mode_of(Modes *modes, Contact contact) {
     for (int k = 0; k < modes->count; k++)

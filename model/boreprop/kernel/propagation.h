@@ -18,7 +18,7 @@ static inline Loads loads_at(const Integrator *p, double xi, const double x[COMP
     Loads loads = {.F_rss = F_rss};
     hole_at_stabilizers(&p->now.hole, &p->scaled, xi, delayed);
     for (int i = 0; i < p->scaled.n; i++) loads.e[i] = x[LATERAL] - delayed[i][0] - p->scaled.s[i] * x[ANGLE];
-    loads.sin_Theta_1 = sin(x[LATERAL] - delayed[0][0]);
+    loads.g = sin(p->scaled.axial ? x[ANGLE] : x[LATERAL] - delayed[0][0]);
     return loads;
 }
 
@@ -46,7 +46,10 @@ static inline double earlier_inclination(Integrator *p, double xi) {
     double ahead = larger(xi - at->start, 0.0), x[COMPONENTS];
     for (int c = 0; c < COMPONENTS; c++) x[c] = polynomial(at->x[c], ahead * at->rate);
     Loads loads = loads_at(p, at->start + ahead, x, at->inputs.F_rss + at->inputs.F_rss_slope * ahead);
-    return inclination_under(p, x[ANGLE], &loads, at->inputs.eta_pi);
+    bear(p, at->inputs.W);
+    double Theta = inclination_under(p, x[ANGLE], &loads, at->inputs.eta_pi);
+    bear(p, p->now.inputs.W);
+    return Theta;
 }
 
 /* Where the bit is in the vertical plane, sideways and down, from the start of the run. */
@@ -65,6 +68,7 @@ static inline Status restart(
     State *now = &p->now;
     now->inputs = inputs, now->inputs_xi = now->xi;
     now->step = standstill(now->xi, x);
+    bear(p, inputs.W);
     const Mode *mode = settle(&p->modes, loads, now->regime.contact);
     double F_0 = row_value(&mode->F_0, loads, p->scaled.n), psi_star = p->scaled.psi_star;
     double jump = fabs(x[ANGLE] - bit_tilt(F_0, inputs.eta_pi, psi_star) - Theta);
@@ -95,7 +99,7 @@ static inline Status steer(Integrator *p, ScaledInputs inputs, Problem *problem)
 static inline Status drill(Integrator *p, double xi, ScaledInputs inputs, Problem *problem) {
     State *now = &p->now;
     int changed = inputs.F_rss != present_force(now) || inputs.F_rss_slope != now->inputs.F_rss_slope ||
-                  inputs.eta_pi != now->inputs.eta_pi;
+                  inputs.eta_pi != now->inputs.eta_pi || inputs.W != now->inputs.W;
     if (changed || xi > now->step.end) {
         if (!set_out(p)) return FULL;
         Status status = changed ? steer(p, inputs, problem) : DONE;
@@ -123,7 +127,7 @@ static inline Status drill_step(Integrator *p, Problem *problem) {
 static inline void prepare(Integrator *p, const Scaled *scaled, double length_scale, Options options) {
     memset(p, 0, sizeof *p);
     p->scaled = *scaled;
-    p->modes.beam = make_beam(scaled);
+    load_beam(&p->modes, scaled, p->modes.axial);
     memcpy(p->modes.y_star, scaled->y_star, sizeof p->modes.y_star);
     p->length_scale = length_scale, p->options = options;
 }

@@ -66,6 +66,8 @@ static inline void pass_snapshot(Tape *tape, int n, Snapshot *snapshot) {
     pass(tape, 1, &now->inputs.F_rss);
     pass(tape, 1, &now->inputs.F_rss_slope);
     pass(tape, 1, &now->inputs.eta_pi);
+    pass(tape, 1, &now->inputs.W);
+    pass(tape, 1, &now->cosine);
     pass(tape, 1, &now->inputs_xi);
     pass(tape, 2, now->path);
     pass(tape, DIRECTIONS, now->origin);
@@ -80,7 +82,7 @@ static inline void pass_snapshot(Tape *tape, int n, Snapshot *snapshot) {
 
 static inline Snapshot snapshot_of(const Drilling *d) {
     const State *now = &d->integrator.now;
-    int n = d->system.n;
+    int n = d->system.structure.n;
     Count oldest = first_kink(&now->kinks, n);
     Snapshot snapshot = {d->drilled_length, *now, now->hole.end - now->hole.first, now->kinks.end - oldest, {0}};
     for (int i = 0; i < n; i++) snapshot.passed[i] = now->kinks.ahead[i] - oldest;
@@ -106,9 +108,9 @@ static inline void drilling_save(const Drilling *d, double *state) {
     const State *now = &d->integrator.now;
     Snapshot snapshot = snapshot_of(d);
     Tape tape = {state, NULL, 0, 1};
-    pass_snapshot(&tape, d->system.n, &snapshot);
+    pass_snapshot(&tape, d->system.structure.n, &snapshot);
     for (Count k = now->hole.first; k < now->hole.end; k++) pass_piece(&tape, piece(&now->hole, k));
-    for (Count k = first_kink(&now->kinks, d->system.n); k < now->kinks.end; k++)
+    for (Count k = first_kink(&now->kinks, d->system.structure.n); k < now->kinks.end; k++)
         pass_kink(&tape, kink(&now->kinks, k));
 }
 
@@ -120,7 +122,7 @@ static inline int is_consistent(const Drilling *d, const Snapshot *snapshot) {
     if (!(fabs(snapshot->drilled_length / length_scale(&d->system) - xi) <= ROUNDING_OF_XI * xi)) return 0;
     if (!(eta_pi > 0) || !isfinite(1 / eta_pi) || now->inputs_xi > xi) return 0;
     if (step->xi > xi || xi > step->end || !(step->h > 0) || !(step->next_h > 0)) return 0;
-    return snapshot->passed[d->system.n - 1] == 0; /* the last stabilizer is the last to pass a kink */
+    return snapshot->passed[d->system.structure.n - 1] == 0; /* the last stabilizer is the last to pass a kink */
 }
 
 /* Whether the state at the end of a piece, at `end`, is where the next piece begins with `x`. */
@@ -157,7 +159,7 @@ static inline int is_hole(Snapshot *snapshot, Tape tape) {
 /* Read a state up to its pieces and kinks, before which the tape then stands; 0 if the numbers cannot be a state. */
 static inline int read_state(const Drilling *d, Count count, Tape *tape, Snapshot *snapshot) {
     if (count < state_size(1, 0)) return 0;
-    pass_snapshot(tape, d->system.n, snapshot);
+    pass_snapshot(tape, d->system.structure.n, snapshot);
     if (!tape->sound || state_size(snapshot->pieces, snapshot->kinks) != count) return 0;
     for (Count k = 1; k < count; k++)
         if (!isfinite(tape->from[k])) return 0;
@@ -180,15 +182,18 @@ static inline void become(Drilling *d, const Snapshot *snapshot, Tape tape) {
     for (Count k = 0; k < snapshot->pieces; k++) pass_piece(&tape, piece(&hole, k));
     for (Count k = 0; k < snapshot->kinks; k++) pass_kink(&tape, kink(&kinks, k));
     d->drilled_length = snapshot->drilled_length;
+    double cosine = p->now.cosine;
     p->now = snapshot->now, p->now.hole = hole, p->now.kinks = kinks;
     p->law_known = p->under_way = 0;
+    if (p->now.cosine != cosine) take_cosine(d, p->now.cosine);
+    bear(p, p->now.inputs.W);
 }
 
 /* Go back to a state that this run has saved itself. */
 static inline void drilling_return(Drilling *d, const double *state) {
     Tape tape = {NULL, state, 0, 1};
     Snapshot snapshot = {0};
-    pass_snapshot(&tape, d->system.n, &snapshot);
+    pass_snapshot(&tape, d->system.structure.n, &snapshot);
     become(d, &snapshot, tape);
 }
 

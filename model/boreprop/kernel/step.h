@@ -26,7 +26,7 @@ typedef struct {
     Step step;
     double delayed[MAX_STABILIZERS][DIRECTIONS][POINTS]; /* the hole's lateral coordinate at ξ − s_i */
     double x[COMPONENTS][POINTS];
-    double sines[POINTS], ahead[POINTS]; /* sin⟨Θ⟩_1; distance from where the inputs were taken over */
+    double sines[POINTS], ahead[POINTS]; /* the sine that goes with the weight; distance from where the inputs were taken over */
     double error;                        /* estimated, over the tolerance */
 } Trial;
 

@@ -73,6 +73,7 @@ def chosen(choice: str) -> str:
 
 def start(case: Case, choice: str, options: Options) -> Engine:
     """A case before its first step, under its first force; errors as in `simulate`."""
+    further = {"weight_on_bit": case.weight_on_bit} if case.bha.axial_load else {}
     return DRILLING[chosen(choice)](
         case.bha,
         case.bit,
@@ -80,4 +81,5 @@ def start(case: Case, choice: str, options: Options) -> Engine:
         active_weight_on_bit=case.active_weight_on_bit,
         rss_force=case.schedule.rss_force[0],
         options=options,
+        **further,
     )

@@ -79,7 +79,7 @@ def simulate(
     weight = case.active_weight_on_bit
     engine = chosen(engine)
     drilling = start(case, engine, Options(relative_tolerance))
-    names = scalar_names(OUTPUTS, len(case.bha.stabilizer_positions))
+    names = scalar_names(OUTPUTS, case.bha.structure)
     table = np.full((int(length / sample_interval + ROUNDING) + 1, len(names)), np.nan)
     legs = _legs(case.schedule, len(table), sample_interval)
     lengths, forces, rows = _in_parts(*legs, LONGEST_LEG * case.bha.length_scale)
