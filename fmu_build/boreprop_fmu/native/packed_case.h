@@ -95,11 +95,13 @@ static int read_stations(CaseFile *file, PackedCase *packed, char why[LINE]) {
 }
 
 static int read_structure(CaseFile *file, Structure *structure, char why[LINE]) {
-    long n, sections, axial;
+    long n, sections, axial, points;
     if (!read_count(file, "stabilizers", 1, MAX_STABILIZERS, &n, why)) return 0;
     if (!read_count(file, "sections", 0, MAX_SECTIONS, &sections, why)) return 0;
     if (!read_count(file, "axial_load", 0, 1, &axial, why)) return 0;
+    if (!read_count(file, "body_points", 0, MAX_POINTS, &points, why)) return 0;
     structure->n = (int)n, structure->sections = (int)sections, structure->axial = (int)axial;
+    structure->points = (int)points;
     return 1;
 }
 

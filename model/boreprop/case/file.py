@@ -15,6 +15,7 @@ from ..core.columns import regular
 from ..core.quantities import QUANTITIES
 from ..errors import InputError
 from .case import Case
+from .sections import sections_in_file
 from .schema import OF_FILES, TABLES, parse, read_toml
 
 
@@ -130,11 +131,15 @@ def dump_case(case: Case, **run: str | None) -> str:
     """
     document: dict[str, dict[str, Any]] = {table: {} for table in TABLES if table != "run"}
     for quantity in QUANTITIES:
-        if quantity.key and quantity.field:
+        there = quantity.size == "n-1" or quantity.count(case.bha.structure)  # no clearances are an empty list
+        if quantity.key and quantity.field and there:
             table, key = quantity.key.split(".")
             value = attrgetter(quantity.field)(case)
-            written = _file_degrees if key.endswith("_deg") else float
-            document[table][key] = list(map(written, value)) if isinstance(value, tuple) else written(value)
+            written = _file_degrees if key.endswith("_deg") else bool if quantity.kind == "Boolean" else float
+            columns = document.setdefault(table, {})
+            columns[key] = list(map(written, value)) if isinstance(value, tuple) else written(value)
+    if "section" in document:
+        document["bha"]["section"] = sections_in_file(document.pop("section"))
     facts = {key: text for key, text in run.items() if text is not None}
     if facts:
         document["run"] = facts

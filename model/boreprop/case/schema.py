@@ -23,6 +23,7 @@ from ..core.quantities import QUANTITIES, Quantity, columns_of, quantity_of
 from ..core.survey import Survey
 from ..errors import InputError, shown
 from .case import Case, Schedule
+from .sections import lift_sections
 from .tables import read_schedule, read_survey
 
 Document = dict[str, dict[str, Any]]  # table → key → value
@@ -44,6 +45,7 @@ _CASE = TypeAdapter(Case)
 def parse(text: str, source: Path) -> Case:
     """See `boreprop.case.file.parse_case`."""
     document = read_toml(text, source)
+    lift_sections(document, source)
     check_keys(document, source)
     fields = case_fields(document) | read_files(document, source)
     try:
@@ -90,7 +92,7 @@ def check_keys(document: dict[str, Any], source: Path) -> None:
     Keys whose values are texts are checked for their type too; pydantic checks all other types.
     """
     for table, content in document.items():
-        if table not in TABLES:
+        if table not in (*TABLES, "section"):
             raise InputError(f"{source}: {table}: {_unknown(table)}, got {shown(content)}")
         if not isinstance(content, dict):
             raise InputError(f"{source}: {table}: must be a table, got {shown(content)}")

@@ -48,6 +48,10 @@ OBSTACLES = {
         "raise relative_tolerance (--tolerance), now {limit}",
     ),
     "no mode": ("no contacts are found that hold at {place} m", "change relative_tolerance (--tolerance), now {limit}"),
+    "too crowded": (
+        "more than {limit} supports touch the wall, or are near it, at {place} m",
+        "put fewer points on the body (bha.body_contact_spacing)",
+    ),
     "too many": (
         "from {place} m on, more than {limit} steps of the integrator would be needed in one call",
         "drill to a nearer length, change inputs less often, or raise relative_tolerance (--tolerance)",

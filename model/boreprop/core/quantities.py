@@ -7,15 +7,17 @@ each (non-ideal) stabilizer, named ``name[1]``, ``name[2]``, …; the other size
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from math import inf, isfinite, pi
 from typing import Any, Literal, NamedTuple
 
 Role = Literal["input", "output", "parameter", "case"]  # "case": only a case has it, an FMU has not
 Kind = Literal["Real", "Integer", "Boolean", "String"]
-Size = Literal["1", "n", "n-1", "uniform", "sections", "stepped", "axial", "column"]  # "column": as long as its table
+Size = Literal["1", "n", "n-1", "uniform", "sections", "stepped", "axial", "points", "body", "column"]  # "column": as long as its table
 
 MAX_STABILIZERS = 6
 MAX_SECTIONS = 24
+MAX_POINTS = 128  # of the body at which it may touch the wall
 MOST_DRILLED = 1e5  # m in a communication step of an FMU: no hole is longer, and a step must end soon
 RELATIVE_TOLERANCE = 1e-7  # with it θ is within 5e-7 rad of the reference trajectories
 
@@ -26,14 +28,16 @@ class Structure(NamedTuple):
     stabilizers: int
     sections: int = 0  # of the beam; none: it is uniform
     axial_load: int = 0  # 1: the load along the beam counts
+    body_points: int = 0  # of the beam between the stabilizers, at which its body may touch the wall
 
-    @property
+    @cache
     def counts(self) -> dict[str, int]:
         """Size → how many values."""
-        n, sections, axial = self
+        n, sections, axial, points = self
         return {
             **{"1": 1, "n": n, "n-1": n - 1, "column": 1},
             **{"uniform": int(not sections), "stepped": int(bool(sections)), "sections": sections, "axial": axial},
+            **{"points": points, "body": int(bool(points))},
         }
 
     @property
@@ -95,12 +99,12 @@ class Quantity:
     def count(self, structure: int | Structure) -> int:
         """How many values it has, for a structure or for so many stabilizers on the paper's beam."""
         made = structure if isinstance(structure, Structure) else Structure(structure)
-        return made.counts[self.size]
+        return made.counts()[self.size]
 
     @property
     def is_list(self) -> bool:
         """Whether its values are numbered."""
-        return self.size in ("n", "n-1", "sections")
+        return self.size in ("n", "n-1", "sections", "points")
 
     @property
     def part(self) -> str:
@@ -142,6 +146,9 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("bit_lateral_force", "output", "N", "F_0", "(14)", "lateral force on the bit", nominal=1e4, follows=FORCE),
     Quantity("bit_moment", "output", "N.m", "M_0", "(9)", "moment on the bit", nominal=1e4, follows=FORCE),
     Quantity("borehole_curvature", "output", "rad/m", "Θ'", "", "change of borehole inclination over the last ℓ₁, per length", nominal=1e-3, follows=FORCE_AND_WEIGHT),
+    Quantity("body_contact_force", "output", "N", "F_ℓ − F_u", "(7)", "largest force of the wall on the body between the stabilizers, positive from the lower wall", size="body", nominal=1e4, follows=FORCE),
+    Quantity("body_contact_position", "output", "m", "s", "", "where that force acts, from the bit; 0 if the body touches no wall", size="body", at_least=0.0, nominal=10.0, follows=FORCE),
+    Quantity("wall_distance", "output", "m", "", "", "least distance of the body from the wall", size="body", nominal=1e-2, follows=FORCE),
     Quantity("displacement", "output", "m", "x", "", "horizontal position of the bit from the start of the run", nominal=100.0),
     Quantity("true_vertical_depth", "output", "m", "z", "", "depth of the bit below the start of the run", nominal=100.0),
     Quantity("eta_pi", "output", "", "ηΠ", "(9)", "lateral penetration stiffness of the rock over the BHA's bending stiffness", nominal=0.01, follows=("active_weight_on_bit", "lateral_steering_resistance", "flexural_stiffness", "stabilizer_position")),
@@ -154,6 +161,8 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("section_length", "parameter", "m", "", "", "length of a section of the BHA, from the bit up", size="sections", above=0.0, nominal=10.0, key="section.length", field="bha.section_lengths"),
     Quantity("section_distributed_weight", "parameter", "N/m", "w", "", "buoyant weight of the section per length", size="sections", at_least=0.0, nominal=1e3, key="section.distributed_weight", field="bha.section_distributed_weights"),
     Quantity("section_flexural_stiffness", "parameter", "N.m2", "EI", "", "bending stiffness of the section", size="sections", above=0.0, nominal=1e7, key="section.flexural_stiffness", field="bha.section_flexural_stiffnesses"),
+    Quantity("body_point_position", "parameter", "m", "s", "", "where the body between the stabilizers may touch the wall, from the bit", size="points", above=0.0, nominal=10.0, key="bha.body_point_positions", field="bha.body_point_positions"),
+    Quantity("body_point_clearance", "parameter", "m", "y*", "(7)", "clearance between the body there and the wall on each side", size="points", above=0.0, nominal=1e-2, key="bha.body_point_clearances", field="bha.body_point_clearances"),
     Quantity("end_deflection", "parameter", "m", "δ_n", "(5)", "offset of the BHA from the borehole axis at the last stabilizer, positive to the high side", size="stepped", nominal=1e-2, key="bha.end_deflection", field="bha.end_deflection"),
     Quantity("lateral_steering_resistance", "parameter", "", "η", "(4)", "lateral over axial drilling resistance", above=0.0, nominal=10.0, key="bit.lateral_steering_resistance", field="bit.lateral_steering_resistance"),
     Quantity("angular_steering_resistance", "parameter", "", "χ", "(4)", "angular over axial drilling resistance", above=0.0, key="bit.angular_steering_resistance", field="bit.angular_steering_resistance"),
@@ -161,7 +170,9 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("relative_tolerance", "parameter", "", "", "", "local error allowed in one step of the integrator, relative to 1 rad and ℓ₁", at_least=1e-12, at_most=1e-2, nominal=1e-7, start=RELATIVE_TOLERANCE),
     Quantity("survey_file", "parameter", "", "", "", "survey of the existing hole (plain CSV: UTF-8, commas, decimal points, m, degrees); empty: the survey packed in the FMU", kind="String", start="", key="hole.survey"),
 
-    Quantity("axial_load", "case", "", "N", "", "whether the load along the BHA counts in its bending", kind="Boolean", key="bha.axial_load", field="bha.axial_load"),
+    Quantity("section_outer_diameter", "case", "m", "", "", "outer diameter of the section; 0: not given", size="sections", at_least=0.0, key="section.outer_diameter", field="bha.section_outer_diameters"),
+    Quantity("mud_density", "case", "kg/m3", "", "", "density of the mud, for the buoyant weight of sections given by their diameters", at_least=0.0, key="bha.mud_density"),
+    Quantity("axial_load", "case", "", "N", "", "whether the load along the BHA counts in its bending", kind="Boolean", size="axial", key="bha.axial_load", field="bha.axial_load"),
     Quantity("bit_diameter", "case", "m", "", "", "diameter of the hole", above=0.0, at_most=1.5, key="bit.diameter", field="bit_diameter"),
     Quantity("length", "case", "m", "", "", "length to drill", above=0.0, key="drilling.length", field="length"),
     Quantity("measured_depth", "case", "m", "", "", "stations along the existing hole, the last one is the bit", size="column", key="hole.measured_depth", field="survey.measured_depth"),

@@ -33,6 +33,8 @@ class BottomHoleAssembly:
     section_lengths, section_distributed_weights, section_flexural_stiffnesses
         A beam in up to 24 sections, from the bit up: length, m, weight per length, N/m, and EI, N·m², of each. Together
         they are at least as long as the BHA. Without any the beam is uniform.
+    section_outer_diameters
+        Outer diameter of each section, m; 0 where it is not known.
     end_deflection
         Of a beam in sections: how far from the axis of the hole the last stabilizer holds it, m, positive to the high
         side. A string that lies on the low side of the hole there is off by the clearance of its body.
@@ -54,6 +56,9 @@ class BottomHoleAssembly:
     section_lengths: tuple[float, ...] = ()
     section_distributed_weights: tuple[float, ...] = ()
     section_flexural_stiffnesses: tuple[float, ...] = ()
+    section_outer_diameters: tuple[float, ...] = ()
+    body_point_positions: tuple[float, ...] = ()
+    body_point_clearances: tuple[float, ...] = ()
     end_deflection: float = 0.0
     axial_load: bool = False
 
@@ -83,6 +88,7 @@ class BottomHoleAssembly:
         columns = {
             "section_distributed_weight": self.section_distributed_weights,
             "section_flexural_stiffness": self.section_flexural_stiffnesses,
+            "section_outer_diameter": self.section_outer_diameters,
         }
         for name, values in columns.items():
             if len(values) != count:
@@ -97,7 +103,12 @@ class BottomHoleAssembly:
     @property
     def structure(self) -> Structure:
         """Numbers of stabilizers and sections, and whether the axial load counts."""
-        return Structure(len(self.stabilizer_positions), len(self.section_lengths), int(self.axial_load))
+        return Structure(
+            len(self.stabilizer_positions),
+            len(self.section_lengths),
+            int(self.axial_load),
+            len(self.body_point_positions),
+        )
 
     @property
     def length_scale(self) -> float:

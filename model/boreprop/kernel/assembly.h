@@ -9,16 +9,15 @@
 #ifndef BOREPROP_ASSEMBLY_H
 #define BOREPROP_ASSEMBLY_H
 
-#include "linear.h"
 #include "system.h"
 
-enum { DEFLECTION, SLOPE_OF_BEAM, MOMENT, SHEAR, LINE }; /* the parts of a line, and how many there are */
-enum { MAX_NODES = MAX_STABILIZERS + MAX_SECTIONS + 2 };
+enum { DEFLECTION, SLOPE_OF_BEAM, MOMENT, SHEAR, PARTS }; /* the parts of a line, and how many there are */
+enum { MAX_NODES = MAX_SUPPORTS + MAX_SECTIONS + 2 };
 
 /* A uniform stretch of beam from one node to the next: the line at its end is `of` times that at its start, plus `load`
    times g. */
 typedef struct {
-    double of[LINE][LINE], load[LINE];
+    double of[PARTS][PARTS], load[PARTS];
 } Stretch;
 
 /* How hard the beam is pressed: the weight on the bit W over F*, and the cosine of the inclination at which the buoyant
@@ -37,7 +36,7 @@ typedef struct {
 enum { TERMS = 24 }; /* of the series over a stretch on which 3|N|h²/β is at most 1: those left out are below 1e-20 */
 
 /* Carry a line over a length h of uniform beam with the tension N + rise t, by its power series in t. */
-static inline void carry(double h, double beta, double N, double rise, double load, double line[LINE]) {
+static inline void carry(double h, double beta, double N, double rise, double load, double line[PARTS]) {
     double slope[TERMS + 1] = {line[SLOPE_OF_BEAM]}, moment[TERMS + 1] = {line[MOMENT]}; /* coefficients times h^k */
     double shear[2] = {line[SHEAR], load * h};
     for (int k = 0; k < TERMS; k++) {
@@ -59,14 +58,14 @@ static inline Stretch stretch_above(const Nodes *nodes, int k, double cosine) {
     double length = nodes->s[k + 1] - nodes->s[k], beta = nodes->beta[k], w = nodes->w[k], rise = w * cosine;
     double pull = larger(fabs(nodes->N[k]), fabs(nodes->N[k + 1]));
     int parts = 1 + (int)smaller(length * sqrt(3 * pull / beta), 1e4);
-    for (int column = 0; column <= LINE; column++) { /* the last one carries the weight */
-        double line[LINE] = {0};
-        if (column < LINE) line[column] = 1.0;
+    for (int column = 0; column <= PARTS; column++) { /* the last one carries the weight */
+        double line[PARTS] = {0};
+        if (column < PARTS) line[column] = 1.0;
         for (int part = 0; part < parts; part++) {
             double h = length / parts, N = nodes->N[k] + rise * (part * h);
-            carry(h, beta, N, rise, column < LINE ? 0.0 : -w, line);
+            carry(h, beta, N, rise, column < PARTS ? 0.0 : -w, line);
         }
-        for (int i = 0; i < LINE; i++) *(column < LINE ? &stretch.of[i][column] : &stretch.load[i]) = line[i];
+        for (int i = 0; i < PARTS; i++) *(column < PARTS ? &stretch.of[i][column] : &stretch.load[i]) = line[i];
     }
     return stretch;
 }
@@ -95,7 +94,7 @@ static inline void make_nodes(Nodes *nodes, const Scaled *scaled, Axial axial) {
     nodes->count = 0;
     add_node(nodes, 0.0);
     add_node(nodes, scaled->Delta);
-    for (int i = 0; i < scaled->n; i++) add_node(nodes, scaled->s[i]);
+    for (int i = 0; i < scaled->n + scaled->points; i++) add_node(nodes, scaled->s[i]);
     for (int k = 0; k < scaled->sections; k++)
         if (scaled->section_end[k] < end) add_node(nodes, scaled->section_end[k]);
     nodes->N[0] = -axial.W;
@@ -110,10 +109,10 @@ static inline void make_nodes(Nodes *nodes, const Scaled *scaled, Axial axial) {
 }
 
 /* Carry a line over a stretch, under the weight times g. */
-static inline void pass_stretch(const Stretch *stretch, double g, double line[LINE]) {
-    double start[LINE];
+static inline void pass_stretch(const Stretch *stretch, double g, double line[PARTS]) {
+    double start[PARTS];
     memcpy(start, line, sizeof start);
-    for (int i = 0; i < LINE; i++) line[i] = dot(LINE, stretch->of[i], start) + g * stretch->load[i];
+    for (int i = 0; i < PARTS; i++) line[i] = dot(PARTS, stretch->of[i], start) + g * stretch->load[i];
 }
 
 /* Whether the beam stands: with every stabilizer held it does not buckle.
@@ -126,7 +125,7 @@ static inline int stands(const Scaled *scaled, Axial axial) {
     int k = 0;
     make_nodes(&nodes, scaled, axial);
     for (int i = 0; i < scaled->n; i++) {
-        double turned[LINE] = {0, 1, 0, 0}, bent[LINE] = {0, 0, 1, 0}, sheared[LINE] = {0, 0, 0, 1}, determinant = 0.0;
+        double turned[PARTS] = {0, 1, 0, 0}, bent[PARTS] = {0, 0, 1, 0}, sheared[PARTS] = {0, 0, 0, 1}, determinant = 0.0;
         for (; nodes.s[k] < scaled->s[i]; k++) {
             pass_stretch(&nodes.above[k], 0.0, turned);
             pass_stretch(&nodes.above[k], 0.0, bent);
@@ -171,7 +170,7 @@ typedef struct {
 /* The answer that brings the end of the beam to the hole without a moment, where the load alone has brought it to this
    deflection and moment; `bent` and `sheared` are there under a unit moment and a unit shear at the bit. */
 static inline Answer answer_to(
-    const double bent[LINE], const double sheared[LINE], double deflection, double moment
+    const double bent[PARTS], const double sheared[PARTS], double deflection, double moment
 ) {
     double determinant = bent[DEFLECTION] * sheared[MOMENT] - sheared[DEFLECTION] * bent[MOMENT];
     Answer answer = {
@@ -182,13 +181,13 @@ static inline Answer answer_to(
 }
 
 /* What of a line at the upper end of a stretch is asked for, as functions of the line at its lower end. */
-static inline void look_down(const Stretch *stretch, double asked[2][LINE]) {
-    double above[2][LINE];
+static inline void look_down(const Stretch *stretch, double asked[2][PARTS]) {
+    double above[2][PARTS];
     memcpy(above, asked, sizeof above);
     for (int row = 0; row < 2; row++)
-        for (int j = 0; j < LINE; j++) {
+        for (int j = 0; j < PARTS; j++) {
             asked[row][j] = 0.0;
-            for (int i = 0; i < LINE; i++) asked[row][j] += above[row][i] * stretch->of[i][j];
+            for (int i = 0; i < PARTS; i++) asked[row][j] += above[row][i] * stretch->of[i][j];
         }
 }
 

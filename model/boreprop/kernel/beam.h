@@ -41,47 +41,6 @@ static inline double force_reaction(double p, double lambda_) {
     return -(2 * cube - 3 * lambda_ * p * p + pow(p, 3)) / (2 * cube);
 }
 
-/* M, F_0 and δ of one BHA as linear functions of e, F, F_RSS and the sine g of an inclination.
-
-   With n stabilizers and i, j = 1 … n−1:
-
-       δ_i = e_i + delta_e[i] (e_n − δ_n) + Σ_j K_inv[i][j] F_j + delta_rss[i] F_RSS + delta_g[i] g      (5), (21)
-       M   =       M_e (e_n − δ_n)        + Σ_j M_F[j] F_j      + M_rss F_RSS        + M_g g             (17), (23)
-       F_0 =       F0_e (e_n − δ_n)       + Σ_j F0_F[j] F_j     + F0_rss F_RSS       + F0_g g            (14), (24)
-
-   where M = −M_0 is the moment that turns the bit, εηΠ θ' = M. The paper has δ_n = 0 and g = sin⟨Θ⟩_1; where the axial
-   load counts, the weight across the axis of the bit goes with g = sin θ. */
-typedef struct {
-    int n;
-    double K_inv[MAX_STABILIZERS][MAX_STABILIZERS];
-    double delta_e[MAX_STABILIZERS], delta_rss[MAX_STABILIZERS], delta_g[MAX_STABILIZERS];
-    double M_e, M_F[MAX_STABILIZERS], M_rss, M_g;
-    double F0_e, F0_F[MAX_STABILIZERS], F0_rss, F0_g;
-    double end; /* δ_n */
-} Beam;
-
-static inline Beam uniform_beam(const Scaled *scaled) {
-    const double *s = scaled->s, Delta = scaled->Delta, w = scaled->w;
-    double lambda_ = s[scaled->n - 1];
-    Beam beam = {0};
-    beam.n = scaled->n;
-    for (int i = 0; i < beam.n - 1; i++) {
-        for (int j = 0; j < beam.n - 1; j++) beam.K_inv[i][j] = flexibility(s[i], s[j], lambda_);
-        beam.delta_e[i] = end_offset_deflection(s[i], lambda_);
-        beam.delta_rss[i] = flexibility(s[i], Delta, lambda_);
-        beam.delta_g[i] = weight_deflection(s[i], w, lambda_);
-        beam.M_F[i] = force_moment(s[i], lambda_);
-        beam.F0_F[i] = force_reaction(s[i], lambda_);
-    }
-    beam.M_e = 1 / (lambda_ * lambda_);
-    beam.M_rss = force_moment(Delta, lambda_);
-    beam.M_g = w * lambda_ * lambda_ / 8;
-    beam.F0_e = 1 / pow(lambda_, 3);
-    beam.F0_rss = force_reaction(Delta, lambda_);
-    beam.F0_g = 5.0 / 8 * w * lambda_;
-    return beam;
-}
-
 /* A beam in sections as it answers unit loads: its deflection at each node under a unit moment at the bit, under a unit
    shear there and under the weight, and what brings its end back to the hole. */
 typedef struct {
@@ -99,8 +58,8 @@ static inline double flexibility_at(const Influence *of, int j, int k) {
 }
 
 static inline void make_influence(Influence *of, const Nodes *nodes) {
-    double bent[LINE] = {0, 0, 1, 0}, sheared[LINE] = {0, 0, 0, 1}, weighed[LINE] = {0};
-    double reach[2][LINE] = {{1, 0, 0, 0}, {0, 0, 1, 0}}; /* from a line to deflection and moment at the end */
+    double bent[PARTS] = {0, 0, 1, 0}, sheared[PARTS] = {0, 0, 0, 1}, weighed[PARTS] = {0};
+    double reach[2][PARTS] = {{1, 0, 0, 0}, {0, 0, 1, 0}}; /* from a line to deflection and moment at the end */
     int last = nodes->count - 1;
     for (int k = 0; k <= last; k++) {
         of->bent[k] = bent[DEFLECTION], of->sheared[k] = sheared[DEFLECTION], of->weighed[k] = weighed[DEFLECTION];
@@ -117,32 +76,75 @@ static inline void make_influence(Influence *of, const Nodes *nodes) {
     of->to_weight = answer_to(bent, sheared, weighed[DEFLECTION], weighed[MOMENT]);
 }
 
-/* The beam in sections, under an axial load. */
-static inline Beam stepped_beam(const Scaled *scaled, Axial axial) {
-    int n = scaled->n;
-    Nodes nodes;
-    Influence of;
-    Beam beam = {0};
-    make_nodes(&nodes, scaled, axial);
-    make_influence(&of, &nodes);
-    int pads = node_at(&nodes, scaled->Delta);
-    beam.n = n, beam.end = scaled->end_deflection;
-    for (int i = 0; i < n - 1; i++) {
-        int k = node_at(&nodes, scaled->s[i]);
-        for (int j = 0; j < n - 1; j++) beam.K_inv[i][j] = flexibility_at(&of, k, node_at(&nodes, scaled->s[j]));
-        beam.delta_e[i] = deflection_at(&of, of.to_offset, k);
-        beam.delta_rss[i] = flexibility_at(&of, k, pads);
-        beam.delta_g[i] = deflection_at(&of, of.to_weight, k) + of.weighed[k];
-        beam.M_F[i] = -of.to_force[k].m, beam.F0_F[i] = of.to_force[k].q;
+/* M, F_0 and δ of one BHA as linear functions of e, F, F_RSS and the sine g of an inclination.
+
+   With n stabilizers and i, j = 1 … n−1:
+
+       δ_i = e_i + delta_e[i] (e_n − δ_n) + Σ_j K_inv[i][j] F_j + delta_rss[i] F_RSS + delta_g[i] g      (5), (21)
+       M   =       M_e (e_n − δ_n)        + Σ_j M_F[j] F_j      + M_rss F_RSS        + M_g g             (17), (23)
+       F_0 =       F0_e (e_n − δ_n)       + Σ_j F0_F[j] F_j     + F0_rss F_RSS       + F0_g g            (14), (24)
+
+   where M = −M_0 is the moment that turns the bit, εηΠ θ' = M. The paper has δ_n = 0 and g = sin⟨Θ⟩_1; where the axial
+   load counts, the weight across the axis of the bit goes with g = sin θ. */
+typedef struct {
+    int n;
+    double K_inv[MAX_STABILIZERS][MAX_STABILIZERS]; /* of a uniform beam, */
+    Influence of;                                   /* of any other, with the node of each support */
+    int stepped, node[MAX_SUPPORTS];
+    double delta_e[MAX_SUPPORTS], delta_rss[MAX_SUPPORTS], delta_g[MAX_SUPPORTS];
+    double M_e, M_F[MAX_SUPPORTS], M_rss, M_g;
+    double F0_e, F0_F[MAX_SUPPORTS], F0_rss, F0_g;
+    double end; /* δ_n */
+} Beam;
+
+static inline void make_uniform_beam(Beam *beam, const Scaled *scaled) {
+    const double *s = scaled->s, Delta = scaled->Delta, w = scaled->w;
+    double lambda_ = s[scaled->n - 1];
+    beam->n = scaled->n, beam->stepped = 0, beam->end = 0.0;
+    for (int i = 0; i < beam->n - 1; i++) {
+        for (int j = 0; j < beam->n - 1; j++) beam->K_inv[i][j] = flexibility(s[i], s[j], lambda_);
+        beam->delta_e[i] = end_offset_deflection(s[i], lambda_);
+        beam->delta_rss[i] = flexibility(s[i], Delta, lambda_);
+        beam->delta_g[i] = weight_deflection(s[i], w, lambda_);
+        beam->M_F[i] = force_moment(s[i], lambda_);
+        beam->F0_F[i] = force_reaction(s[i], lambda_);
     }
-    beam.M_e = -of.to_offset.m, beam.F0_e = of.to_offset.q;
-    beam.M_rss = -of.to_force[pads].m, beam.F0_rss = of.to_force[pads].q;
-    beam.M_g = -of.to_weight.m, beam.F0_g = of.to_weight.q;
-    return beam;
+    beam->M_e = 1 / (lambda_ * lambda_);
+    beam->M_rss = force_moment(Delta, lambda_);
+    beam->M_g = w * lambda_ * lambda_ / 8;
+    beam->F0_e = 1 / pow(lambda_, 3);
+    beam->F0_rss = force_reaction(Delta, lambda_);
+    beam->F0_g = 5.0 / 8 * w * lambda_;
 }
 
-static inline Beam make_beam(const Scaled *scaled, Axial axial) {
-    return scaled->stepped ? stepped_beam(scaled, axial) : uniform_beam(scaled);
+/* The deflection at support i under a unit force on support j. */
+static inline double compliance(const Beam *beam, int i, int j) {
+    return beam->stepped ? flexibility_at(&beam->of, beam->node[i], beam->node[j]) : beam->K_inv[i][j];
+}
+
+/* The beam in sections, under an axial load, with the points of its body. */
+static inline void make_stepped_beam(Beam *beam, const Scaled *scaled, Axial axial) {
+    Nodes nodes;
+    Influence *of = &beam->of;
+    make_nodes(&nodes, scaled, axial);
+    make_influence(of, &nodes);
+    int pads = node_at(&nodes, scaled->Delta);
+    beam->n = scaled->n, beam->stepped = 1, beam->end = scaled->end_deflection;
+    for (int i = 0; i < scaled->n + scaled->points; i++) {
+        int k = beam->node[i] = node_at(&nodes, scaled->s[i]);
+        beam->delta_e[i] = deflection_at(of, of->to_offset, k);
+        beam->delta_rss[i] = flexibility_at(of, k, pads);
+        beam->delta_g[i] = deflection_at(of, of->to_weight, k) + of->weighed[k];
+        beam->M_F[i] = -of->to_force[k].m, beam->F0_F[i] = of->to_force[k].q;
+    }
+    beam->M_e = -of->to_offset.m, beam->F0_e = of->to_offset.q;
+    beam->M_rss = -of->to_force[pads].m, beam->F0_rss = of->to_force[pads].q;
+    beam->M_g = -of->to_weight.m, beam->F0_g = of->to_weight.q;
+}
+
+static inline void make_beam(Beam *beam, const Scaled *scaled, Axial axial) {
+    if (scaled->stepped) make_stepped_beam(beam, scaled, axial);
+    else make_uniform_beam(beam, scaled);
 }
 
 #endif

@@ -20,11 +20,11 @@ EXPORT const char *boreprop_quantities_digest(void);
 /* The sentence that says what a problem is. */
 EXPORT void boreprop_sentence(const Problem *problem, char line[MESSAGE]);
 
-/* A run of this structure (numbers of stabilizers and of sections, whether the axial load counts) at the end of its survey, with parameters in the order of the table of quantities; NULL, and
+/* A run of this structure (its members one after the other) at the end of its survey, with parameters in the order of the table of quantities; NULL, and
    the problem, if a value is out of range. The caller ends it with `boreprop_end`. The tolerance is that of the
    parameters; the other options are not checked. */
 EXPORT Run *boreprop_start(
-    const int structure[3], const double *parameters, const Options *options, Count count, const double *measured_depth,
+    const int structure[4], const double *parameters, const Options *options, Count count, const double *measured_depth,
     const double *inclination, const Inputs *inputs, Problem *problem
 );
 EXPORT void boreprop_end(Run *run);

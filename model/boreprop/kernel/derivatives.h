@@ -19,7 +19,7 @@ static inline double output_slope(const Drilling *d, const Present *at, Output w
     switch (which) {
         case OUT_DRILLED_LENGTH: return 1.0;
         case OUT_BIT_INCLINATION: /* εηΠ θ' = M */
-            return row_value(&at->mode->M, &at->loads, scaled->n) / (scaled->epsilon * eta_pi * at->l1);
+            return row_value(&at->mode->M, &at->loads) / (scaled->epsilon * eta_pi * at->l1);
         case OUT_AVERAGE_INCLINATION: /* λ_i ⟨Θ⟩_i' = Θ(ξ − s_{i−1}) − Θ(ξ − s_i) */
             return ((i ? inclination_at(d, i - 1) : at->Theta) - inclination_at(d, i)) / (lambda_(scaled, i) * at->l1);
         case OUT_DISPLACEMENT: return sin(at->Theta);

@@ -128,10 +128,24 @@ static inline void drilling_cancel(Drilling *d) { go_back(&d->integrator); }
 
 /* What the outputs are computed from: the state where the bit is. */
 typedef struct {
-    double l1, F_star, theta, Theta, psi, F_0, F[MAX_STABILIZERS], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
+    double l1, F_star, theta, Theta, psi, F_0, F[MAX_PLACES], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
+    double body_force, body_place, wall_distance; /* the largest force on the body and where it acts; the least gap */
     Loads loads;
     const Mode *mode;
 } Present;
+
+/* What the wall does to the body of the BHA. */
+static inline void find_body(Drilling *d, Present *at) {
+    Integrator *p = &d->integrator;
+    int n = p->scaled.n;
+    double gap[MAX_POINTS];
+    at->body_force = at->body_place = 0.0, at->wall_distance = INFINITY;
+    if (!p->scaled.points) return;
+    for (int i = n; i < at->loads.count; i++)
+        if (fabs(at->F[i]) > fabs(at->body_force)) at->body_force = at->F[i], at->body_place = p->now.places.s[i];
+    find_gaps(p, &p->now.step, p->now.xi, gap);
+    for (int k = 0; k < p->scaled.points; k++) at->wall_distance = smaller(at->wall_distance, larger(gap[k], 0.0));
+}
 
 static inline Present present(Drilling *d) {
     Integrator *p = &d->integrator;
@@ -144,11 +158,12 @@ static inline Present present(Drilling *d) {
     at.theta = state[ANGLE];
     at.loads = present_loads(p);
     at.mode = settle(&p->modes, &at.loads, now->regime.contact);
-    at.F_0 = row_value(&at.mode->F_0, &at.loads, p->scaled.n);
-    for (int i = 0; i < p->scaled.n - 1; i++) at.F[i] = row_value(&at.mode->F[i], &at.loads, p->scaled.n);
+    at.F_0 = row_value(&at.mode->F_0, &at.loads);
+    contact_forces(at.mode, &at.loads, at.F);
     at.psi = bit_tilt(at.F_0, now->inputs.eta_pi, p->scaled.psi_star);
     at.Theta = at.theta - at.psi;
     position(now, &at.x, &at.z);
+    find_body(d, &at);
     return at;
 }
 
@@ -158,7 +173,6 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
     const Loads *loads = &at->loads;
     const ScaledInputs *inputs = &d->integrator.now.inputs;
     double l1 = at->l1, F_star = at->F_star;
-    int n = scaled->n;
     switch (which) {
         case OUT_DRILLED_LENGTH: return d->drilled_length;
         case OUT_BIT_INCLINATION: return at->theta;
@@ -166,14 +180,17 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_BIT_TILT: return at->psi;
         case OUT_AVERAGE_INCLINATION: /* λ_i (⟨Θ⟩_i − θ) = e_i − e_{i−1} */
             return at->theta + (loads->e[i] - (i ? loads->e[i - 1] : 0.0)) / lambda_(scaled, i);
-        case OUT_STABILIZER_DEFLECTION: return row_value(&at->mode->delta[i], loads, n) * l1;
+        case OUT_STABILIZER_DEFLECTION: return row_value(&at->mode->delta[i], loads) * l1;
         case OUT_STABILIZER_FORCE: return at->F[i] * F_star;
         case OUT_STABILIZER_CONTACT: return wall(at->F[i]);
         case OUT_BIT_TILT_SATURATION:
             return side_beyond(at->F_0 / inputs->eta_pi, -scaled->psi_star, scaled->psi_star, ROUNDING);
         case OUT_BIT_LATERAL_FORCE: return at->F_0 * F_star;
-        case OUT_BIT_MOMENT: return -row_value(&at->mode->M, loads, n) * F_star * l1;
+        case OUT_BIT_MOMENT: return -row_value(&at->mode->M, loads) * F_star * l1;
         case OUT_BOREHOLE_CURVATURE: return (at->Theta - at->earlier) / l1;
+        case OUT_BODY_CONTACT_FORCE: return at->body_force * F_star;
+        case OUT_BODY_CONTACT_POSITION: return at->body_place * l1;
+        case OUT_WALL_DISTANCE: return at->wall_distance * l1;
         case OUT_DISPLACEMENT: return at->x * l1;
         case OUT_TRUE_VERTICAL_DEPTH: return at->z * l1;
         case OUT_ETA_PI: return inputs->eta_pi;

@@ -10,6 +10,7 @@ from ..core.options import Options
 from ..core.problems import DERIVED, SENTENCES
 from ..core.quantities import (
     INPUTS,
+    MAX_POINTS,
     MAX_SECTIONS,
     MAX_STABILIZERS,
     MOST_DRILLED,
@@ -35,9 +36,16 @@ SIZES = {
     "sections": "EACH_SECTION",
     "stepped": "IF_STEPPED",
     "axial": "IF_AXIAL",
+    "points": "EACH_POINT",
+    "body": "IF_POINTS",
 }
-ROOMS = {"n": "[MAX_STABILIZERS]", "n-1": "[MAX_STABILIZERS - 1]", "sections": "[MAX_SECTIONS]"}
-LARGEST = Structure(MAX_STABILIZERS, MAX_SECTIONS, 1)
+ROOMS = {
+    "n": "[MAX_STABILIZERS]",
+    "n-1": "[MAX_STABILIZERS - 1]",
+    "sections": "[MAX_SECTIONS]",
+    "points": "[MAX_POINTS]",
+}
+LARGEST = Structure(MAX_STABILIZERS, MAX_SECTIONS, 1, MAX_POINTS)
 
 NAMES = {quantity.name: quantity.name for quantity in QUANTITIES} | {
     "rss_force_slope": "rss_force_slope",
@@ -67,12 +75,14 @@ QUANTITIES_HEADER = """\
 #define MOST_DRILLED {most_drilled!r} /* m in a communication step */
 #define LEAST_SPAN {least_span!r} /* m between stabilizers, at least: forces between closer ones are rounding errors */
 
-enum {{ MAX_STABILIZERS = {most}, MAX_SECTIONS = {most_sections} }};
+enum {{ MAX_STABILIZERS = {most}, MAX_SECTIONS = {most_sections}, MAX_POINTS = {most_points} }};
 enum {{ PARAMETER_COUNT = {parameters}, INPUT_COUNT = {inputs}, OUTPUT_COUNT = {outputs} }};
 
 /* How a drilling system is made up, which says how many values each quantity has. */
 typedef struct {{
-    int n, sections, axial; /* numbers of stabilizers and of sections; whether the load along the beam counts */
+    int n, sections; /* numbers of stabilizers and of sections */
+    int axial;       /* whether the load along the beam counts */
+    int points;      /* number of points at which the body between the stabilizers may touch the wall */
 }} Structure;
 
 /* The parameters, in SI units. */
@@ -226,6 +236,7 @@ def quantities_header(system: Table = SYSTEM, inputs: Table = INPUTS, outputs: T
         "most_drilled": MOST_DRILLED,
         "most": MAX_STABILIZERS,
         "most_sections": MAX_SECTIONS,
+        "most_points": MAX_POINTS,
         "parameters": len(system),
         "inputs": len(inputs),
         "outputs": len(outputs),

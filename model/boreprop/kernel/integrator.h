@@ -6,6 +6,7 @@
 #ifndef BOREPROP_INTEGRATOR_H
 #define BOREPROP_INTEGRATOR_H
 
+#include "body.h"
 #include "events.h"
 
 /* integrator.py gives the reasons for these numbers. */
@@ -28,6 +29,7 @@ typedef struct {
     ScaledInputs inputs;
     double inputs_xi; /* where they were taken over */
     Regime regime;
+    Places places; /* of the regime */
     double path[2];            /* ∫ sin Θ dξ, ∫ cos Θ dξ up to the start of the present step */
     double origin[DIRECTIONS]; /* of the lateral coordinates */
     double cosine; /* of the inclination at which the weight acts along the beam; 0 if the axial load does not count */
@@ -37,6 +39,11 @@ typedef struct {
     double accepted, rejected, events; /* counts of steps, of rejected trials and of bounds met */
 } State;
 
+/* How far the points of the body are from the wall, at the end of the last step, and how much that changed along it. */
+typedef struct {
+    double gap[MAX_POINTS], change[MAX_POINTS];
+} Surroundings;
+
 /* The bit at the front of its hole, dimensionless. */
 typedef struct {
     Scaled scaled;
@@ -44,10 +51,12 @@ typedef struct {
     double length_scale;
     Options options;
     State now;
+    Surroundings around;
     Law law;        /* of the present regime and inputs, */
     int law_known;  /* if it is made already */
     int under_way;  /* whether a call has set out and not yet arrived; then the way back leads to … */
     State before;   /* … the state before it, */
+    Surroundings around_before;
     Kink last_kink; /* with its last kink, whose jump may have changed since */
 } Integrator;
 
@@ -67,7 +76,9 @@ static inline double shortest_step(const Integrator *p, double xi) {
 }
 
 static inline const Law *present_law(Integrator *p) {
-    if (!p->law_known) p->law = make_law(&p->scaled, &p->modes, p->now.regime, p->now.inputs, p->now.inputs_xi);
+    const State *now = &p->now;
+    if (!p->law_known)
+        make_law(&p->law, &p->scaled, &now->places, &p->modes, now->regime, now->inputs, now->inputs_xi);
     p->law_known = 1;
     return &p->law;
 }
@@ -80,9 +91,108 @@ static inline void bear(Integrator *p, double W) {
     p->law_known = 0;
 }
 
+/* Find the places of the present regime with the bit at `xi`; those of the stabilizers stay. */
+static inline void find_places(State *now, const Scaled *scaled, double xi) {
+    Places *places = &now->places;
+    const Contact *contact = &now->regime.contact;
+    Count oldest = first_kink(&now->kinks, scaled->n);
+    places->count = place_count(*contact, scaled->n), places->nearest = INFINITY;
+    for (int i = 0; i < places->count; i++) {
+        places->s[i] = scaled->s[support_at(contact, scaled->n, i)];
+        places->nearest = smaller(places->nearest, places->s[i]);
+        if (i < scaled->n) continue;
+        Count *ahead = &now->kinks.ahead[i];
+        for (*ahead = oldest; *ahead < now->kinks.end; ++*ahead)
+            if (kink(&now->kinks, *ahead)->xi + places->s[i] > xi + MERGE) break;
+        now->hole.cursor[i] = find(&now->hole, xi - places->s[i]);
+    }
+}
+
 static inline void change_regime(Integrator *p, Regime regime) {
     p->now.regime = regime;
     p->law_known = 0;
+}
+
+/* Let points of the body have other places, with the bit at `xi`. */
+static inline void change_places(Integrator *p, Contact contact, double xi) {
+    p->now.regime.contact = contact;
+    find_places(&p->now, &p->scaled, xi);
+    p->law_known = 0;
+}
+
+/* What bends the beam with the bit at `xi` in the state `x`. */
+static inline Loads loads_at(const Integrator *p, double xi, const double x[COMPONENTS], double F_rss) {
+    const Places *places = &p->now.places;
+    double delayed[MAX_PLACES][DIRECTIONS];
+    Loads loads;
+    loads.count = places->count, loads.F_rss = F_rss;
+    hole_at_places(&p->now.hole, places, xi, delayed);
+    for (int i = 0; i < places->count; i++) loads.e[i] = x[LATERAL] - delayed[i][0] - places->s[i] * x[ANGLE];
+    loads.g = sin(p->scaled.axial ? x[ANGLE] : x[LATERAL] - delayed[0][0]);
+    return loads;
+}
+
+/* The steering force with the bit at `xi`, ahead of where the inputs were taken over. */
+static inline double force_at(const State *now, double xi) {
+    return now->inputs.F_rss + now->inputs.F_rss_slope * (xi - now->inputs_xi);
+}
+
+/* Offset of the bit's axis from the hole at a point of the body with the bit at `xi` in the state `x`. The hole ends where
+   the step begins that is being tried. */
+static inline double offset_at(const Integrator *p, const Step *step, double xi, const double x[COMPONENTS], int point) {
+    double s = p->scaled.s[p->scaled.n + point], at = xi - s, Y;
+    if (at >= step->xi) Y = polynomial(step->x[LATERAL], (at - step->xi) / step->h);
+    else {
+        const Piece *own = piece(&p->now.hole, find(&p->now.hole, at));
+        Y = polynomial(own->x[LATERAL], (at - own->start) * own->rate);
+    }
+    return x[LATERAL] - Y - s * x[ANGLE];
+}
+
+/* How far every point of the body is from the wall with the bit at `xi` in a step. */
+static inline void find_gaps(Integrator *p, const Step *step, double xi, double gap[MAX_POINTS]) {
+    const State *now = &p->now;
+    const Contact *contact = &now->regime.contact;
+    double x[COMPONENTS], F[MAX_PLACES];
+    int n = p->scaled.n;
+    step_state(step, xi, x);
+    Loads loads = loads_at(p, xi, x, force_at(now, xi));
+    contact_forces(mode_of(&p->modes, *contact), &loads, F);
+    for (int k = 0; k < p->scaled.points; k++) {
+        double e = offset_at(p, step, xi, x, k);
+        gap[k] = p->scaled.y_star[n + k] - fabs(deflection_under(&p->modes, contact, &loads, F, n + k, e));
+    }
+}
+
+#define NEARBY 2.0    /* a point is watched whose gap is less than so many times its change over the last step, … */
+#define FAR_AWAY 4.0  /* … and no longer when it is more than so many times that */
+
+/* Choose which points to watch from the end of the last step on. */
+static inline void choose_watched(Integrator *p, double xi) {
+    Contact contact = p->now.regime.contact;
+    int n = p->scaled.n, changed = 0;
+    for (int k = 0; k < p->scaled.points; k++) {
+        int place = place_of(&contact, n, k);
+        double gap = p->around.gap[k], change = p->around.change[k];
+        if (place < 0 && gap < NEARBY * change && contact.watched < MAX_WATCHED) watch(&contact, n, k, 0), changed = 1;
+        else if (place >= 0 && !contact.of[place] && gap > FAR_AWAY * change) unwatch(&contact, n, place), changed = 1;
+    }
+    if (changed) change_places(p, contact, xi);
+}
+
+/* Watch every point that a trial step has brought through the wall unwatched, with the step to be tried again from `xi`;
+   returns how many there are, or −1 if there is no room. */
+static inline int watch_beyond(Integrator *p, const double gap[MAX_POINTS], double xi) {
+    Contact contact = p->now.regime.contact;
+    int n = p->scaled.n, found = 0;
+    for (int k = 0; k < p->scaled.points; k++) {
+        if (gap[k] >= 0 || place_of(&contact, n, k) >= 0) continue;
+        if (contact.watched == MAX_WATCHED) return -1;
+        watch(&contact, n, k, 0);
+        found++;
+    }
+    if (found) change_places(p, contact, xi);
+    return found;
 }
 
 /* Go to the regime on the other side of the bound that a step has met. */
@@ -115,13 +225,16 @@ static inline int leave(Integrator *p, const Step *last, double x[COMPONENTS]) {
     step_state(last, xi, x);
     keep_origin_near(now, x);
     forget(&now->hole, xi - LOOK_BACK - p->scaled.s[p->scaled.n - 1]);
-    move_cursors(&now->hole, &p->scaled, xi);
+    move_cursors(&now->hole, &now->places, xi);
     /* a step may have to stop half way to a kink: a kink too near for that counts as met here */
-    int kink = kink_here(&now->kinks, &p->scaled, xi, larger(MERGE, 2 * shortest_step(p, xi)));
-    if (last->event == NONE) return kink;
-    pass_event(p, last);
-    now->events++;
-    return 2; /* Y' is continuous over a bound, Y'' is not */
+    int kink = kink_here(&now->kinks, &now->places, xi, larger(MERGE, 2 * shortest_step(p, xi)));
+    if (last->event != NONE) {
+        pass_event(p, last);
+        now->events++;
+        kink = 2; /* Y' is continuous over a bound, Y'' is not */
+    }
+    if (p->scaled.points) choose_watched(p, xi);
+    return kink;
 }
 
 /* Whether the rings have room for one step more, besides what the way back needs. */
@@ -154,8 +267,8 @@ static inline Plan first_plan(const Step *last, int kink, const Law *law, double
 
 /* Choose the length of the trial: as planned, but no kink lies within it, and none is left a short step ahead. */
 static inline void choose_length(const Integrator *p, const Law *law, double xi, Plan *plan) {
-    double largest = p->options.largest_step, h = smaller(plan->planned, largest);
-    double way = next_kink(&p->now.kinks, &p->scaled, law->gains, p->options.relative_tolerance, xi, 2 * h) - xi;
+    double largest = smaller(p->options.largest_step, p->now.places.nearest), h = smaller(plan->planned, largest);
+    double way = next_kink(&p->now.kinks, &p->now.places, law->gains, p->options.relative_tolerance, xi, 2 * h) - xi;
     double longest = plan->repeated ? h : smaller(STRETCH * h, largest);
     if (way < 2 * h) h = way <= longest ? way : way / 2;
     plan->h = h;
@@ -167,7 +280,7 @@ static inline void try_step(
 ) {
     Step step = {xi, h, {{0}}, xi + h, NONE, 0, INFINITY};
     trial->step = step;
-    look_up(&p->now.hole, &p->scaled, trial);
+    look_up(&p->now.hole, &p->now.places, trial);
     law_try(law, &p->options, x, trial);
 }
 
@@ -205,7 +318,7 @@ static inline Status find_step(
             p->now.rejected++;
             continue;
         }
-        cut_at_event(&p->scaled, &p->now.hole, law, plan->slack, trial);
+        cut_at_event(&p->now.places, &p->now.hole, law, plan->slack, trial);
         if (step->event == NONE || step->end - xi >= shortest) return DONE;
         if (plan->switches < 2 * law->bound_count) {
             pass_event(p, step);
@@ -218,6 +331,29 @@ static inline Status find_step(
     }
 }
 
+/* See that no point of the body that is not watched has come through the wall along a trial step: where one has, it is
+   watched and the step tried again. Remember how far from the wall they are then. */
+static inline Status keep_clear(
+    Integrator *p, const Step *last, int kink, const double x[COMPONENTS], Plan *plan, Trial *trial, Problem *problem
+) {
+    double gap[MAX_POINTS];
+    for (;;) {
+        find_gaps(p, &trial->step, trial->step.end, gap);
+        int beyond = watch_beyond(p, gap, last->end);
+        if (beyond < 0) return met(problem, TOO_CROWDED, MAX_WATCHED, last->end * p->length_scale);
+        if (!beyond) break;
+        p->now.rejected++;
+        *plan = first_plan(last, kink, present_law(p), p->options.layers);
+        Status status = find_step(p, last->end, x, plan, trial, problem);
+        if (status != DONE) return status;
+    }
+    for (int k = 0; k < p->scaled.points; k++) {
+        p->around.change[k] = fabs(gap[k] - p->around.gap[k]);
+        p->around.gap[k] = gap[k];
+    }
+    return DONE;
+}
+
 /* Append one step at the end of the last one. */
 static inline Status take_step(Integrator *p, Problem *problem) {
     State *now = &p->now;
@@ -228,6 +364,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     int kink = leave(p, &last, x);
     Plan plan = first_plan(&last, kink, present_law(p), p->options.layers);
     Status status = find_step(p, last.end, x, &plan, &trial, problem);
+    if (status == DONE && p->scaled.points) status = keep_clear(p, &last, kink, x, &plan, &trial, problem);
     if (status != DONE) return status;
     Step *step = &now->step;
     *step = trial.step;
@@ -249,6 +386,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
 static inline void go_back(Integrator *p) {
     if (!p->under_way) return;
     p->now = p->before;
+    if (p->scaled.points) p->around = p->around_before;
     *kink(&p->now.kinks, p->now.kinks.end - 1) = p->last_kink;
     p->law_known = p->under_way = 0;
     bear(p, p->now.inputs.W);
@@ -259,6 +397,7 @@ static inline int set_out(Integrator *p) {
     if (p->under_way) return 1;
     if (!has_room(p)) return 0;
     p->before = p->now;
+    if (p->scaled.points) p->around_before = p->around;
     p->last_kink = *kink(&p->now.kinks, p->now.kinks.end - 1);
     p->under_way = 1;
     return 1;

@@ -18,25 +18,26 @@
 /* A `Row` under given inputs, on the state:
    theta θ + Y Y + Σ_i delayed[i] Y(ξ−s_i) + g times the sine + constant + slope (ξ − ξ of the inputs). */
 typedef struct {
-    double theta, Y, delayed[MAX_STABILIZERS], g, constant, slope;
+    double theta, Y, delayed[MAX_PLACES], g, constant, slope;
 } Linear;
 
 /* `scale` times `row`, with e_i = Y − Y(ξ−s_i) − s_i θ put in. */
-static inline Linear make_linear(const Row *row, const Scaled *scaled, ScaledInputs inputs, double scale) {
-    Linear linear = {0};
-    for (int i = 0; i < scaled->n; i++) {
-        linear.theta += row->e[i] * scaled->s[i];
-        linear.Y += row->e[i];
-        linear.delayed[i] = -scale * row->e[i];
+static inline void make_linear(
+    Linear *linear, const Row *row, const Places *places, ScaledInputs inputs, double scale
+) {
+    linear->theta = linear->Y = 0.0;
+    for (int i = 0; i < places->count; i++) {
+        linear->theta += row->e[i] * places->s[i];
+        linear->Y += row->e[i];
+        linear->delayed[i] = -scale * row->e[i];
     }
-    linear.theta *= -scale, linear.Y *= scale;
-    linear.g = scale * row->g;
-    linear.constant = scale * (row->rss * inputs.F_rss + row->constant);
-    linear.slope = scale * row->rss * inputs.F_rss_slope;
-    return linear;
+    linear->theta *= -scale, linear->Y *= scale;
+    linear->g = scale * row->g;
+    linear->constant = scale * (row->rss * inputs.F_rss + row->constant);
+    linear->slope = scale * row->rss * inputs.F_rss_slope;
 }
 
-/* While a regime holds, `value` lies between `lower` and `upper`: of stabilizer `part`, or of the tilt (part n−1). */
+/* While a regime holds, `value` lies between `lower` and `upper`: of the support at the place `part`, or of the tilt. */
 typedef struct {
     int part;
     Linear value;
@@ -45,51 +46,66 @@ typedef struct {
 
 /* The right-hand side in one regime under given inputs, and the bounds within which it holds. */
 typedef struct {
-    int n;
-    int axial;        /* whether the sine is that of θ */
+    int count; /* of places */
+    int axial; /* whether the sine is that of θ */
     double inputs_xi; /* where the inputs were taken over */
     Linear theta_rate, Theta;
     double relaxation; /* length over which θ forgets */
     int bound_count;
-    Bound bounds[MAX_STABILIZERS];
+    Bound bounds[MAX_PLACES];
     /* per change of Y(ξ−s_i) the change of Θ, once θ has followed, or that of a bounded value if it is larger */
-    double gains[MAX_STABILIZERS];
+    double gains[MAX_PLACES];
 } Law;
 
 /* Θ = θ − ψ, with ψ as it is without saturation. */
-static inline Linear less_tilt(Linear psi, int n) {
-    Linear Theta = {1.0 - psi.theta, -psi.Y, {0}, -psi.g, -psi.constant, -psi.slope};
-    for (int i = 0; i < n; i++) Theta.delayed[i] = -psi.delayed[i];
-    return Theta;
+static inline void less_tilt(Linear *Theta, const Linear *psi, int count) {
+    Theta->theta = 1.0 - psi->theta, Theta->Y = -psi->Y, Theta->g = -psi->g;
+    Theta->constant = -psi->constant, Theta->slope = -psi->slope;
+    for (int i = 0; i < count; i++) Theta->delayed[i] = -psi->delayed[i];
 }
 
-static inline Law make_law(const Scaled *scaled, Modes *modes, Regime regime, ScaledInputs inputs, double inputs_xi) {
+/* Θ = θ − ψ, with a saturated ψ. */
+static inline void less_limit(Linear *Theta, double psi, int count) {
+    Theta->theta = 1.0, Theta->Y = Theta->g = Theta->slope = 0.0, Theta->constant = -psi;
+    for (int i = 0; i < count; i++) Theta->delayed[i] = 0.0;
+}
+
+/* How far the law's values change per change of Y(ξ−s_i). */
+static inline void find_gains(Law *law) {
+    for (int i = 0; i < law->count; i++) {
+        law->gains[i] = fabs(law->theta_rate.delayed[i] / law->theta_rate.theta) + fabs(law->Theta.delayed[i]);
+        for (int k = 0; k < law->bound_count; k++)
+            law->gains[i] = larger(law->gains[i], fabs(law->bounds[k].value.delayed[i]));
+    }
+    if (!law->axial) law->gains[0] += fabs(law->theta_rate.g / law->theta_rate.theta) + fabs(law->Theta.g);
+}
+
+/* Make the law of a regime under inputs taken over at `inputs_xi`. */
+static inline void make_law(
+    Law *law, const Scaled *scaled, const Places *places, Modes *modes, Regime regime, ScaledInputs inputs,
+    double inputs_xi
+) {
     const Mode *mode = mode_of(modes, regime.contact);
-    int n = scaled->n;
-    Law law = {0};
-    Linear psi = make_linear(&mode->F_0, scaled, inputs, 1 / inputs.eta_pi);
-    Linear saturated = {1.0, 0.0, {0}, 0.0, -regime.saturation * scaled->psi_star, 0.0};
-    law.n = n, law.axial = scaled->axial, law.inputs_xi = inputs_xi;
-    law.theta_rate = make_linear(&mode->M, scaled, inputs, 1 / (scaled->epsilon * inputs.eta_pi));
-    law.Theta = regime.saturation ? saturated : less_tilt(psi, n);
-    law.relaxation = 1 / fabs(law.theta_rate.theta + law.Theta.Y);
-    Bound of_tilt = {n - 1, psi, 0.0, 0.0};
-    saturation_bounds(regime.saturation, scaled->psi_star, &of_tilt.lower, &of_tilt.upper);
-    law.bounds[law.bound_count++] = of_tilt;
-    for (int i = 0; i < n - 1; i++) {
-        Bound *bound = &law.bounds[law.bound_count];
+    int n = scaled->n, count = places->count;
+    Bound *of_tilt = &law->bounds[0];
+    law->count = count, law->axial = scaled->axial, law->inputs_xi = inputs_xi, law->bound_count = 1;
+    make_linear(&law->theta_rate, &mode->M, places, inputs, 1 / (scaled->epsilon * inputs.eta_pi));
+    of_tilt->part = n - 1;
+    make_linear(&of_tilt->value, &mode->F_0, places, inputs, 1 / inputs.eta_pi);
+    saturation_bounds(regime.saturation, scaled->psi_star, &of_tilt->lower, &of_tilt->upper);
+    if (regime.saturation) less_limit(&law->Theta, regime.saturation * scaled->psi_star, count);
+    else less_tilt(&law->Theta, &of_tilt->value, count);
+    law->relaxation = 1 / fabs(law->theta_rate.theta + law->Theta.Y);
+    for (int i = 0; i < count; i++) {
+        Bound *bound = &law->bounds[law->bound_count];
+        if (i == n - 1) continue;
         const Row *row = contact_bounds(modes, mode, i, &bound->lower, &bound->upper);
         if (bound->lower == -INFINITY && bound->upper == INFINITY) continue;
-        bound->part = i, bound->value = make_linear(row, scaled, inputs, 1.0);
-        law.bound_count++;
+        bound->part = i;
+        make_linear(&bound->value, row, places, inputs, 1.0);
+        law->bound_count++;
     }
-    for (int i = 0; i < n; i++) {
-        law.gains[i] = fabs(law.theta_rate.delayed[i] / law.theta_rate.theta) + fabs(law.Theta.delayed[i]);
-        for (int k = 0; k < law.bound_count; k++)
-            law.gains[i] = larger(law.gains[i], fabs(law.bounds[k].value.delayed[i]));
-    }
-    if (!law.axial) law.gains[0] += fabs(law.theta_rate.g / law.theta_rate.theta) + fabs(law.Theta.g);
-    return law;
+    find_gains(law);
 }
 
 /* A bounded value at one place. */
@@ -99,13 +115,13 @@ static inline double law_at(
     const Linear *f = &bound->value;
     double sine = sin(law->axial ? x[ANGLE] : x[LATERAL] - delayed[0][0]);
     double value = f->theta * x[ANGLE] + f->Y * x[LATERAL] + f->g * sine + f->constant;
-    for (int i = 0; i < law->n; i++) value += f->delayed[i] * delayed[i][0];
+    for (int i = 0; i < law->count; i++) value += f->delayed[i] * delayed[i][0];
     return value + f->slope * (xi - law->inputs_xi);
 }
 
-/* Add the terms of stabilizers 2 … n, and that of a force which changes along the step. */
-static inline void add_others(const Linear *f, int n, const Trial *trial, double values[POINTS]) {
-    for (int i = 1; i < n; i++)
+/* Add the terms of all places but the first, and that of a force which changes along the step. */
+static inline void add_others(const Linear *f, int count, const Trial *trial, double values[POINTS]) {
+    for (int i = 1; i < count; i++)
         if (f->delayed[i] != 0)
             for (int k = 0; k < POINTS; k++) values[k] += f->delayed[i] * trial->delayed[i][0][k];
     if (f->slope != 0)
@@ -118,17 +134,17 @@ static inline void law_along(const Law *law, const Bound *bound, const Trial *tr
     const double *theta = trial->x[ANGLE], *Y = trial->x[LATERAL], *Y_1 = trial->delayed[0][0];
     for (int k = 0; k < POINTS; k++)
         values[k] = f->constant + f->theta * theta[k] + f->Y * Y[k] + f->delayed[0] * Y_1[k] + f->g * trial->sines[k];
-    add_others(f, law->n, trial, values);
+    add_others(f, law->count, trial, values);
 }
 
 /* The same of a part of the right-hand side, with (θ, Y) frozen at the start of the step. */
 static inline void linear_frozen(
-    const Linear *f, int n, const double x[COMPONENTS], const Trial *trial, const double sines[POINTS],
+    const Linear *f, int count, const double x[COMPONENTS], const Trial *trial, const double sines[POINTS],
     double values[POINTS]
 ) {
     double state = f->theta * x[ANGLE] + f->Y * x[LATERAL] + f->constant;
     for (int k = 0; k < POINTS; k++) values[k] = state + f->g * sines[k] + f->delayed[0] * trial->delayed[0][0][k];
-    add_others(f, n, trial, values);
+    add_others(f, count, trial, values);
 }
 
 #define REST 0.03     /* what may be neglected of the sine, in tolerances of θ: little beside the error of a step */
@@ -188,8 +204,8 @@ static inline void law_try(const Law *law, const Options *options, const double 
         frozen[k] = tangent.sine + tangent.cosine * (x[tangent.part] - tangent.behind[k] - tangent.from);
     }
     for (int iteration = 0; iteration < ITERATIONS; iteration++) {
-        linear_frozen(rate, law->n, x, trial, frozen, f_theta);
-        linear_frozen(Theta, law->n, x, trial, frozen, f_Y);
+        linear_frozen(rate, law->count, x, trial, frozen, f_theta);
+        linear_frozen(Theta, law->count, x, trial, frozen, f_Y);
         collocate(h, J, f_theta, f_Y, parts_theta, parts_Y);
         radau_values(Y, parts_Y, trial->x[LATERAL]);
         radau_values(theta, parts_theta, trial->x[ANGLE]);

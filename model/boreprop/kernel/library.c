@@ -8,11 +8,11 @@ const char *boreprop_quantities_digest(void) { return QUANTITIES_DIGEST; }
 void boreprop_sentence(const Problem *problem, char line[MESSAGE]) { sentence(problem, line); }
 
 Run *boreprop_start(
-    const int structure[3], const double *parameters, const Options *options, Count count, const double *measured_depth,
+    const int structure[4], const double *parameters, const Options *options, Count count, const double *measured_depth,
     const double *inclination, const Inputs *inputs, Problem *problem
 ) {
     Survey survey = {count, measured_depth, inclination};
-    Structure made = {structure[0], structure[1], structure[2]};
+    Structure made = {structure[0], structure[1], structure[2], structure[3]};
     System system = system_of(made, parameters);
     Run *run = calloc(1, sizeof *run);
     met(problem, NO_MEMORY, MOST_PIECES, 0.0);

@@ -3,13 +3,27 @@
 #define BOREPROP_SYSTEM_H
 
 #include "checks.h"
+#include "linear.h"
 #include "quantities.h"
+
+/* What the wall may push: the stabilizers, of which it never pushes the last, and points of the body between them. */
+enum { MAX_SUPPORTS = MAX_STABILIZERS + MAX_POINTS };
+/* How many supports may touch a wall, or be near enough to it to be watched, at once. */
+enum { MAX_PLACES = SIZE, MAX_WATCHED = MAX_PLACES - MAX_STABILIZERS };
+
+/* The places behind the bit where the hole has a say: how many, how far behind, and the least of these distances. */
+typedef struct {
+    int count;
+    double s[MAX_PLACES], nearest;
+} Places;
 
 /* The drilling system in the paper's numbers: lengths over ℓ₁, forces over F*, moments over F*ℓ₁. */
 typedef struct {
     int n;
-    double s[MAX_STABILIZERS];          /* s_1 … s_n, distance of the stabilizers from the bit; s_1 = 1 */
-    double y_star[MAX_STABILIZERS - 1]; /* y*_1 … y*_{n−1} */
+    /* s_1 … s_n, distance of the stabilizers from the bit, s_1 = 1; then of the points of the body */
+    double s[MAX_SUPPORTS];
+    double y_star[MAX_SUPPORTS]; /* y*_1 … y*_{n−1}; nothing for the last stabilizer; then that of the points */
+    int points;                  /* of the body */
     double Delta;                       /* distance of the RSS from the bit */
     double w;                           /* w̃ = w ℓ₁ / F* */
     int sections;                       /* of the beam, at least one */
@@ -32,12 +46,16 @@ static inline int value_count(Size size, Structure structure) {
         case EACH_SECTION: return structure.sections;
         case IF_STEPPED: return structure.sections > 0;
         case IF_AXIAL: return structure.axial;
+        case EACH_POINT: return structure.points;
+        case IF_POINTS: return structure.points > 0;
     }
     return 0;
 }
 
 /* Whether the values of a quantity are numbered. */
-static inline int is_list(Size size) { return size == EACH_STABILIZER || size == EACH_NON_IDEAL || size == EACH_SECTION; }
+static inline int is_list(Size size) {
+    return size == EACH_STABILIZER || size == EACH_NON_IDEAL || size == EACH_SECTION || size == EACH_POINT;
+}
 
 /* Whether a structure is one that there is room for. */
 static inline int check_structure(Structure structure, Problem *problem) {
@@ -45,6 +63,8 @@ static inline int check_structure(Structure structure, Problem *problem) {
         return wrong(problem, WRONG_COUNT, Q_STABILIZER_POSITION, 0, structure.n, MAX_STABILIZERS);
     if (structure.sections < 0 || structure.sections > MAX_SECTIONS)
         return wrong(problem, WRONG_COUNT, Q_SECTION_LENGTH, 0, structure.sections, MAX_SECTIONS);
+    if (structure.points < 0 || structure.points > MAX_POINTS)
+        return wrong(problem, WRONG_COUNT, Q_BODY_POINT_POSITION, 0, structure.points, MAX_POINTS);
     return 1;
 }
 
@@ -70,8 +90,9 @@ static inline int check_quantity(const Quantity *quantity, int index, double val
 /* The system of this structure with these parameters, one after the other in the order of the table. Nothing is read for
    a structure that `check_system` refuses. */
 static inline System system_of(Structure structure, const double *values) {
-    System system = {structure, {0}};
+    System system = {0};
     Problem problem;
+    system.structure = structure;
     if (!check_structure(structure, &problem)) return system;
     for (int k = 0; k < PARAMETER_COUNT; k++) {
         int count = value_count(PARAMETER_TABLE[k].size, structure);
@@ -94,6 +115,13 @@ static inline int check_reach(const System *system, Problem *problem) {
     return wrong(problem, OUT_OF_REACH, Q_SECTION_LENGTH, 0, reach, last);
 }
 
+/* Whether the points of the body lie between the bit and the last stabilizer. */
+static inline int check_body(const System *system, Problem *problem) {
+    int points = system->structure.points;
+    double last = system->stabilizer_position[system->structure.n - 1];
+    return !points || check_at_most(Q_BODY_POINT_POSITION, system->body_point_position[points - 1], last, problem);
+}
+
 static inline int check_system(const System *system, Problem *problem) {
     const double *positions = system->stabilizer_position;
     int n = system->structure.n;
@@ -106,6 +134,8 @@ static inline int check_system(const System *system, Problem *problem) {
     }
     return check_increasing(Q_STABILIZER_POSITION, n, positions, problem) &&
            check_spans(Q_STABILIZER_POSITION, n, positions, problem) && check_reach(system, problem) &&
+           check_increasing(Q_BODY_POINT_POSITION, system->structure.points, system->body_point_position, problem) &&
+           check_body(system, problem) &&
            check_at_most(Q_RSS_POSITION, system->rss_position, positions[0], problem);
 }
 
@@ -138,8 +168,12 @@ static inline void scale_sections(const System *system, Scaled *scaled) {
             (given ? system->section_distributed_weight[k] : system->distributed_weight) * l1 / force_scale(system);
     }
     scaled->end_deflection = system->end_deflection / l1;
-    scaled->axial = system->structure.axial;
-    scaled->stepped = system->structure.sections > 0 || scaled->axial;
+    scaled->axial = system->structure.axial, scaled->points = system->structure.points;
+    scaled->stepped = system->structure.sections > 0 || scaled->axial || scaled->points;
+    for (int k = 0; k < scaled->points; k++) {
+        scaled->s[scaled->n + k] = system->body_point_position[k] / l1;
+        scaled->y_star[scaled->n + k] = system->body_point_clearance[k] / l1;
+    }
 }
 
 /* The dimensionless numbers of a drilling system, section II of the paper. */
