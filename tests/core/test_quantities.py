@@ -65,7 +65,7 @@ def test_outputs_follow_at_once_the_inputs_that_the_table_names_and_no_others(
     }  # else the tilt is at its limit
     before, after = (Drilling(case.bha, case.bit, straight, **inputs | other).outputs() for other in (small, large))
     changed = {scalar.partition("[")[0] for scalar, value in after.items() if value != before[scalar]}
-    assert changed == {quantity.name for quantity in OUTPUTS if name in quantity.follows}
+    assert changed == {quantity.name for quantity in OUTPUTS if name in quantity.follows and quantity.count(2)}
 
 
 @pytest.mark.parametrize("quantity", [q for q in INPUTS + PARAMETERS if q.kind == "Real"], ids=lambda q: q.name)

@@ -262,9 +262,9 @@ def page(archive: dict[str, bytes]) -> Page:
 
 @both_flavours
 def test_the_documentation_lists_every_variable_with_its_symbol_meaning_and_start(page: Page, case: Case) -> None:
-    text = " ".join(page.cells)
-    assert all(variable.meaning in text for variable in VARIABLES)
-    assert all(variable.symbol in page.cells for variable in VARIABLES)
+    text, own = " ".join(page.cells), [variable for variable in VARIABLES if variable.count(2)]
+    assert all(variable.meaning in text for variable in own)
+    assert all(variable.symbol in page.cells for variable in own)
     assert str(case.bha.flexural_stiffness) in page.cells
     assert ", ".join(map(str, case.bha.stabilizer_positions)) in page.cells
     assert set(re.findall(r"[a-z_]+(?:\[\d\])?", " ".join(page.cells[::7]))) == set(scalar_names(VARIABLES, 2))

@@ -6,15 +6,26 @@
 
 #define MOST_STAIRS 1000.0
 
+/* A rise over the larger of the values at its ends. */
+static double change_of(double value, double rise) {
+    return rise == 0.0 ? 0.0 : fabs(rise) / larger(value, value + rise);
+}
+
 /* Drill to a length while the inputs go from their present values to those at its end. The force is linear in the
-   length. The kernel keeps the active weight on bit constant over a stretch, so it goes up or down in stairs of equal
-   length, each by a thousandth of its larger value at most. If one stair fails, nothing has moved. */
+   length. The kernel keeps weights constant over a stretch, so they go up or down in stairs of equal length, each by a
+   thousandth of its larger value at most. If one stair fails, nothing has moved. */
 static int drill_on(Component *c, double to, const double end[INPUT_COUNT], char why[LINE]) {
     Drilling *drilling = &c->run->drilling;
     double from = drilling_length(drilling), force = c->value[IN_RSS_FORCE], weight = c->value[IN_ACTIVE_WEIGHT_ON_BIT];
     double slope = to > from ? (end[IN_RSS_FORCE] - force) / (to - from) : 0.0,
            rise = end[IN_ACTIVE_WEIGHT_ON_BIT] - weight;
-    int stairs = to > from ? (int)ceil(MOST_STAIRS * (fabs(rise) / larger(weight, weight + rise))) : 1;
+    double whole = 0.0, whole_rise = 0.0;
+    if (c->packed.variables.structure.axial) {
+        whole = c->value[IN_WEIGHT_ON_BIT];
+        whole_rise = end[IN_WEIGHT_ON_BIT] - whole;
+    }
+    double largest = larger(change_of(weight, rise), change_of(whole, whole_rise));
+    int stairs = to > from ? (int)ceil(MOST_STAIRS * largest) : 1;
     int stair = 0, done = 1;
     double *before = NULL, accepted = drilling->integrator.now.accepted, last = c->weight;
     Problem problem;
@@ -23,7 +34,12 @@ static int drill_on(Component *c, double to, const double end[INPUT_COUNT], char
     else if (!(before = kept_state(drilling, why))) return 0;
     for (; done && stair < stairs; stair++) {
         double at = drilling_length(drilling);
-        Inputs inputs = {force + slope * (at - from), slope, weight + rise * (stair + 0.5) / stairs};
+        Inputs inputs = {
+            .rss_force = force + slope * (at - from),
+            .rss_force_slope = slope,
+            .active_weight_on_bit = weight + rise * (stair + 0.5) / stairs,
+            .weight_on_bit = whole + whole_rise * (stair + 0.5) / stairs
+        };
         if (to > from) last = inputs.active_weight_on_bit;
         double next = stair + 1 < stairs ? from + (to - from) * (stair + 1) / stairs : to;
         done = run_advance(c->run, next, inputs, &problem) == DONE;
@@ -33,7 +49,9 @@ static int drill_on(Component *c, double to, const double end[INPUT_COUNT], char
     if (!done) tell(&problem, why);
     if (!done && before) drilling_return(drilling, before);
     free(before);
-    if (done) c->weight = last, c->run_has_inputs = rise == 0.0 && (to > from || end[IN_RSS_FORCE] == force);
+    if (done)
+        c->weight = last,
+        c->run_has_inputs = rise == 0.0 && whole_rise == 0.0 && (to > from || end[IN_RSS_FORCE] == force);
     return done;
 }
 

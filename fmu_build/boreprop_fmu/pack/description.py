@@ -42,8 +42,7 @@ def model_description(
     guid
         The FMU's identity.
     structure
-        Numbers of stabilizers and sections, and whether the axial load counts; or the number of stabilizers on a uniform
-        beam.
+        How the BHA is made up; or the number of stabilizers on the paper's beam.
     start
         Start value of every input and parameter, by scalar name.
     stop_time, step_size

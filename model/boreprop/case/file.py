@@ -15,8 +15,8 @@ from ..core.columns import regular
 from ..core.quantities import QUANTITIES
 from ..errors import InputError
 from .case import Case
-from .sections import sections_in_file
 from .schema import OF_FILES, TABLES, parse, read_toml
+from .sections import sections_in_file
 
 
 def load_case(path: str | Path) -> Case:

@@ -22,6 +22,7 @@ from ..core.errors import ParameterError
 from ..core.quantities import QUANTITIES, Quantity, columns_of, quantity_of
 from ..core.survey import Survey
 from ..errors import InputError, shown
+from .body import place_points
 from .case import Case, Schedule
 from .sections import lift_sections
 from .tables import read_schedule, read_survey
@@ -46,6 +47,7 @@ def parse(text: str, source: Path) -> Case:
     """See `boreprop.case.file.parse_case`."""
     document = read_toml(text, source)
     lift_sections(document, source)
+    place_points(document, source)
     check_keys(document, source)
     fields = case_fields(document) | read_files(document, source)
     try:

@@ -1,4 +1,4 @@
-"""The sections of a beam in a case file, [[bha.section]]: from diameters and densities, or from stiffness and weight."""
+"""The sections of a beam in a case file, [[bha.section]]."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -27,7 +27,7 @@ def lift_sections(document: dict[str, Any], source: Path) -> None:
     Raises
     ------
     InputError
-        If a section lacks a key, has an unknown one or one that another gives already, or has a diameter that cannot be.
+        If a section lacks a key, or has an unknown one, one that another gives already, or a diameter that cannot be.
     """
     bha = document.get("bha")
     if not isinstance(bha, dict) or "section" not in bha:

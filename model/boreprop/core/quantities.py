@@ -13,7 +13,9 @@ from typing import Any, Literal, NamedTuple
 
 Role = Literal["input", "output", "parameter", "case"]  # "case": only a case has it, an FMU has not
 Kind = Literal["Real", "Integer", "Boolean", "String"]
-Size = Literal["1", "n", "n-1", "uniform", "sections", "stepped", "axial", "points", "body", "column"]  # "column": as long as its table
+Size = Literal[
+    "1", "n", "n-1", "uniform", "sections", "stepped", "axial", "points", "body", "column"
+]  # "column": as long as its table
 
 MAX_STABILIZERS = 6
 MAX_SECTIONS = 24
@@ -30,20 +32,28 @@ class Structure(NamedTuple):
     axial_load: int = 0  # 1: the load along the beam counts
     body_points: int = 0  # of the beam between the stabilizers, at which its body may touch the wall
 
-    @cache
-    def counts(self) -> dict[str, int]:
-        """Size → how many values."""
-        n, sections, axial, points = self
-        return {
-            **{"1": 1, "n": n, "n-1": n - 1, "column": 1},
-            **{"uniform": int(not sections), "stepped": int(bool(sections)), "sections": sections, "axial": axial},
-            **{"points": points, "body": int(bool(points))},
-        }
-
     @property
     def is_of_the_paper(self) -> bool:
         """Whether it is a uniform beam without a load along it, the paper's."""
         return self == Structure(self.stabilizers)
+
+
+@cache
+def counts(structure: Structure) -> dict[str, int]:
+    """Size → how many values a quantity of that size has."""
+    n, sections, axial, points = structure
+    return {
+        "1": 1,
+        "n": n,
+        "n-1": n - 1,
+        "column": 1,
+        "uniform": int(not sections),
+        "stepped": int(bool(sections)),
+        "sections": sections,
+        "axial": axial,
+        "points": points,
+        "body": int(bool(points)),
+    }
 
 
 @dataclass(frozen=True)
@@ -99,7 +109,7 @@ class Quantity:
     def count(self, structure: int | Structure) -> int:
         """How many values it has, for a structure or for so many stabilizers on the paper's beam."""
         made = structure if isinstance(structure, Structure) else Structure(structure)
-        return made.counts()[self.size]
+        return counts(made)[self.size]
 
     @property
     def is_list(self) -> bool:
@@ -172,6 +182,8 @@ QUANTITIES: tuple[Quantity, ...] = (
 
     Quantity("section_outer_diameter", "case", "m", "", "", "outer diameter of the section; 0: not given", size="sections", at_least=0.0, key="section.outer_diameter", field="bha.section_outer_diameters"),
     Quantity("mud_density", "case", "kg/m3", "", "", "density of the mud, for the buoyant weight of sections given by their diameters", at_least=0.0, key="bha.mud_density"),
+    Quantity("body_contact", "case", "", "", "", "whether the body between the stabilizers may touch the wall", kind="Boolean", key="bha.body_contact"),
+    Quantity("body_contact_spacing", "case", "m", "", "", "distance between the points of the body that may touch the wall", above=0.0, key="bha.body_contact_spacing"),
     Quantity("axial_load", "case", "", "N", "", "whether the load along the BHA counts in its bending", kind="Boolean", size="axial", key="bha.axial_load", field="bha.axial_load"),
     Quantity("bit_diameter", "case", "m", "", "", "diameter of the hole", above=0.0, at_most=1.5, key="bit.diameter", field="bit_diameter"),
     Quantity("length", "case", "m", "", "", "length to drill", above=0.0, key="drilling.length", field="length"),

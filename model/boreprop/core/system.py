@@ -6,7 +6,7 @@ from itertools import pairwise
 from .checks import check_increasing, check_number, check_part
 from .errors import ParameterError, error_of
 from .problems import CONSTRAINTS, DERIVED, Problem
-from .quantities import MAX_SECTIONS, Structure
+from .quantities import MAX_POINTS, MAX_SECTIONS, Structure
 from .quantities import MAX_STABILIZERS as MAX_STABILIZERS
 
 LEAST_SPAN = 0.01  # m between stabilizers, at least: none stand closer, and the forces there would be rounding errors
@@ -35,12 +35,15 @@ class BottomHoleAssembly:
         they are at least as long as the BHA. Without any the beam is uniform.
     section_outer_diameters
         Outer diameter of each section, m; 0 where it is not known.
+    body_point_positions, body_point_clearances
+        Up to 128 points of the body between the stabilizers at which it may touch the wall: distance from the bit, and
+        clearance on each side of a centred body, m. Without any it never touches, assumption 5 of the paper.
     end_deflection
         Of a beam in sections: how far from the axis of the hole the last stabilizer holds it, m, positive to the high
         side. A string that lies on the low side of the hole there is off by the clearance of its body.
     axial_load
         Whether the weight on bit, and the weight along the hole, press and pull the beam, which makes it softer and
-        stiffer. The native engine only has this, and beams in sections.
+        stiffer. Only the native engine has this, sections and points of the body.
 
     Raises
     ------
@@ -81,6 +84,19 @@ class BottomHoleAssembly:
             if after - before < LEAST_SPAN * (1 - 1e-9):  # 4.34 and 4.35 are that far apart, but for rounding
                 raise error_of(Problem("too close", "stabilizer_position", 0, after, before, LEAST_SPAN))
         check_number("rss_position", self.rss_position, at_most=self.length_scale)
+        self._check_body()
+
+    def _check_body(self) -> None:
+        """Check the points of the body together."""
+        positions, count = self.body_point_positions, len(self.body_point_positions)
+        if len(self.body_point_clearances) != count:
+            constraint = f"must hold one value per point of the body, here {count}"
+            raise ParameterError("body_point_clearance", constraint, self.body_point_clearances)
+        if count > MAX_POINTS:
+            raise ParameterError("body_point_position", f"must hold at most {MAX_POINTS} values", positions)
+        check_increasing("body_point_position", positions)
+        for position in positions[-1:]:
+            check_number("body_point_position", position, index=count, at_most=self.stabilizer_positions[-1])
 
     def _take_sections(self) -> None:
         """Check the sections together, and take weight and stiffness of the one at the bit."""
@@ -183,9 +199,11 @@ def scale(bha: BottomHoleAssembly, bit: BitRock) -> Scaled:
         If one of them is not finite, though the parameters are in their ranges, or the beam is not the paper's.
     """
     if not bha.structure.is_of_the_paper:
-        what = "must be off" if bha.axial_load else "must not be given"
-        name = "axial_load" if bha.axial_load else "section_length"
-        raise ParameterError(name, f"{what} for what is computed in Python: it has the uniform beam of the paper", True)
+        raise ParameterError(
+            "bha",
+            "must be the paper's, a uniform beam without axial_load or body_contact, for what Python computes",
+            bha,
+        )
     l1 = bha.length_scale
     check_number(DERIVED["force_scale"], bha.force_scale, above=0.0)
     scaled = Scaled(

@@ -29,6 +29,7 @@ typedef struct {
 /* The nodes of a beam: the bit, and what bends it or changes along it. Between two of them it is uniform. */
 typedef struct {
     int count;
+    double cosine; /* of the inclination at which the weight acts along the beam */
     double s[MAX_NODES], beta[MAX_NODES], w[MAX_NODES], N[MAX_NODES]; /* β and w above the node; N at it */
     Stretch above[MAX_NODES];                                         /* to the next node */
 } Nodes;
@@ -52,19 +53,22 @@ static inline void carry(double h, double beta, double N, double rise, double lo
     line[SHEAR] += shear[1];
 }
 
+/* Carry a line from node k on, not beyond the next, under the weight times g. */
+static inline void carry_from(const Nodes *nodes, int k, double length, double g, double line[PARTS]) {
+    double beta = nodes->beta[k], w = nodes->w[k], rise = w * nodes->cosine, end = nodes->N[k] + rise * length;
+    int parts = 1 + (int)smaller(length * sqrt(3 * larger(fabs(nodes->N[k]), fabs(end)) / beta), 1e4);
+    double h = length / parts;
+    for (int part = 0; part < parts; part++) carry(h, beta, nodes->N[k] + rise * (part * h), rise, -w * g, line);
+}
+
 /* The stretch above node k. */
-static inline Stretch stretch_above(const Nodes *nodes, int k, double cosine) {
-    Stretch stretch = {{{0}}, {0}};
-    double length = nodes->s[k + 1] - nodes->s[k], beta = nodes->beta[k], w = nodes->w[k], rise = w * cosine;
-    double pull = larger(fabs(nodes->N[k]), fabs(nodes->N[k + 1]));
-    int parts = 1 + (int)smaller(length * sqrt(3 * pull / beta), 1e4);
-    for (int column = 0; column <= PARTS; column++) { /* the last one carries the weight */
+static inline Stretch stretch_above(const Nodes *nodes, int k) {
+    Stretch stretch;
+    double length = nodes->s[k + 1] - nodes->s[k];
+    for (int column = 0; column <= PARTS; column++) { /* the last one bears the weight */
         double line[PARTS] = {0};
         if (column < PARTS) line[column] = 1.0;
-        for (int part = 0; part < parts; part++) {
-            double h = length / parts, N = nodes->N[k] + rise * (part * h);
-            carry(h, beta, N, rise, column < PARTS ? 0.0 : -w, line);
-        }
+        carry_from(nodes, k, length, column == PARTS, line);
         for (int i = 0; i < PARTS; i++) *(column < PARTS ? &stretch.of[i][column] : &stretch.load[i]) = line[i];
     }
     return stretch;
@@ -91,7 +95,7 @@ static inline int node_at(const Nodes *nodes, double s) {
 static inline void make_nodes(Nodes *nodes, const Scaled *scaled, Axial axial) {
     double end = scaled->s[scaled->n - 1];
     int section = 0;
-    nodes->count = 0;
+    nodes->count = 0, nodes->cosine = axial.cosine;
     add_node(nodes, 0.0);
     add_node(nodes, scaled->Delta);
     for (int i = 0; i < scaled->n + scaled->points; i++) add_node(nodes, scaled->s[i]);
@@ -103,7 +107,7 @@ static inline void make_nodes(Nodes *nodes, const Scaled *scaled, Axial axial) {
         nodes->beta[k] = scaled->section_beta[section], nodes->w[k] = scaled->section_w[section];
         if (k > 0) {
             nodes->N[k] = nodes->N[k - 1] + axial.cosine * nodes->w[k - 1] * (nodes->s[k] - nodes->s[k - 1]);
-            nodes->above[k - 1] = stretch_above(nodes, k - 1, axial.cosine);
+            nodes->above[k - 1] = stretch_above(nodes, k - 1);
         }
     }
 }
@@ -125,7 +129,8 @@ static inline int stands(const Scaled *scaled, Axial axial) {
     int k = 0;
     make_nodes(&nodes, scaled, axial);
     for (int i = 0; i < scaled->n; i++) {
-        double turned[PARTS] = {0, 1, 0, 0}, bent[PARTS] = {0, 0, 1, 0}, sheared[PARTS] = {0, 0, 0, 1}, determinant = 0.0;
+        double turned[PARTS] = {0, 1, 0, 0}, bent[PARTS] = {0, 0, 1, 0}, sheared[PARTS] = {0, 0, 0, 1},
+               determinant = 0.0;
         for (; nodes.s[k] < scaled->s[i]; k++) {
             pass_stretch(&nodes.above[k], 0.0, turned);
             pass_stretch(&nodes.above[k], 0.0, bent);
@@ -134,8 +139,10 @@ static inline int stands(const Scaled *scaled, Axial axial) {
             if (!(determinant > 0)) return 0;
         }
         /* moments at both ends under a unit turn of the start, and at the end under a unit turn of it */
-        double moment = (sheared[DEFLECTION] * turned[SLOPE_OF_BEAM] - turned[DEFLECTION] * sheared[SLOPE_OF_BEAM]) / determinant;
-        double shear = (turned[DEFLECTION] * bent[SLOPE_OF_BEAM] - bent[DEFLECTION] * turned[SLOPE_OF_BEAM]) / determinant;
+        double moment =
+            (sheared[DEFLECTION] * turned[SLOPE_OF_BEAM] - turned[DEFLECTION] * sheared[SLOPE_OF_BEAM]) / determinant;
+        double shear =
+            (turned[DEFLECTION] * bent[SLOPE_OF_BEAM] - bent[DEFLECTION] * turned[SLOPE_OF_BEAM]) / determinant;
         if (i > 0) {
             pivot = held - moment - (i > 1 ? coupling * coupling / pivot : 0.0);
             if (!(pivot > 0)) return 0;

@@ -4,7 +4,7 @@ import ctypes
 from dataclasses import astuple, fields
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,7 +90,16 @@ def load(path: Path) -> ctypes.CDLL:
         ("sentence", None, (problem, ctypes.c_char_p)),
         ("start", run, (_array(np.intc), reals, options, whole, reals, reals, inputs, problem)),
         ("end", None, (run,)),
-        ("follow", whole, (run, whole, reals, reals, ctypes.c_double, ctypes.c_double, _array(np.intc), reals, problem)),
+        (
+            "follow",
+            whole,
+            (run, whole, reals, reals, ctypes.c_double, ctypes.c_double, _array(np.intc), reals, problem),
+        ),
+        (
+            "lie",
+            whole,
+            (_array(np.intc), reals, *2 * (ctypes.c_double,), whole, reals, reals, whole, reals, reals, problem),
+        ),
         ("outputs", ctypes.c_int, (run, reals)),
         ("length", ctypes.c_double, (run,)),
         ("step", ctypes.c_int, (run, problem)),
@@ -120,6 +129,75 @@ def why_not() -> str:
 def available() -> bool:
     """Whether the kernel can be used."""
     return not why_not()
+
+
+class Lie(NamedTuple):
+    """How a BHA lies in a hole, row by row: `lie`."""
+
+    forces: Floats  # of the wall on each support, N, (rows, supports)
+    bit_force: Floats  # F_0, N, (rows,)
+    bit_moment: Floats  # M = −M_0, N·m, (rows,)
+    shape: Floats  # distance from the bit's axis at the places that were asked for, m, (rows, places)
+
+
+def lie(
+    bha: BottomHoleAssembly,
+    offsets: Floats,
+    rss_force: Floats,
+    sine: Floats,
+    *,
+    weight_on_bit: float = 0.0,
+    inclination: float = 0.0,
+    places: Floats | tuple[float, ...] = (),
+) -> Lie:
+    """How a BHA lies in holes that are given, with its contacts found.
+
+    Parameters
+    ----------
+    bha
+        The BHA, with whatever it has of sections, axial load and points of the body.
+    offsets
+        Of the bit's axis from the axis of the hole at each support, e of eq. (5), m, (rows, supports): at the n
+        stabilizers, then at the points of the body.
+    rss_force
+        N, (rows,).
+    sine
+        Of the inclination at which the weight acts across: of θ with `axial_load`, else of ⟨Θ⟩_1, (rows,).
+    weight_on_bit
+        All of it, N, for a BHA with `axial_load`.
+    inclination
+        At which the weight acts along such a BHA, rad.
+    places
+        Increasing distances from the bit at which the shape is asked for, m, (places,).
+
+    Raises
+    ------
+    ParameterError
+        If the BHA buckles under the weight.
+    CannotContinue
+        If no contacts are found.
+    """
+    names = scalar_names(SYSTEM, bha.structure)
+    given = dict.fromkeys(names, 1e-3) | values_of("bha", bha)  # the bit has no say: any one will do
+    loads = numbers(np.column_stack([offsets, rss_force, sine]))
+    rows, width = loads.shape
+    answers, shapes, problem = np.empty_like(loads), np.empty((rows, len(places))), ProblemInC()
+    done = library().boreprop_lie(
+        numbers(bha.structure, np.intc),
+        numbers([given[name] for name in names]),
+        weight_on_bit,
+        inclination,
+        rows,
+        loads,
+        answers,
+        len(places),
+        numbers(places),
+        shapes,
+        problem,
+    )
+    if done < rows:
+        raise error_of(problem.read())
+    return Lie(answers[:, : width - 2], answers[:, -2], answers[:, -1], shapes)
 
 
 class NativeDrilling:

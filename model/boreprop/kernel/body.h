@@ -11,16 +11,26 @@ static inline void contact_forces(const Mode *mode, const Loads *loads, double F
     for (int i = 0; i < loads->count; i++) F[i] = mode->contact.of[i] ? row_value(&mode->F[i], loads) : 0.0;
 }
 
-/* How far a support is from the axis of the hole, there being an offset e, while these forces act. */
-static inline double deflection_under(
-    const Modes *modes, const Contact *contact, const Loads *loads, const double F[MAX_PLACES], int support, double e
+/* How far `count` supports from `first` on are from the bit's axis without a contact. */
+static inline void free_deflections(
+    const Beam *beam, double e_n, double F_rss, double g, int first, int count, double *v
 ) {
-    const Beam *beam = &modes->beam;
-    double delta = e + beam->delta_e[support] * (loads->e[beam->n - 1] - beam->end) +
-                   beam->delta_rss[support] * loads->F_rss + beam->delta_g[support] * loads->g;
-    for (int i = 0; i < loads->count; i++)
-        if (F[i] != 0.0) delta += compliance(beam, support, support_at(contact, beam->n, i)) * F[i];
-    return delta;
+    const double *delta_e = beam->delta_e + first, *delta_rss = beam->delta_rss + first,
+                 *delta_g = beam->delta_g + first;
+    for (int k = 0; k < count; k++) v[k] = delta_e[k] * (e_n - beam->end) + delta_rss[k] * F_rss + delta_g[k] * g;
+}
+
+/* Add what a force on support j moves the points of the body by. They follow each other up the beam, so that up to some
+   one they are below the force. */
+static inline void add_push(const Beam *beam, int j, double F, int points, double *v) {
+    const double *bent = beam->bent + beam->n, *sheared = beam->sheared + beam->n;
+    const double *M_F = beam->M_F + beam->n, *F0_F = beam->F0_F + beam->n;
+    double m = F * beam->M_F[j], q = F * beam->F0_F[j];
+    double own_bent = F * beam->bent[j], own_sheared = F * beam->sheared[j];
+    int below = 0;
+    while (below < points && beam->node[beam->n + below] < beam->node[j]) below++;
+    for (int k = 0; k < below; k++) v[k] += q * sheared[k] - m * bent[k];
+    for (int k = below; k < points; k++) v[k] += F0_F[k] * own_sheared - M_F[k] * own_bent;
 }
 
 /* The place of a point in a regime; −1 if it has none. */
@@ -61,7 +71,7 @@ typedef struct {
 
 /* Find start and rate for the contacts as they are. */
 static inline void look_ahead(const Beam *beam, Path *path) {
-    double K_inv_CC[SIZE][SIZE], K_C[SIZE][SIZE];
+    double K_inv_CC[SIZE][SIZE] = {{0}}, K_C[SIZE][SIZE] = {{0}};
     const int *C = path->C, touching = path->touching;
     for (int k = 0; k < touching; k++)
         for (int l = 0; l < touching; l++) K_inv_CC[k][l] = compliance(beam, C[k], C[l]);
@@ -136,18 +146,26 @@ static inline int follow(const Beam *beam, Path *path) {
 
    First every stabilizer is held without clearance, so that the beam stands, and the load grows from nothing to its whole;
    then the clearances of the stabilizers open. */
+static inline int follow_load(const Modes *modes, const double q[MAX_SUPPORTS], int points, Path *path) {
+    int n = modes->beam.n;
+    memset(path, 0, sizeof *path);
+    path->n = n, path->supports = n + points;
+    for (int i = 0; i < n - 1; i++) path->of[i] = 1, path->C[path->touching++] = i;
+    for (int i = 0; i < path->supports; i++) path->q_rate[i] = q[i], path->y[i] = i < n ? 0.0 : modes->y_star[i];
+    if (!follow(&modes->beam, path)) return 0;
+    for (int i = 0; i < path->supports; i++) path->q[i] = q[i], path->q_rate[i] = 0.0;
+    for (int i = 0; i < n - 1; i++) {
+        path->y_rate[i] = modes->y_star[i];
+        if (path->y_rate[i] > 0) path->of[i] = path->start[i] + path->rate[i] < 0 ? -1 : 1;
+    }
+    return follow(&modes->beam, path);
+}
+
+/* The same, as the contacts of a regime. */
 static inline int search(const Modes *modes, const double q[MAX_SUPPORTS], int points, Contact *found) {
     int n = modes->beam.n;
-    Path path = {.n = n, .supports = n + points};
-    for (int i = 0; i < n - 1; i++) path.of[i] = 1, path.C[path.touching++] = i;
-    for (int i = 0; i < path.supports; i++) path.q_rate[i] = q[i], path.y[i] = i < n ? 0.0 : modes->y_star[i];
-    if (!follow(&modes->beam, &path)) return 0;
-    for (int i = 0; i < path.supports; i++) path.q[i] = q[i], path.q_rate[i] = 0.0;
-    for (int i = 0; i < n - 1; i++) {
-        path.y_rate[i] = modes->y_star[i];
-        if (path.y_rate[i] > 0) path.of[i] = path.start[i] + path.rate[i] < 0 ? -1 : 1;
-    }
-    if (!follow(&modes->beam, &path)) return 0;
+    Path path;
+    if (!follow_load(modes, q, points, &path)) return 0;
     memset(found, 0, sizeof *found);
     for (int i = 0; i < n - 1; i++) found->of[i] = path.of[i];
     for (int k = 0; k < points; k++)

@@ -2,6 +2,7 @@
 #ifndef BOREPROP_H
 #define BOREPROP_H
 
+#include "lying.h"
 #include "run.h"
 #include "sentence.h"
 
@@ -55,5 +56,12 @@ EXPORT void boreprop_save(const Run *run, double *state);
 /* Go to a saved state of a run with the same system; 0, and the problem, if these numbers cannot be such a state.
    Nothing has changed then. */
 EXPORT int boreprop_restore(Run *run, const double *state, Count count, Problem *problem);
+
+/* How a BHA lies in holes that are given, row by row as `lie` of lying.h does, under a weight on bit, N, and its own at an
+   inclination, rad. Returns how many rows are done; if not all are, there is a problem. */
+EXPORT Count boreprop_lie(
+    const int structure[4], const double *parameters, double weight_on_bit, double inclination, Count rows,
+    const double *loads, double *answers, Count count, const double *s, double *shapes, Problem *problem
+);
 
 #endif

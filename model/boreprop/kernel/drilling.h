@@ -9,7 +9,7 @@ enum { LEAST_CAPACITY = 1024, MOST_PIECES = 1 << 19 }; /* of hole */
 /* A borehole as it is drilled, from the end of the survey on. */
 typedef struct {
     System system;
-    double drilled_length; /* m */
+    double drilled_length;  /* m */
     double buckling_weight; /* over F*: under it the BHA buckles; infinite if the axial load does not count */
     Integrator integrator;
 } Drilling;
@@ -48,7 +48,8 @@ static inline int scale_inputs(const Drilling *d, Inputs inputs, ScaledInputs *s
     scaled->F_rss_slope = inputs.rss_force_slope * length_scale(system) / F_star;
     scaled->eta_pi = eta_pi(system, inputs.active_weight_on_bit);
     scaled->W = system->structure.axial ? whole_weight(inputs) / F_star : 0.0;
-    return check_inputs(inputs, problem) && (!system->structure.axial || check_weight(d, inputs, problem)) && check_finite(Q_SCALED_FORCE, 0, scaled->F_rss, problem) &&
+    return check_inputs(inputs, problem) && (!system->structure.axial || check_weight(d, inputs, problem)) &&
+           check_finite(Q_SCALED_FORCE, 0, scaled->F_rss, problem) &&
            check_finite(Q_SCALED_SLOPE, 0, scaled->F_rss_slope, problem) &&
            check_positive(Q_ETA_PI, scaled->eta_pi, problem) &&
            check_finite(Q_INVERSE_ETA_PI, 0, 1 / scaled->eta_pi, problem);
@@ -137,14 +138,14 @@ typedef struct {
 /* What the wall does to the body of the BHA. */
 static inline void find_body(Drilling *d, Present *at) {
     Integrator *p = &d->integrator;
-    int n = p->scaled.n;
+    int n = p->scaled.n, points = p->scaled.points;
     double gap[MAX_POINTS];
     at->body_force = at->body_place = 0.0, at->wall_distance = INFINITY;
-    if (!p->scaled.points) return;
+    if (!points) return;
     for (int i = n; i < at->loads.count; i++)
         if (fabs(at->F[i]) > fabs(at->body_force)) at->body_force = at->F[i], at->body_place = p->now.places.s[i];
-    find_gaps(p, &p->now.step, p->now.xi, gap);
-    for (int k = 0; k < p->scaled.points; k++) at->wall_distance = smaller(at->wall_distance, larger(gap[k], 0.0));
+    find_gaps(p, &p->now.step, p->now.xi, points, gap);
+    for (int k = 0; k < points; k++) at->wall_distance = smaller(at->wall_distance, larger(gap[k], 0.0));
 }
 
 static inline Present present(Drilling *d) {
@@ -210,7 +211,8 @@ static inline int drilling_outputs(Drilling *d, double out[MOST_OUTPUTS]) {
     Present at = present(d);
     double *next = out;
     for (int k = 0; k < OUTPUT_COUNT; k++)
-        for (int i = 0; i < value_count(OUTPUT_SIZE[k], d->system.structure); i++) *next++ = output(d, &at, (Output)k, i);
+        for (int i = 0; i < value_count(OUTPUT_SIZE[k], d->system.structure); i++)
+            *next++ = output(d, &at, (Output)k, i);
     return (int)(next - out);
 }
 

@@ -29,7 +29,7 @@ typedef struct {
     ScaledInputs inputs;
     double inputs_xi; /* where they were taken over */
     Regime regime;
-    Places places; /* of the regime */
+    Places places;             /* of the regime */
     double path[2];            /* ∫ sin Θ dξ, ∫ cos Θ dξ up to the start of the present step */
     double origin[DIRECTIONS]; /* of the lateral coordinates */
     double cosine; /* of the inclination at which the weight acts along the beam; 0 if the axial load does not count */
@@ -41,8 +41,16 @@ typedef struct {
 
 /* How far the points of the body are from the wall, at the end of the last step, and how much that changed along it. */
 typedef struct {
+    int near; /* whether any is so near that it may have to be watched */
     double gap[MAX_POINTS], change[MAX_POINTS];
 } Surroundings;
+
+/* Copy what is known of the first `points` of them. */
+static inline void copy_around(Surroundings *to, const Surroundings *from, int points) {
+    size_t size = (size_t)points * sizeof(double);
+    memcpy(to->gap, from->gap, size), memcpy(to->change, from->change, size);
+    to->near = from->near;
+}
 
 /* The bit at the front of its hole, dimensionless. */
 typedef struct {
@@ -52,10 +60,11 @@ typedef struct {
     Options options;
     State now;
     Surroundings around;
-    Law law;        /* of the present regime and inputs, */
-    int law_known;  /* if it is made already */
-    int under_way;  /* whether a call has set out and not yet arrived; then the way back leads to … */
-    State before;   /* … the state before it, */
+    Count cursor[MAX_POINTS]; /* where the look-up of the hole at a point begins, as that at a place does */
+    Law law;                  /* of the present regime and inputs, */
+    int law_known;            /* if it is made already */
+    int under_way;            /* whether a call has set out and not yet arrived; then the way back leads to … */
+    State before;             /* … the state before it, */
     Surroundings around_before;
     Kink last_kink; /* with its last kink, whose jump may have changed since */
 } Integrator;
@@ -77,8 +86,7 @@ static inline double shortest_step(const Integrator *p, double xi) {
 
 static inline const Law *present_law(Integrator *p) {
     const State *now = &p->now;
-    if (!p->law_known)
-        make_law(&p->law, &p->scaled, &now->places, &p->modes, now->regime, now->inputs, now->inputs_xi);
+    if (!p->law_known) make_law(&p->law, &p->scaled, &now->places, &p->modes, now->regime, now->inputs, now->inputs_xi);
     p->law_known = 1;
     return &p->law;
 }
@@ -123,7 +131,7 @@ static inline void change_places(Integrator *p, Contact contact, double xi) {
 /* What bends the beam with the bit at `xi` in the state `x`. */
 static inline Loads loads_at(const Integrator *p, double xi, const double x[COMPONENTS], double F_rss) {
     const Places *places = &p->now.places;
-    double delayed[MAX_PLACES][DIRECTIONS];
+    double delayed[MAX_PLACES][DIRECTIONS] = {{0}};
     Loads loads;
     loads.count = places->count, loads.F_rss = F_rss;
     hole_at_places(&p->now.hole, places, xi, delayed);
@@ -137,43 +145,61 @@ static inline double force_at(const State *now, double xi) {
     return now->inputs.F_rss + now->inputs.F_rss_slope * (xi - now->inputs_xi);
 }
 
-/* Offset of the bit's axis from the hole at a point of the body with the bit at `xi` in the state `x`. The hole ends where
-   the step begins that is being tried. */
-static inline double offset_at(const Integrator *p, const Step *step, double xi, const double x[COMPONENTS], int point) {
-    double s = p->scaled.s[p->scaled.n + point], at = xi - s, Y;
-    if (at >= step->xi) Y = polynomial(step->x[LATERAL], (at - step->xi) / step->h);
-    else {
-        const Piece *own = piece(&p->now.hole, find(&p->now.hole, at));
-        Y = polynomial(own->x[LATERAL], (at - own->start) * own->rate);
+/* Add the offsets of the bit's axis from the hole at the points of the body, with the bit at `xi` in the state `x`. The
+   hole ends where the step begins that is being tried. */
+static inline void add_offsets(
+    Integrator *p, const Step *step, double xi, const double x[COMPONENTS], int points, double *v
+) {
+    const Hole *hole = &p->now.hole;
+    const double *s = p->scaled.s + p->scaled.n;
+    int k = 0;
+    for (; k < points && xi - s[k] >= step->xi; k++)
+        v[k] += x[LATERAL] - polynomial(step->x[LATERAL], (xi - s[k] - step->xi) / step->h) - s[k] * x[ANGLE];
+    for (; k < points; k++) {
+        const Piece *own = piece(hole, p->cursor[k] = find_from(hole, p->cursor[k], xi - s[k]));
+        v[k] += x[LATERAL] - polynomial(own->x[LATERAL], (xi - s[k] - own->start) * own->rate) - s[k] * x[ANGLE];
     }
-    return x[LATERAL] - Y - s * x[ANGLE];
 }
+
+#define NEARBY 2.0   /* a point is watched whose gap is less than so many times its change over the last step, … */
+#define FAR_AWAY 4.0 /* … and no longer when it is more than so many times that */
 
 /* How far every point of the body is from the wall with the bit at `xi` in a step. */
-static inline void find_gaps(Integrator *p, const Step *step, double xi, double gap[MAX_POINTS]) {
-    const State *now = &p->now;
-    const Contact *contact = &now->regime.contact;
-    double x[COMPONENTS], F[MAX_PLACES];
+static inline void find_gaps(Integrator *p, const Step *step, double xi, int points, double gap[MAX_POINTS]) {
+    const Contact *contact = &p->now.regime.contact;
+    const double *y_star = p->scaled.y_star + p->scaled.n;
+    double x[COMPONENTS], F[MAX_PLACES], v[MAX_POINTS];
     int n = p->scaled.n;
     step_state(step, xi, x);
-    Loads loads = loads_at(p, xi, x, force_at(now, xi));
+    Loads loads = loads_at(p, xi, x, force_at(&p->now, xi));
     contact_forces(mode_of(&p->modes, *contact), &loads, F);
-    for (int k = 0; k < p->scaled.points; k++) {
-        double e = offset_at(p, step, xi, x, k);
-        gap[k] = p->scaled.y_star[n + k] - fabs(deflection_under(&p->modes, contact, &loads, F, n + k, e));
-    }
+    free_deflections(&p->modes.beam, loads.e[n - 1], loads.F_rss, loads.g, n, points, v);
+    for (int i = 0; i < loads.count; i++)
+        if (F[i] != 0.0) add_push(&p->modes.beam, support_at(contact, n, i), F[i], points, v);
+    add_offsets(p, step, xi, x, points, v);
+    for (int k = 0; k < points; k++) gap[k] = y_star[k] - fabs(v[k]);
 }
 
-#define NEARBY 2.0    /* a point is watched whose gap is less than so many times its change over the last step, … */
-#define FAR_AWAY 4.0  /* … and no longer when it is more than so many times that */
+/* The same, and how much it has changed since the end of the last step. */
+static inline void look_around(Integrator *p, const Step *step, Surroundings *around) {
+    int points = p->scaled.points;
+    find_gaps(p, step, step->end, points, around->gap);
+    around->near = 0;
+    for (int k = 0; k < points; k++) {
+        around->change[k] = fabs(around->gap[k] - p->around.gap[k]);
+        around->near |= around->gap[k] < NEARBY * around->change[k];
+    }
+}
 
 /* Choose which points to watch from the end of the last step on. */
 static inline void choose_watched(Integrator *p, double xi) {
-    Contact contact = p->now.regime.contact;
+    const Surroundings *around = &p->around;
     int n = p->scaled.n, changed = 0;
+    if (!around->near && !p->now.regime.contact.watched) return;
+    Contact contact = p->now.regime.contact;
     for (int k = 0; k < p->scaled.points; k++) {
         int place = place_of(&contact, n, k);
-        double gap = p->around.gap[k], change = p->around.change[k];
+        double gap = around->gap[k], change = around->change[k];
         if (place < 0 && gap < NEARBY * change && contact.watched < MAX_WATCHED) watch(&contact, n, k, 0), changed = 1;
         else if (place >= 0 && !contact.of[place] && gap > FAR_AWAY * change) unwatch(&contact, n, place), changed = 1;
     }
@@ -183,8 +209,8 @@ static inline void choose_watched(Integrator *p, double xi) {
 /* Watch every point that a trial step has brought through the wall unwatched, with the step to be tried again from `xi`;
    returns how many there are, or −1 if there is no room. */
 static inline int watch_beyond(Integrator *p, const double gap[MAX_POINTS], double xi) {
-    Contact contact = p->now.regime.contact;
     int n = p->scaled.n, found = 0;
+    Contact contact = p->now.regime.contact;
     for (int k = 0; k < p->scaled.points; k++) {
         if (gap[k] >= 0 || place_of(&contact, n, k) >= 0) continue;
         if (contact.watched == MAX_WATCHED) return -1;
@@ -336,10 +362,10 @@ static inline Status find_step(
 static inline Status keep_clear(
     Integrator *p, const Step *last, int kink, const double x[COMPONENTS], Plan *plan, Trial *trial, Problem *problem
 ) {
-    double gap[MAX_POINTS];
+    Surroundings around;
     for (;;) {
-        find_gaps(p, &trial->step, trial->step.end, gap);
-        int beyond = watch_beyond(p, gap, last->end);
+        look_around(p, &trial->step, &around);
+        int beyond = around.near ? watch_beyond(p, around.gap, last->end) : 0; /* those beyond are near */
         if (beyond < 0) return met(problem, TOO_CROWDED, MAX_WATCHED, last->end * p->length_scale);
         if (!beyond) break;
         p->now.rejected++;
@@ -347,10 +373,7 @@ static inline Status keep_clear(
         Status status = find_step(p, last->end, x, plan, trial, problem);
         if (status != DONE) return status;
     }
-    for (int k = 0; k < p->scaled.points; k++) {
-        p->around.change[k] = fabs(gap[k] - p->around.gap[k]);
-        p->around.gap[k] = gap[k];
-    }
+    copy_around(&p->around, &around, p->scaled.points);
     return DONE;
 }
 
@@ -386,7 +409,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
 static inline void go_back(Integrator *p) {
     if (!p->under_way) return;
     p->now = p->before;
-    if (p->scaled.points) p->around = p->around_before;
+    copy_around(&p->around, &p->around_before, p->scaled.points);
     *kink(&p->now.kinks, p->now.kinks.end - 1) = p->last_kink;
     p->law_known = p->under_way = 0;
     bear(p, p->now.inputs.W);
@@ -397,7 +420,7 @@ static inline int set_out(Integrator *p) {
     if (p->under_way) return 1;
     if (!has_room(p)) return 0;
     p->before = p->now;
-    if (p->scaled.points) p->around_before = p->around;
+    copy_around(&p->around_before, &p->around, p->scaled.points);
     p->last_kink = *kink(&p->now.kinks, p->now.kinks.end - 1);
     p->under_way = 1;
     return 1;

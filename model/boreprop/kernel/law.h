@@ -46,8 +46,8 @@ typedef struct {
 
 /* The right-hand side in one regime under given inputs, and the bounds within which it holds. */
 typedef struct {
-    int count; /* of places */
-    int axial; /* whether the sine is that of θ */
+    int count;        /* of places */
+    int axial;        /* whether the sine is that of θ */
     double inputs_xi; /* where the inputs were taken over */
     Linear theta_rate, Theta;
     double relaxation; /* length over which θ forgets */

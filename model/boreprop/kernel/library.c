@@ -58,3 +58,21 @@ void boreprop_save(const Run *run, double *state) { drilling_save(&run->drilling
 int boreprop_restore(Run *run, const double *state, Count count, Problem *problem) {
     return run_restore(run, state, count, problem) == DONE;
 }
+
+Count boreprop_lie(
+    const int structure[4], const double *parameters, double weight_on_bit, double inclination, Count rows,
+    const double *loads, double *answers, Count count, const double *s, double *shapes, Problem *problem
+) {
+    Structure made = {structure[0], structure[1], structure[2], structure[3]};
+    System system = system_of(made, parameters);
+    Lying *bha = calloc(1, sizeof *bha);
+    Count k = 0;
+    if (!bha) met(problem, NO_MEMORY, MOST_PIECES, 0.0);
+    else if (lay(bha, &system, weight_on_bit, inclination, problem)) {
+        int width = support_count(bha) + 2;
+        while (k < rows && lie(bha, loads + k * width, answers + k * width, count, s, shapes + k * count)) k++;
+        if (k < rows) met(problem, TOO_CROWDED, MAX_WATCHED, 0.0);
+    }
+    free(bha);
+    return k;
+}

@@ -49,14 +49,13 @@ static inline void position(const State *now, double *x, double *z) {
 static inline Status touch_down(Integrator *p, const double x[COMPONENTS], double F_rss, Problem *problem) {
     State *now = &p->now;
     const Step *step = &now->step;
-    int supports = p->scaled.n + p->scaled.points;
-    double q[MAX_SUPPORTS], none[MAX_PLACES] = {0};
-    Contact contact = now->regime.contact;
+    int n = p->scaled.n, points = p->scaled.points;
+    double q[MAX_SUPPORTS];
+    Contact contact;
     Loads loads = loads_at(p, now->xi, x, F_rss);
-    for (int i = 0; i < supports; i++) {
-        double e = i < p->scaled.n ? loads.e[i] : offset_at(p, step, now->xi, x, i - p->scaled.n);
-        q[i] = deflection_under(&p->modes, &contact, &loads, none, i, e);
-    }
+    free_deflections(&p->modes.beam, loads.e[n - 1], F_rss, loads.g, 0, n + points, q);
+    for (int i = 0; i < n; i++) q[i] += loads.e[i];
+    add_offsets(p, step, now->xi, x, points, q + n);
     if (!search(&p->modes, q, p->scaled.points, &contact))
         return met(problem, TOO_CROWDED, MAX_WATCHED, now->xi * p->length_scale);
     change_places(p, contact, now->xi);
@@ -82,8 +81,8 @@ static inline Status restart(
     change_regime(p, regime);
     add_kink(&now->kinks, p->scaled.n, now->xi, 1, jump);
     if (p->scaled.points) {
-        memset(&p->around, 0, sizeof p->around);
-        find_gaps(p, &now->step, now->xi, p->around.gap);
+        memset(p->around.change, 0, sizeof p->around.change);
+        find_gaps(p, &now->step, now->xi, p->scaled.points, p->around.gap);
     }
     return DONE;
 }

@@ -14,7 +14,7 @@ typedef struct {
     double *to;
     const double *from;
     Count passed, most; /* how many numbers there are to read */
-    int sound; /* whether all whole numbers so far are whole and within their limits */
+    int sound;          /* whether all whole numbers so far are whole and within their limits */
 } Tape;
 
 enum { NUMBERS_OF_PIECE = sizeof(Piece) / sizeof(double), NUMBERS_OF_KINK = sizeof(Kink) / sizeof(double) };
@@ -55,7 +55,9 @@ static inline void pass_kink(Tape *tape, Kink *kink) { pass(tape, NUMBERS_OF_KIN
 /* The contacts, and which points of the body are watched, in their order. */
 static inline void pass_contact(Tape *tape, const Scaled *scaled, Contact *contact) {
     int n = scaled->n, least = 0;
-    contact->watched = (unsigned char)pass_whole(tape, contact->watched, 0, smaller(MAX_WATCHED, scaled->points));
+    contact->watched = (unsigned char)pass_whole(
+        tape, contact->watched, 0, scaled->points < MAX_WATCHED ? scaled->points : MAX_WATCHED
+    );
     for (int k = 0; k < contact->watched; k++) {
         contact->point[k] = (unsigned char)pass_whole(tape, contact->point[k], least, scaled->points - 1);
         least = contact->point[k] + 1;
@@ -103,7 +105,8 @@ static inline Snapshot snapshot_of(const Drilling *d) {
     const State *now = &d->integrator.now;
     int n = d->system.structure.n;
     Count oldest = first_kink(&now->kinks, n);
-    Snapshot snapshot = {d->drilled_length, *now, now->hole.end - now->hole.first, now->kinks.end - oldest, {0}, d->integrator.around};
+    Snapshot snapshot = {d->drilled_length,       *now, now->hole.end - now->hole.first,
+                         now->kinks.end - oldest, {0},  d->integrator.around};
     for (int i = 0; i < now->places.count; i++) snapshot.passed[i] = now->kinks.ahead[i] - oldest;
     return snapshot;
 }
@@ -140,6 +143,9 @@ static inline int is_consistent(const Drilling *d, const Snapshot *snapshot) {
     double xi = now->xi, eta_pi = now->inputs.eta_pi;
     if (!(fabs(snapshot->drilled_length / length_scale(&d->system) - xi) <= ROUNDING_OF_XI * xi)) return 0;
     if (!(eta_pi > 0) || !isfinite(1 / eta_pi) || now->inputs_xi > xi) return 0;
+    if (d->system.structure.axial ? !(now->inputs.W > 0) || !(fabs(now->cosine) <= 1)
+                                  : now->inputs.W != 0 || now->cosine != 0)
+        return 0;
     if (step->xi > xi || xi > step->end || !(step->h > 0) || !(step->next_h > 0)) return 0;
     return snapshot->passed[d->system.structure.n - 1] == 0; /* the last stabilizer is the last to pass a kink */
 }

@@ -26,8 +26,9 @@ typedef struct {
     Step step;
     double delayed[MAX_PLACES][DIRECTIONS][POINTS]; /* the hole's lateral coordinate at ξ − s_i */
     double x[COMPONENTS][POINTS];
-    double sines[POINTS], ahead[POINTS]; /* the sine that goes with the weight; distance from where the inputs were taken over */
-    double error;                        /* estimated, over the tolerance */
+    double sines[POINTS],
+        ahead[POINTS]; /* the sine that goes with the weight; distance from where the inputs were taken over */
+    double error;      /* estimated, over the tolerance */
 } Trial;
 
 static inline double polynomial(const double c[S + 1], double t) {

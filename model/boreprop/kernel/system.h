@@ -22,18 +22,18 @@ typedef struct {
     int n;
     /* s_1 … s_n, distance of the stabilizers from the bit, s_1 = 1; then of the points of the body */
     double s[MAX_SUPPORTS];
-    double y_star[MAX_SUPPORTS]; /* y*_1 … y*_{n−1}; nothing for the last stabilizer; then that of the points */
-    int points;                  /* of the body */
-    double Delta;                       /* distance of the RSS from the bit */
-    double w;                           /* w̃ = w ℓ₁ / F* */
-    int sections;                       /* of the beam, at least one */
-    double section_end[MAX_SECTIONS];   /* how far each reaches from the bit */
-    double section_beta[MAX_SECTIONS];  /* its EI over that at the bit */
-    double section_w[MAX_SECTIONS];     /* its w̃ */
-    double end_deflection;              /* δ_n */
-    int stepped, axial; /* whether the beam has sections or bears an axial load; whether it bears one */
-    double epsilon;                     /* ε = χ/η */
-    double psi_star;                    /* ψ*, rad */
+    double y_star[MAX_SUPPORTS];       /* y*_1 … y*_{n−1}; nothing for the last stabilizer; then that of the points */
+    int points;                        /* of the body */
+    double Delta;                      /* distance of the RSS from the bit */
+    double w;                          /* w̃ = w ℓ₁ / F* */
+    int sections;                      /* of the beam, at least one */
+    double section_end[MAX_SECTIONS];  /* how far each reaches from the bit */
+    double section_beta[MAX_SECTIONS]; /* its EI over that at the bit */
+    double section_w[MAX_SECTIONS];    /* its w̃ */
+    double end_deflection;             /* δ_n */
+    int stepped, axial;                /* whether the beam has sections or bears an axial load; whether it bears one */
+    double epsilon;                    /* ε = χ/η */
+    double psi_star;                   /* ψ*, rad */
 } Scaled;
 
 /* How many values a quantity has. */
@@ -135,8 +135,7 @@ static inline int check_system(const System *system, Problem *problem) {
     return check_increasing(Q_STABILIZER_POSITION, n, positions, problem) &&
            check_spans(Q_STABILIZER_POSITION, n, positions, problem) && check_reach(system, problem) &&
            check_increasing(Q_BODY_POINT_POSITION, system->structure.points, system->body_point_position, problem) &&
-           check_body(system, problem) &&
-           check_at_most(Q_RSS_POSITION, system->rss_position, positions[0], problem);
+           check_body(system, problem) && check_at_most(Q_RSS_POSITION, system->rss_position, positions[0], problem);
 }
 
 /* ℓ₁, m: the distance from the bit to the first stabilizer. */
