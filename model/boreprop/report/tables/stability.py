@@ -80,7 +80,7 @@ def not_met(lines: Iterable[tuple[str, ...]]) -> str | None:
     if not any(line[-1] == NOT_MET for line in lines):
         return None
     over = UNITS["m"].text(BUILD_LENGTH, ".3g")
-    return f"{NOT_MET}: no hole that turns by up to 10° over {over} brings these stabilizers into contact"
+    return f"{NOT_MET}: these contacts do not occur in holes that turn by up to 10° over {over}"
 
 
 def contact_text(contact: tuple[int, ...]) -> str:
