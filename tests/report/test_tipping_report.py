@@ -34,17 +34,19 @@ def test_the_critical_dogleg_in_words() -> None:
 
 
 @pytest.mark.parametrize(
-    ("inclination_deg", "clearance", "why"),
+    ("inclination_deg", "clearance", "where_and_why"),
     [
-        (3.5, 1e-3, ", since it drops with stabilizer 1 in contact, which oscillates"),
+        (3.5, 1e-3, " at 3.5°, since it drops with stabilizer 1 in contact, which oscillates"),
         (0.0, 0.0, ", since it drills on with stabilizer 1 in contact, which oscillates"),
         (0.0, 1e-3, ""),  # stable without contact: should it ripple, that is not why
     ],
 )
-def test_why_a_straight_hole_ripples_by_itself_in_words(inclination_deg: float, clearance: float, why: str) -> None:
+def test_where_and_why_a_straight_hole_ripples_by_itself_in_words(
+    inclination_deg: float, clearance: float, where_and_why: str
+) -> None:
     case = replace(paper_case(clearance=clearance), survey=Survey((0.0,), (radians(inclination_deg),)))
     [(_, amount)] = lines(case, {1: critical(0.0)}, radians(10.0))
-    assert amount == f"any: it ripples from a straight hole{why}"
+    assert amount == f"any: it ripples from a straight hole{where_and_why}"
 
 
 def test_a_stopped_run_in_words() -> None:

@@ -38,21 +38,26 @@ def _amount(case: Case, found: CriticalDogleg, limit: float) -> str:
     if found.angle == 0.0 and straight:
         least, most = (f"{degrees(turn):.2g}°" for turn in (straight[0], straight[-1]))
         turns = least if least == most else f"{least} to {most}"
-        return f"none needed: it ripples from a straight hole{_why(case)}, but not after a turn of {turns}"
+        return f"none needed: it ripples from {_straight(case)}, but not after a turn of {turns}"
     if found.angle == 0.0:
-        return f"any: it ripples from a straight hole{_why(case)}"
+        return f"any: it ripples from {_straight(case)}"
     severity = UNITS["rad/m"].text(found.curvature, ".1f")
     return f"{degrees(found.angle):.2f}° over {UNITS['m'].text(case.bha.half_length, '.4g')} ({severity}){exception}"
 
 
-def _why(case: Case) -> str:
-    """The end of a sentence that says why a straight hole ripples by itself; empty if that is not its steady mode."""
-    straight = straight_drilling(with_dogleg(case, 0.0))
-    if straight.verdict is not Verdict.OSCILLATORY:
-        return ""
+def _straight(case: Case) -> str:
+    """A straight hole that ripples by itself, in words: at which inclination, and why if its steady mode says so."""
+    hole = with_dogleg(case, 0.0)
+    inclination = round(degrees(hole.survey.inclination[-1]), 1)
+    straight = straight_drilling(hole)
     rate = round(straight.response.build_rate, 9)  # of −1e-18 rad/m nobody would say that it drops
     turns = "drops" if rate < 0 else "builds" if rate > 0 else "drills on"
-    return f", since it {turns} with {contact_text(straight.contact)}, which oscillates"
+    why = f", since it {turns} with {contact_text(straight.contact)}, which oscillates"
+    return (
+        "a straight hole"
+        + f" at {inclination:g}°" * bool(inclination)
+        + why * (straight.verdict is Verdict.OSCILLATORY)
+    )
 
 
 def left_out(found: DoglegMap) -> str:
