@@ -56,7 +56,7 @@ def test_roots_prints_a_line_for_each_mode(command: Command, paper_case: Path) -
     for line, texts in zip(
         lines,
         [
-            ("1 ", "not saturated", "oscillatory", "doubles in 8.1 m", "1.27 m", "drills so"),
+            ("1 ", "not saturated", "oscillatory", "doubles in 8.1 m", "1.27 m", "would drill so"),
             ("1 ", "saturated", "drift", "doubles in 4160 m"),
             ("none", "not saturated", "stable", "halves in 11.5 m"),
             ("none", "saturated", "drift", "doubles in 1040 m"),

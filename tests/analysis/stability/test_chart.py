@@ -202,6 +202,16 @@ def test_the_chart_s_picture_marks_the_case(chart: Chart) -> None:
         assert axes.lines[-1].get_xydata() == pytest.approx(np.array([[0.01, 1.0]]), rel=1e-4)
 
 
+def test_the_chart_s_picture_says_in_which_mode_the_case_drills_and_whether_waves_grow_there(chart: Chart) -> None:
+    def told(chart: Chart) -> list[str]:
+        titles = [panel.get_title().partition("\n") for panel in draw(chart, VERTICAL).axes]
+        return [f"{mode}: {so}" for mode, _, so in titles if so]
+
+    assert told(chart) == ["no contact, bit tilt not saturated: (the case drills in this mode)"]
+    drops = "stabilizer 1 in contact, bit tilt not saturated: (the case would drill in this mode, but waves grow)"
+    assert told(replace(chart, inclination=radians(3.5))) == [drops]
+
+
 def test_the_chart_s_picture_has_kilonewtons_and_metres_and_no_specks(chart: Chart) -> None:
     axes = draw(chart, PAPER).axes[0]
     across, up = axes.child_axes[0], draw(chart, PAPER).axes[1].child_axes[-1]

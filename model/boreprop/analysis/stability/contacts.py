@@ -108,7 +108,7 @@ def first_that_touches(case: Case) -> int:
 
 
 def steady_mode(case: Case, rss_force: float, inclination: float) -> tuple[Contact, bool]:
-    """The mode of the steady response to a force: that in which a case drills once transients have died out.
+    """The mode of the steady response to a force: that in which a case drills once transients die out.
 
     Parameters
     ----------

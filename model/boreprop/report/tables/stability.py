@@ -60,11 +60,14 @@ def mode_line(
 ) -> tuple[str, ...]:
     """The line of a mode, under `MODE_HEADINGS`: its verdict and the root that decides it.
 
-    `here` is the mode in which the case drills steadily; `met` are the contacts that occur.
+    `here` is the mode in which the case drills steadily, or would if no waves grew; `met` are the contacts that occur.
     """
     pairs = [root for root in found.roots if root.imag]
     root = pairs[0] if found.verdict is Verdict.OSCILLATORY else found.roots[0]
-    place = "drills so" if (found.contact, found.saturated) == here else "" if found.contact in met else NOT_MET
+    if (found.contact, found.saturated) == here:
+        place = "would drill so" if found.verdict is Verdict.OSCILLATORY else "drills so"
+    else:
+        place = "" if found.contact in met else NOT_MET
     return (
         ", ".join(map(str, found.contact)) or "none",
         "saturated" if found.saturated else "not saturated",
