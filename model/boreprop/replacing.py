@@ -6,6 +6,8 @@ from contextlib import contextmanager
 from errno import ENOENT
 from pathlib import Path
 
+from .leftovers import removed_afterwards
+
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
@@ -21,8 +23,6 @@ def replacing(path: Path) -> Iterator[Path]:
     if not path.parent.is_dir():
         raise FileNotFoundError(ENOENT, "the folder does not exist", str(path))
     draft = path.with_name(f".{os.urandom(4).hex()}.{path.name}")  # no process number: two containers may have the same
-    try:
+    with removed_afterwards(draft):
         yield draft
         os.replace(draft, path)
-    finally:
-        draft.unlink(missing_ok=True)
