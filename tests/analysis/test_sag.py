@@ -97,7 +97,7 @@ def test_summary_and_steering_warn_with_place_and_amount() -> None:
     [warning] = [text for what, text in lines(summarize(simulate(PENDULUM, sample_interval=0.5))) if what == "warning"]
     assert warning.startswith("37.4 m behind the bit the axis of the BHA is 188 mm")
     assert "below that of the hole" in warning
-    assert "whose radius is 114 mm" in warning
+    assert "74.1 mm beyond its wall" in warning
     steering = replace(PENDULUM, bit=BitRock(0.001, 1e-5, radians(89.0)))
     warnings = [text for what, text in steering_lines(summarize_steering(steering)) if what == "warning"]
     assert any("behind the bit the axis of the BHA is" in text for text in warnings)
