@@ -19,6 +19,7 @@ from boreprop.run.trajectory import Stopped, Trajectory
 from .instance import interruptions, open_instance, read_description, uninterrupted
 
 MAX_ROWS = 10_000_000  # more would need gigabytes of memory
+MAX_POINTS = 2**53  # more are no different times
 CLOSE = 1e-9  # of a step: times closer than this are taken as equal, for they differ by rounding
 
 
@@ -77,6 +78,7 @@ class FmuRun:
         self.stop = self._choose("stop", stop, getattr(experiment, "stopTime", None))
         check_number("step", self.step, above=0.0)
         check_number("stop", self.stop, at_least=self.start)
+        check_number("step", self.step, at_least=(self.stop - self.start) / MAX_POINTS)
         self._variables = {variable.name: variable for variable in self._description.modelVariables}
         self._tolerance = relative_tolerance
         self.warning = ""
