@@ -7,7 +7,7 @@ from hashlib import sha256
 
 from ..core import radau
 from ..core.options import Options
-from ..core.problems import DERIVED, SENTENCES
+from ..core.problems import DERIVED, OUTSIDE, SENTENCES
 from ..core.quantities import (
     INPUTS,
     MAX_POINTS,
@@ -20,6 +20,7 @@ from ..core.quantities import (
     Quantity,
     Structure,
 )
+from ..core.sag import OFTEN, POINTS
 from ..core.system import LEAST_SPAN
 from ..replacing import replacing
 from .compiler import FOLDER
@@ -74,6 +75,8 @@ QUANTITIES_HEADER = """\
 #define QUANTITIES_DIGEST "{digest}" /* of this file, but for this line, and of problems.h */
 #define MOST_DRILLED {most_drilled!r} /* m in a communication step */
 #define LEAST_SPAN {least_span!r} /* m between stabilizers, at least: forces between closer ones are rounding errors */
+#define POINTS_ALONG_BHA {points} /* at which its distance from the hole is looked at */
+#define OFTEN {often!r} /* of its length, at most, from look to look */
 
 enum {{ MAX_STABILIZERS = {most}, MAX_SECTIONS = {most_sections}, MAX_POINTS = {most_points} }};
 enum {{ PARAMETER_COUNT = {parameters}, INPUT_COUNT = {inputs}, OUTPUT_COUNT = {outputs} }};
@@ -165,6 +168,9 @@ typedef enum {{
     NAME_COUNT
 }} Name;
 
+/* A format for five texts. */
+#define OUTSIDE "{outside}"
+
 static const char *const SENTENCE[CODE_COUNT] = {{
     "",
 {sentences}
@@ -234,6 +240,8 @@ def quantities_header(system: Table = SYSTEM, inputs: Table = INPUTS, outputs: T
     numbers = {
         "least_span": LEAST_SPAN,
         "most_drilled": MOST_DRILLED,
+        "points": POINTS,
+        "often": OFTEN,
         "most": MAX_STABILIZERS,
         "most_sections": MAX_SECTIONS,
         "most_points": MAX_POINTS,
@@ -264,6 +272,7 @@ def problems_header() -> str:
     return PROBLEMS_HEADER.format(
         codes=_lines(f"{code.upper().replace(' ', '_')}," for code in SENTENCES),
         names=_lines(f"Q_{name.upper()}," for name in NAMES),
+        outside=OUTSIDE.format(position="%s m", offset="%s mm", side="%s", when=" after %s m", beyond="%s mm"),
         sentences=_lines(f'"{sentence}",' for sentence in SENTENCES.values()),
         texts=_lines(f'"{text}",' for text in NAMES.values()),
     )

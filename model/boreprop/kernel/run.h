@@ -2,7 +2,7 @@
 #ifndef BOREPROP_RUN_H
 #define BOREPROP_RUN_H
 
-#include "drilling.h"
+#include "sag.h"
 #include "state.h"
 
 typedef struct {
