@@ -120,7 +120,7 @@ static inline int switch_contact(Path *path, int i) {
     return 1;
 }
 
-enum { MOST_SWITCHES = 4096 }; /* of a path: it takes three as a rule, and under a hundred where nearly all touch */
+enum { MOST_SWITCHES = 1000 }; /* of a path: it takes three as a rule, and under a hundred where nearly all touch */
 
 /* Follow the contacts from t = 0 to 1, one switch after the other; 0 if more touch than there is room for, or there is no
    end. */

@@ -79,12 +79,13 @@ typedef struct {
     int repeated;   /* an earlier trial was no good: the next is never longer than planned */
     double slack;   /* by which values at its points may lie beyond a bound */
     int switches;   /* of the regime where it starts */
+    int searched;   /* whether all contacts have been searched for there */
     double h;       /* the length of the trial */
 } Plan;
 
 /* The plan of the next step: as the last one left it, but after a kink no longer than `layers` allow. */
 static inline Plan first_plan(const Step *last, int kink, const Law *law, double layers) {
-    Plan plan = {last->next_h, last->next_h, 0, ROUNDING, 0, 0.0};
+    Plan plan = {last->next_h, last->next_h, 0, ROUNDING, 0, 0, 0.0};
     if (kink <= SMOOTHEST_KINK || last->end == last->xi) {
         plan.planned = smaller(plan.planned, layers * law->relaxation);
         if (last->event != NONE) plan.resumed = plan.planned;
@@ -151,6 +152,10 @@ static inline Status find_step(
             pass_event(p, step);
             plan->switches++;
             continue;
+        }
+        if (p->scaled.points && !plan->searched) {
+            plan->searched = 1, plan->switches = 0;
+            if (touch_down(p, xi, x, problem) == DONE) continue;
         }
         plan->planned = larger(plan->h / CLOSER, shortest);
         plan->repeated = 1, plan->switches = 0, plan->slack *= CLOSER;

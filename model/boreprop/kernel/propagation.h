@@ -45,23 +45,6 @@ static inline void position(const State *now, double *x, double *z) {
 
 /* moving */
 
-/* Find all contacts of a BHA whose body may touch the wall, with the bit at `xi` in the state `x`. */
-static inline Status touch_down(Integrator *p, const double x[COMPONENTS], double F_rss, Problem *problem) {
-    State *now = &p->now;
-    const Step *step = &now->step;
-    int n = p->scaled.n, points = p->scaled.points;
-    double q[MAX_SUPPORTS];
-    Contact contact;
-    Loads loads = loads_at(p, now->xi, x, F_rss);
-    free_deflections(&p->modes.beam, loads.e[n - 1], F_rss, loads.g, 0, n + points, q);
-    for (int i = 0; i < n; i++) q[i] += loads.e[i];
-    add_offsets(p, step, now->xi, x, points, q + n);
-    if (!search(&p->modes, q, p->scaled.points, &contact))
-        return met(problem, TOO_CROWDED, MAX_WATCHED, now->xi * p->length_scale);
-    change_places(p, contact, now->xi);
-    return DONE;
-}
-
 /* Take over inputs where the bit is, in the state `x`: find the regime under them, and mark the jump of the inclination,
    which was Θ so far. */
 static inline Status restart(
@@ -71,7 +54,7 @@ static inline Status restart(
     now->inputs = inputs, now->inputs_xi = now->xi;
     now->step = standstill(now->xi, x);
     bear(p, inputs.W);
-    if (p->scaled.points && touch_down(p, x, inputs.F_rss, problem) != DONE) return FAILED;
+    if (p->scaled.points && touch_down(p, now->xi, x, problem) != DONE) return FAILED;
     Loads loads = loads_at(p, now->xi, x, inputs.F_rss);
     const Mode *mode = settle(&p->modes, &loads, now->regime.contact);
     double F_0 = row_value(&mode->F_0, &loads), psi_star = p->scaled.psi_star;

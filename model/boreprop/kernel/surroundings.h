@@ -80,4 +80,19 @@ static inline int watch_beyond(Integrator *p, const double gap[MAX_POINTS], doub
     return found;
 }
 
+/* Find all contacts of a BHA whose body may touch the wall, with the bit at `xi`, where the last step ends, in the state
+   `x`. */
+static inline Status touch_down(Integrator *p, double xi, const double x[COMPONENTS], Problem *problem) {
+    int n = p->scaled.n, points = p->scaled.points;
+    double q[MAX_SUPPORTS];
+    Contact contact;
+    Loads loads = loads_at(p, xi, x, force_at(&p->now, xi));
+    free_deflections(&p->modes.beam, loads.e[n - 1], loads.F_rss, loads.g, 0, n + points, q);
+    for (int i = 0; i < n; i++) q[i] += loads.e[i];
+    add_offsets(p, &p->now.step, xi, x, points, q + n);
+    if (!search(&p->modes, q, points, &contact)) return met(problem, TOO_CROWDED, MAX_WATCHED, xi * p->length_scale);
+    change_places(p, contact, xi);
+    return DONE;
+}
+
 #endif
