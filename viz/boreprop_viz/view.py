@@ -7,8 +7,7 @@ from pathlib import Path
 from boreprop.analysis.plan import read_plan
 from boreprop.case.case import Case
 from boreprop.case.file import load_case
-from boreprop.case.packed import read_packed_case
-from boreprop.case.tables import read_schedule
+from boreprop.case.packed import read_packed_case, read_schedule_for
 from boreprop.cli import console
 from boreprop.cli.cases import open_case
 from boreprop.cli.fallback import warn_of_fallback
@@ -56,7 +55,7 @@ class Opener:
         if path.suffix == ".fmu":
             from boreprop_fmu.host.drive import FmuRun  # imported here, since importing fmpy takes long
 
-            forces = None if self.schedule is None else read_schedule(self.schedule)
+            forces = None if self.schedule is None else read_schedule_for(path, self.schedule)
             fmu_run = FmuRun(path, forces, step=self.step, stop=self.stop)
             return live(name, fmu_run, self.planned(fmu_run.case), pace=self.pace)
         try:

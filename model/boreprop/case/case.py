@@ -1,5 +1,6 @@
 """A case: the drilling system, the existing hole, the active weight on bit, the steering force and the length."""
 
+from bisect import bisect_right
 from dataclasses import dataclass
 from itertools import repeat
 
@@ -7,6 +8,8 @@ from ..core.checks import check_increasing, check_part, checked_float
 from ..core.errors import ParameterError
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly, eta_pi
+
+CLOSE = 0.005  # m: depths are given to the centimetre, so a first entry this little beyond the bit is at it
 
 
 @dataclass(frozen=True)
@@ -46,6 +49,47 @@ class Schedule:
             constraint = f"must hold one value per drilled_length, {len(self.drilled_length)} in all"
             raise ParameterError("rss_force", constraint, self.rss_force)
         check_part("schedule", self)
+
+    @classmethod
+    def by_depth(cls, measured_depth: tuple[float, ...], rss_force: tuple[float, ...], bit_depth: float) -> "Schedule":
+        """A schedule whose entries begin at measured depths.
+
+        Parameters
+        ----------
+        measured_depth
+            Depths at which an entry begins, m, increasing, shape (k,). The last one at or before the bit acts from the
+            start of the run; those before it are left out.
+        rss_force
+            The force from each of these depths to the next, N, shape (k,).
+        bit_depth
+            Measured depth of the bit at the start of the run, m: that of the last station of a `Survey`.
+
+        Returns
+        -------
+        Schedule
+            The same forces over the drilled length.
+
+        Raises
+        ------
+        ParameterError
+            If the first entry lies beyond the bit, for then no force is given at the start; or as for any schedule.
+
+        Examples
+        --------
+        >>> from boreprop import Schedule
+        >>> Schedule.by_depth((2500.0, 2590.0, 2600.0), (0.0, 8e3, 4e3), bit_depth=2594.0)
+        Schedule(drilled_length=(0.0, 6.0), rss_force=(8000.0, 4000.0))
+        """
+        check_increasing("measured_depth", measured_depth)
+        if not measured_depth or measured_depth[0] > bit_depth + CLOSE:
+            constraint = f"must start at {bit_depth:.9g} or before, where the bit starts"
+            raise ParameterError("measured_depth", constraint, measured_depth)
+        if len(rss_force) != len(measured_depth):
+            constraint = f"must hold one value per measured_depth, {len(measured_depth)} in all"
+            raise ParameterError("rss_force", constraint, rss_force)
+        first = max(bisect_right(measured_depth, bit_depth) - 1, 0)
+        later = (depth - bit_depth for depth in measured_depth[first + 1 :])
+        return cls((0.0, *later), rss_force[first:])
 
 
 @dataclass(frozen=True)

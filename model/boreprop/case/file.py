@@ -15,7 +15,7 @@ from ..core.columns import regular
 from ..core.quantities import QUANTITIES
 from ..errors import InputError
 from .case import Case
-from .schema import OF_FILES, TABLES, parse, read_toml
+from .schema import OF_FILES, TABLES, Read, parse, read_toml
 
 
 def load_case(path: str | Path) -> Case:
@@ -53,6 +53,11 @@ def load_case(path: str | Path) -> Case:
     ...         print(str(error).partition("case.toml: ")[2])
     bha: must be given, got nothing (and 3 more)
     """
+    return read_case(path).case
+
+
+def read_case(path: str | Path) -> Read:
+    """Read a case file, see `load_case`, with what was made of it that its author may not expect."""
     try:
         text = regular(path).read_text(encoding="utf-8-sig")
     except OSError as error:
@@ -60,9 +65,9 @@ def load_case(path: str | Path) -> Case:
     except UnicodeDecodeError as error:
         constraint = "must be a TOML file in UTF-8 (save it with that encoding)"
         raise InputError(f"{path}: {constraint}, got the byte 0x{error.object[error.start]:02x}") from error
-    case = parse_case(text, path)
-    _check_clearances(case, path)
-    return case
+    read = parse(text, Path(path))
+    _check_clearances(read.case, path)
+    return read
 
 
 def _check_clearances(case: Case, path: str | Path) -> None:
@@ -93,7 +98,7 @@ def parse_case(text: str, source: str | Path) -> Case:
     InputError
         If the text, or a file that it names, is malformed or breaks a constraint.
     """
-    return parse(text, Path(source))
+    return parse(text, Path(source)).case
 
 
 def files_named(path: Path) -> list[Path]:

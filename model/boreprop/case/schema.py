@@ -6,23 +6,23 @@ The keys are those of the table of quantities; the types are those of the datacl
 import json
 import re
 import tomllib
-from collections.abc import Callable
-from contextlib import suppress
-from dataclasses import asdict
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import asdict, replace
 from difflib import get_close_matches
 from math import degrees, radians
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import ErrorDetails
 
 from ..core.checks import check_number
 from ..core.errors import ParameterError
-from ..core.quantities import QUANTITIES, Quantity, columns_of, quantity_of
+from ..core.quantities import BY_NAME, QUANTITIES, Quantity, columns_of, quantity_of
 from ..core.survey import Survey
 from ..errors import InputError, shown
-from .case import Case, Schedule
+from .case import CLOSE, Case, Schedule
 from .tables import read_schedule, read_survey
 
 Document = dict[str, dict[str, Any]]  # table → key → value
@@ -30,22 +30,57 @@ Document = dict[str, dict[str, Any]]  # table → key → value
 BY_KEY = {quantity.key: quantity for quantity in QUANTITIES if quantity.key}
 DEEPEST = 100  # parts that a dotted key may have
 TABLES = ("bha", "bit", "drilling", "hole", "rss", "run")  # of a file, in the order in which they are written
-OF_FILES: dict[str, tuple[str, Callable[[Path], Survey | Schedule]]] = {
-    "hole.survey": ("survey", read_survey),
-    "rss.schedule": ("schedule", read_schedule),
+OF_FILES = ("hole.survey", "rss.schedule")
+"""Keys that name a CSV file."""
+
+CHOICES: dict[str, tuple[tuple[str, ...], ...]] = {
+    "hole": (columns_of("hole"), ("survey",)),
+    "rss": (columns_of("rss"), ("measured_depth", "force"), ("schedule",)),
 }
-"""Key that names a CSV file → the field of a `Case` that the file holds, and the function that reads it."""
+"""Table → the sets of keys of which it holds one."""
+
+BESIDE = {"hole": ("bit_depth",)}
+"""Table → the keys that may stand beside each of these sets."""
 
 PATHS = "must be a path with forward slashes or in single quotes, since in double quotes a backslash begins an escape"
 
-_CASE = TypeAdapter(Case)
+_CASE, _NUMBER, _COLUMN = TypeAdapter(Case), TypeAdapter(float), TypeAdapter(tuple[float, ...])
 
 
-def parse(text: str, source: Path) -> Case:
+class Read(NamedTuple):
+    """A case as its file describes it, and what was made of the file that its author may not expect: a phrase each."""
+
+    case: Case
+    notes: list[str]
+
+
+def parse(text: str, source: Path) -> Read:
     """See `boreprop.case.file.parse_case`."""
     document = read_toml(text, source)
     check_keys(document, source)
-    fields = case_fields(document) | read_files(document, source)
+    case, notes = _case(document, source), []
+    if "bit_depth" in document["hole"]:
+        bit_depth = _typed(_NUMBER, document, "hole.bit_depth", source)
+        notes = _beyond(case.survey, bit_depth)
+        with _naming("hole", source):
+            case = replace(case, survey=case.survey.with_bit_at(bit_depth))
+    schedule, bit = document.get("rss", {}), case.survey.measured_depth[-1]
+    if "schedule" in schedule:
+        case = replace(case, schedule=read_schedule(source.parent / schedule["schedule"], bit))
+    if "measured_depth" in schedule:
+        depths, forces = (_typed(_COLUMN, document, f"rss.{key}", source) for key in ("measured_depth", "force"))
+        with _naming("rss", source):
+            case = replace(case, schedule=Schedule.by_depth(depths, forces, bit))
+    return Read(case, notes)
+
+
+def _case(document: Document, source: Path) -> Case:
+    """The case with its survey as it is given, and without a schedule that depends on where the bit is."""
+    fields = case_fields(document)
+    if "survey" in document.get("hole", {}):
+        fields["survey"] = asdict(read_survey(source.parent / document["hole"]["survey"]))
+    if set(document.get("rss", {})) & {"measured_depth", "schedule"}:
+        fields.pop("schedule", None)
     try:
         # Validated as JSON: there, even strict types accept an object for a dataclass and an array for a tuple.
         return _CASE.validate_json(json.dumps(fields, default=str), strict=True)
@@ -53,6 +88,37 @@ def parse(text: str, source: Path) -> Case:
         errors = error.errors(include_url=False)
         more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
         raise InputError(f"{source}: {_message(errors[0], document)}{more}") from error
+
+
+def _beyond(survey: Survey, bit_depth: float) -> list[str]:
+    """What is made of the hole between the bit and the end of its survey, if they are not at the same place."""
+    end = survey.measured_depth[-1]
+    if bit_depth - end > CLOSE:
+        return [f"hole.bit_depth: {bit_depth - end:.4g} m beyond the survey: the hole is extended straight to the bit"]
+    if end - bit_depth > CLOSE:
+        return [f"hole.bit_depth: {end - bit_depth:.4g} m before the end of the survey: what lies beyond is left out"]
+    return []
+
+
+def _typed(kind: TypeAdapter[Any], document: Document, where: str, source: Path) -> Any:
+    """The value under "table.key", which must be of a kind."""
+    table, key = where.split(".")
+    try:
+        return kind.validate_json(json.dumps(document[table][key], default=str), strict=True)
+    except ValidationError as error:
+        [first, *_] = error.errors(include_url=False)
+        index = next((part + 1 for part in first["loc"] if isinstance(part, int)), None)
+        raise InputError(f"{source}: {_wrong_type(first, where, index, document)}") from error
+
+
+@contextmanager
+def _naming(table: str, source: Path) -> Iterator[None]:
+    """Turn errors about what a table holds into an `InputError` that names file and key."""
+    try:
+        yield
+    except ParameterError as error:
+        key = BY_NAME[error.name].key.partition(".")[2]
+        raise InputError(f"{source}: {table}.{key}: {error.constraint}, got {shown(error.value)}") from error
 
 
 def _no_toml(error: tomllib.TOMLDecodeError, text: str) -> str:
@@ -102,11 +168,10 @@ def check_keys(document: dict[str, Any], source: Path) -> None:
                 raise InputError(f"{source}: {where}: must be text in quotes, got {shown(value)}")
             if where in OF_FILES and any(escaped in value for escaped in "\b\t\n\f\r"):  # "\temp" begins with a tab
                 raise InputError(f"{source}: {where}: {PATHS}, got {shown(value)}")
-    for where in OF_FILES:
-        table, _, file = where.partition(".")
-        columns = columns_of(table)
-        if table in document and set(document[table]) not in ({file}, set(columns)):
-            constraint = f"must hold either {' and '.join(columns)}, or {file}"
+    for table, choices in CHOICES.items():
+        given = set(document.get(table, {})) - set(BESIDE.get(table, ()))
+        if table in document and given not in map(set, choices):
+            constraint = f"must hold either {', or '.join(map(' and '.join, choices))}"
             raise InputError(f"{source}: {table}: {constraint}, got {shown(document[table])}")
 
 
@@ -119,16 +184,6 @@ def case_fields(document: Document) -> dict[str, Any]:
             if quantity.field:
                 owner = fields.setdefault(quantity.part, {}) if quantity.part else fields
                 owner[quantity.attribute] = _radians(value) if key.endswith("_deg") else value
-    return fields
-
-
-def read_files(document: Document, source: Path) -> dict[str, Any]:
-    """The fields of a `Case` whose columns stand in files of their own, looked up beside the case file."""
-    fields = {}
-    for where, (part, read) in OF_FILES.items():
-        table, _, key = where.partition(".")
-        if key in document.get(table, {}):
-            fields[part] = asdict(read(source.parent / document[table][key]))
     return fields
 
 
@@ -161,9 +216,15 @@ def _message(error: ErrorDetails, document: Document) -> str:
     if quantity is None:  # the field is a whole part of a case: its table is missing
         where = next(key for key, quantity in BY_KEY.items() if quantity.part == field).partition(".")[0]
     else:
-        where = quantity.key + (f"[{index}]" if index else "")
+        where = quantity.key
     if error["type"] == "missing":
         return f"{where}: must be given, got nothing"
+    return _wrong_type(error, where, index, document)
+
+
+def _wrong_type(error: ErrorDetails, where: str, index: int | None, document: Document) -> str:
+    """The message for a value, or for the one with an index in a list, that is of another type."""
+    where += f"[{index}]" if index else ""
     constraint = "must be a list" if error["type"] == "tuple_type" else error["msg"].replace("Input should", "must")
     return f"{where}: {constraint}, got {shown(_written(document, where))}"
 

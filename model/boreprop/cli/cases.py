@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from ..case.case import Case
-from ..case.file import load_case
+from ..case.file import load_case, read_case
 from ..case.usual import unusual
 from ..errors import InputError
 from ..run.results import read_trajectory
@@ -24,9 +24,9 @@ RunCase = Annotated[
 
 
 def open_case(path: Path) -> Case:
-    """Read a case file; warn, once and in one line, of what in it is far from any bottom-hole assembly."""
-    case = load_case(path)
-    found = unusual(case)
+    """Read a case file; warn, once and in one line, of what is far from any assembly, and of a hole made longer."""
+    case, notes = read_case(path)
+    found = notes + unusual(case)
     if found:
         console.warn(f"{path}: {'; '.join(found)}")
     return case

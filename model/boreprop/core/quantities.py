@@ -126,13 +126,15 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("angular_steering_resistance", "parameter", "", "χ", "(4)", "angular over axial drilling resistance", above=0.0, key="bit.angular_steering_resistance", field="bit.angular_steering_resistance"),
     Quantity("bit_tilt_limit", "parameter", "rad", "ψ*", "(10)", "tilt at which the bit gauge meets the wall", above=0.0, at_most=pi / 2, nominal=0.01, key="bit.tilt_limit_deg", field="bit.tilt_limit"),
     Quantity("relative_tolerance", "parameter", "", "", "", "local error allowed in one step of the integrator, relative to 1 rad and ℓ₁", at_least=1e-12, at_most=1e-2, nominal=1e-7, start=RELATIVE_TOLERANCE),
-    Quantity("survey_file", "parameter", "", "", "", "survey of the existing hole (plain CSV: UTF-8, commas, decimal points, m, degrees); empty: the survey packed in the FMU", kind="String", start="", key="hole.survey"),
+    Quantity("survey_file", "parameter", "", "", "", "survey of the existing hole, its last station is the bit (plain CSV: UTF-8, commas, decimal points, m, degrees); empty: the survey packed in the FMU", kind="String", start="", key="hole.survey"),
 
     Quantity("bit_diameter", "case", "m", "", "", "diameter of the hole", above=0.0, at_most=1.5, key="bit.diameter", field="bit_diameter"),
     Quantity("length", "case", "m", "", "", "length to drill", above=0.0, key="drilling.length", field="length"),
-    Quantity("measured_depth", "case", "m", "", "", "stations along the existing hole, the last one is the bit", size="column", key="hole.measured_depth", field="survey.measured_depth"),
+    Quantity("measured_depth", "case", "m", "", "", "stations along the existing hole, the last one is the bit if bit_depth does not say where it is", size="column", key="hole.measured_depth", field="survey.measured_depth"),
     Quantity("inclination", "case", "rad", "Θ", "", "inclination of the existing hole at each station", at_least=-pi, at_most=pi, size="column", key="hole.inclination_deg", field="survey.inclination"),
-    Quantity("schedule_file", "case", "", "", "", "steering force over the drilled length (CSV)", kind="String", key="rss.schedule"),
+    Quantity("bit_depth", "case", "m", "", "", "measured depth of the bit at the start of the run; beyond the survey the hole is straight", nominal=1e3, key="hole.bit_depth"),
+    Quantity("schedule_depth", "case", "m", "", "", "measured depths at which the forces begin, in place of drilled lengths", size="column", nominal=1e3, key="rss.measured_depth"),
+    Quantity("schedule_file", "case", "", "", "", "steering force over drilled length or measured depth (CSV)", kind="String", key="rss.schedule"),
     Quantity("engine", "case", "", "", "", "which engine drilled the case, in the case file beside the run", kind="String", key="run.engine"),
     Quantity("stopped", "case", "", "", "", "why the run ended before the length of the case, in the case file beside the run", kind="String", key="run.stopped"),
 )  # fmt: skip
