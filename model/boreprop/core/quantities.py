@@ -136,6 +136,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("schedule_depth", "case", "m", "", "", "measured depths at which the forces begin, in place of drilled lengths", size="column", nominal=1e3, key="rss.measured_depth"),
     Quantity("schedule_file", "case", "", "", "", "steering force over drilled length or measured depth (CSV)", kind="String", key="rss.schedule"),
     Quantity("engine", "case", "", "", "", "which engine drilled the case, in the case file beside the run", kind="String", key="run.engine"),
+    Quantity("study", "case", "", "", "", "what a study computed and which parameters it varied, in the case file beside its results", kind="String", key="run.study"),
     Quantity("stopped", "case", "", "", "", "why the run ended before the length of the case, in the case file beside the run", kind="String", key="run.stopped"),
 )  # fmt: skip
 

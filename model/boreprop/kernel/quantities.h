@@ -8,7 +8,7 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "6ee7b35123fc1b70" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "8c25980881f10613" /* of this file, but for this line, and of problems.h */
 #define MOST_DRILLED 100000.0 /* m in a communication step */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: forces between closer ones are rounding errors */
 
