@@ -19,6 +19,7 @@ from boreprop.core.errors import CannotContinue, ParameterError
 from boreprop.core.quantities import OUTPUTS, scalar_names
 from boreprop.kernel.binding import NativeDrilling
 from boreprop.kernel.compiler import library_path
+from boreprop.run.engines import held
 from boreprop.run.results import read_trajectory
 from boreprop.run.simulate import simulate
 from conftest import Command
@@ -61,7 +62,7 @@ def test_arrays_that_do_not_fit_are_refused(case: Case, forces: int, rows: list[
     with pytest.raises(
         ValueError, match=rf"must (hold 2 values like lengths, and rows below 2|have {columns} columns), got "
     ):
-        run.follow(np.array([1.0, 2.0]), np.zeros(forces), 5e4, rows, np.empty((2, columns - lacking)))
+        run.follow(np.array([1.0, 2.0]), held(forces, 0.0, 5e4), rows, np.empty((2, columns - lacking)))
 
 
 # what happens where it is not

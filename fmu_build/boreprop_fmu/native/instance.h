@@ -112,7 +112,7 @@ static int are_off_bottom(const double input[INPUT_COUNT]) {
 /* What the run is given: without weight there is no ηΠ, and the last one that drilled stands for it. */
 static Inputs present_inputs(const Component *c) {
     double weight = c->value[IN_ACTIVE_WEIGHT_ON_BIT];
-    Inputs inputs = {c->value[IN_RSS_FORCE], 0.0, weight == 0.0 ? c->weight : weight};
+    Inputs inputs = {c->value[IN_RSS_FORCE], 0.0, weight == 0.0 ? c->weight : weight, 0.0};
     return inputs;
 }
 

@@ -138,8 +138,15 @@ def dump_case(case: Case, **run: str | None) -> str:
         if quantity.key and quantity.field:
             table, key = quantity.key.split(".")
             value = attrgetter(quantity.field)(case)
-            written = _file_degrees if key.endswith("_deg") else float
+            if value == quantity.start:
+                continue
+            written = _file_degrees if key.endswith("_deg") else str if quantity.kind == "String" else float
             document[table][key] = list(map(written, value)) if isinstance(value, tuple) else written(value)
+    if case.inputs is not None:
+        entries = {"drilled_length": case.inputs.drilled_length, **dict(case.inputs.inputs)}
+        document["drilling"]["schedule"] = {name: list(map(float, values)) for name, values in entries.items()}
+        if case.inputs.interpolation != "held":
+            document["drilling"]["interpolation"] = case.inputs.interpolation
     facts = {key: text for key, text in run.items() if text is not None}
     if facts:
         document["run"] = facts

@@ -19,27 +19,33 @@ from pydantic_core import ErrorDetails
 
 from ..core.checks import check_number
 from ..core.errors import ParameterError
-from ..core.quantities import BY_NAME, QUANTITIES, Quantity, columns_of, quantity_of
+from ..core.quantities import Quantity, columns_of, quantity_of
 from ..core.survey import Survey
 from ..errors import InputError, shown
-from .case import CLOSE, Case, Schedule
-from .tables import read_schedule, read_survey
+from .case import CLOSE, INTERPOLATIONS, Case, Schedule
+from .schedules import LENGTHS, NAMES_OF_INPUTS, force_schedule, input_schedule
+from .tables import BY_KEY, read_inputs, read_schedule, read_survey
 
 Document = dict[str, dict[str, Any]]  # table → key → value
 
-BY_KEY = {quantity.key: quantity for quantity in QUANTITIES if quantity.key}
 DEEPEST = 100  # parts that a dotted key may have
 TABLES = ("bha", "bit", "drilling", "hole", "rss", "run")  # of a file, in the order in which they are written
-OF_FILES = ("hole.survey", "rss.schedule")
+OF_FILES = ("hole.survey", "rss.schedule", "drilling.schedule")
 """Keys that name a CSV file."""
 
 CHOICES: dict[str, tuple[tuple[str, ...], ...]] = {
     "hole": (columns_of("hole"), ("survey",)),
-    "rss": (columns_of("rss"), ("measured_depth", "force"), ("schedule",)),
+    "rss": (
+        ("drilled_length", "force"),
+        ("measured_depth", "force"),
+        ("schedule",),
+        ("drilled_length", "duty", "toolface_deg"),
+        ("measured_depth", "duty", "toolface_deg"),
+    ),
 }
 """Table → the sets of keys of which it holds one."""
 
-BESIDE = {"hole": ("bit_depth",)}
+BESIDE = {"hole": ("bit_depth",), "rss": ("full_force", "interpolation")}
 """Table → the keys that may stand beside each of these sets."""
 
 PATHS = "must be a path with forward slashes or in single quotes, since in double quotes a backslash begins an escape"
@@ -64,14 +70,57 @@ def parse(text: str, source: Path) -> Read:
         notes = _beyond(case.survey, bit_depth)
         with _naming("hole", source):
             case = replace(case, survey=case.survey.with_bit_at(bit_depth))
-    schedule, bit = document.get("rss", {}), case.survey.measured_depth[-1]
-    if "schedule" in schedule:
-        case = replace(case, schedule=read_schedule(source.parent / schedule["schedule"], bit))
-    if "measured_depth" in schedule:
-        depths, forces = (_typed(_COLUMN, document, f"rss.{key}", source) for key in ("measured_depth", "force"))
-        with _naming("rss", source):
-            case = replace(case, schedule=Schedule.by_depth(depths, forces, bit))
+    bit = case.survey.measured_depth[-1]
+    if "rss" in document:
+        case = replace(case, schedule=_force(document, bit, source))
+    if "schedule" in document["drilling"]:
+        case = _with_inputs(case, document, bit, source)
     return Read(case, notes)
+
+
+def _force(document: Document, bit_depth: float, source: Path) -> Schedule:
+    """The schedule of the table [rss]."""
+    table = document["rss"]
+    interpolation = table.get("interpolation", "held")
+    full_force = _typed(_NUMBER, document, "rss.full_force", source) if "full_force" in table else None
+    if (full_force is None) == ("duty" in table) and "schedule" not in table:
+        constraint = "must be given with duty and toolface_deg, and only with them"
+        raise InputError(f"{source}: rss.full_force: {constraint}, got {shown(table)}")
+    with _naming("rss", source):
+        if "schedule" in table:
+            return read_schedule(source.parent / table["schedule"], bit_depth, interpolation, full_force)
+        keys = [key for key in table if key not in BESIDE["rss"]]
+        columns = {key: _typed(_COLUMN, document, f"rss.{key}", source) for key in keys}
+        return force_schedule(columns, bit_depth, interpolation, full_force)
+
+
+def _with_inputs(case: Case, document: Document, bit_depth: float, source: Path) -> Case:
+    """The case with the schedule of the table [drilling]."""
+    table, given = document["drilling"], document["drilling"]["schedule"]
+    interpolation, where = table.get("interpolation", "held"), "drilling.schedule"
+    if isinstance(given, str):
+        force, inputs = read_inputs(source.parent / given, bit_depth, interpolation)
+    else:
+        lengths = set(given) & set(LENGTHS)
+        if len(lengths) != 1 or len(given) == 1 or set(given) - lengths - set(NAMES_OF_INPUTS):
+            constraint = f"must hold either {' or '.join(LENGTHS)}, and any of {', '.join(NAMES_OF_INPUTS)}"
+            raise InputError(f"{source}: {where}: {constraint}, got {shown(given)}")
+        columns = {key: _typed(_COLUMN, document, f"{where}.{key}", source) for key in given}
+        with _naming(where, source):
+            force, inputs = input_schedule(columns, bit_depth, interpolation)
+    if force is not None:
+        if "rss" in document:
+            raise InputError(f"{source}: rss: must be left out where {where} gives rss_force, got both")
+        case = replace(case, schedule=force)
+    weights = dict(inputs.inputs).get("active_weight_on_bit") if inputs else None
+    if weights is None and "active_weight_on_bit" not in table:
+        raise InputError(f"{source}: drilling.active_weight_on_bit: must be given, got nothing")
+    if weights is not None and table.get("active_weight_on_bit", weights[0]) != weights[0]:
+        constraint = f"must be left out, or {weights[0]!r} as {where} has it at the start"
+        raise InputError(
+            f"{source}: drilling.active_weight_on_bit: {constraint}, got {table['active_weight_on_bit']!r}"
+        )
+    return replace(case, inputs=inputs, active_weight_on_bit=weights[0] if weights else case.active_weight_on_bit)
 
 
 def _case(document: Document, source: Path) -> Case:
@@ -79,8 +128,9 @@ def _case(document: Document, source: Path) -> Case:
     fields = case_fields(document)
     if "survey" in document.get("hole", {}):
         fields["survey"] = asdict(read_survey(source.parent / document["hole"]["survey"]))
-    if set(document.get("rss", {})) & {"measured_depth", "schedule"}:
-        fields.pop("schedule", None)
+    fields.pop("schedule", None)
+    if "schedule" in document.get("drilling", {}):
+        fields.setdefault("active_weight_on_bit", 1.0)  # that of the schedule takes its place
     try:
         # Validated as JSON: there, even strict types accept an object for a dataclass and an array for a tuple.
         return _CASE.validate_json(json.dumps(fields, default=str), strict=True)
@@ -101,10 +151,9 @@ def _beyond(survey: Survey, bit_depth: float) -> list[str]:
 
 
 def _typed(kind: TypeAdapter[Any], document: Document, where: str, source: Path) -> Any:
-    """The value under "table.key", which must be of a kind."""
-    table, key = where.split(".")
+    """The value under "table.key" or "table.key.key", which must be of a kind."""
     try:
-        return kind.validate_json(json.dumps(document[table][key], default=str), strict=True)
+        return kind.validate_json(json.dumps(_written(document, where), default=str), strict=True)
     except ValidationError as error:
         [first, *_] = error.errors(include_url=False)
         index = next((part + 1 for part in first["loc"] if isinstance(part, int)), None)
@@ -117,8 +166,10 @@ def _naming(table: str, source: Path) -> Iterator[None]:
     try:
         yield
     except ParameterError as error:
-        key = BY_NAME[error.name].key.partition(".")[2]
-        raise InputError(f"{source}: {table}.{key}: {error.constraint}, got {shown(error.value)}") from error
+        quantity = quantity_of(error.name)
+        key = quantity.key.rpartition(".")[2] if table != "drilling.schedule" else quantity.name
+        where = f"{table}.{key}{error.name.removeprefix(quantity.name)}"
+        raise InputError(f"{source}: {where}: {error.constraint}, got {shown(error.value)}") from error
 
 
 def _no_toml(error: tomllib.TOMLDecodeError, text: str) -> str:
@@ -164,8 +215,12 @@ def check_keys(document: dict[str, Any], source: Path) -> None:
             where = f"{table}.{key}"
             if where not in BY_KEY:
                 raise InputError(f"{source}: {where}: {_unknown(key)}, got {shown(value)}")
+            if where == "drilling.schedule" and isinstance(value, dict):
+                continue
             if BY_KEY[where].kind == "String" and not isinstance(value, str):
                 raise InputError(f"{source}: {where}: must be text in quotes, got {shown(value)}")
+            if where.endswith(".interpolation") and value not in INTERPOLATIONS:
+                raise InputError(f"{source}: {where}: must be {' or '.join(INTERPOLATIONS)}, got {shown(value)}")
             if where in OF_FILES and any(escaped in value for escaped in "\b\t\n\f\r"):  # "\temp" begins with a tab
                 raise InputError(f"{source}: {where}: {PATHS}, got {shown(value)}")
     for table, choices in CHOICES.items():
@@ -252,6 +307,7 @@ def _in_degrees(quantity: Quantity, value: Any) -> str:
 def _written(document: Document, where: str) -> Any:
     """The value that the file has under "table.key" or "table.key[i]"."""
     where, _, index = where.partition("[")
-    table, key = where.split(".")
-    value = document[table][key]
+    value: Any = document
+    for key in where.split("."):
+        value = value[key]
     return value[int(index[:-1]) - 1] if index else value

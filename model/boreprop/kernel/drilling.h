@@ -16,7 +16,8 @@ typedef struct {
 static inline int check_inputs(Inputs inputs, Problem *problem) {
     return check_quantity(&INPUT_TABLE[IN_RSS_FORCE], 0, inputs.rss_force, problem) &&
            check_finite(Q_RSS_FORCE_SLOPE, 0, inputs.rss_force_slope, problem) &&
-           check_quantity(&INPUT_TABLE[IN_ACTIVE_WEIGHT_ON_BIT], 0, inputs.active_weight_on_bit, problem);
+           check_quantity(&INPUT_TABLE[IN_ACTIVE_WEIGHT_ON_BIT], 0, inputs.active_weight_on_bit, problem) &&
+           check_finite(Q_ACTIVE_WEIGHT_ON_BIT_SLOPE, 0, inputs.active_weight_on_bit_slope, problem);
 }
 
 /* The dimensionless inputs; 0, and the problem, if these numbers, or the inputs, are out of range. */
@@ -25,9 +26,11 @@ static inline int scale_inputs(const System *system, Inputs inputs, ScaledInputs
     scaled->F_rss = inputs.rss_force / F_star;
     scaled->F_rss_slope = inputs.rss_force_slope * length_scale(system) / F_star;
     scaled->eta_pi = eta_pi(system, inputs.active_weight_on_bit);
+    scaled->eta_pi_slope = eta_pi(system, inputs.active_weight_on_bit_slope) * length_scale(system);
     return check_inputs(inputs, problem) && check_finite(Q_SCALED_FORCE, 0, scaled->F_rss, problem) &&
            check_finite(Q_SCALED_SLOPE, 0, scaled->F_rss_slope, problem) &&
            check_positive(Q_ETA_PI, scaled->eta_pi, problem) &&
+           check_finite(Q_ETA_PI_SLOPE, 0, scaled->eta_pi_slope, problem) &&
            check_finite(Q_INVERSE_ETA_PI, 0, 1 / scaled->eta_pi, problem);
 }
 
@@ -103,7 +106,7 @@ static inline void drilling_cancel(Drilling *d) { go_back(&d->integrator); }
 
 /* What the outputs are computed from: the state where the bit is. */
 typedef struct {
-    double l1, F_star, theta, Theta, psi, F_0, F[MAX_STABILIZERS], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
+    double l1, F_star, eta_pi, theta, Theta, psi, F_0, F[MAX_STABILIZERS], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
     Loads loads;
     const Mode *mode;
 } Present;
@@ -121,7 +124,8 @@ static inline Present present(Drilling *d) {
     at.mode = settle(&p->modes, &at.loads, now->regime.contact);
     at.F_0 = row_value(&at.mode->F_0, &at.loads, p->scaled.n);
     for (int i = 0; i < p->scaled.n - 1; i++) at.F[i] = row_value(&at.mode->F[i], &at.loads, p->scaled.n);
-    at.psi = bit_tilt(at.F_0, now->inputs.eta_pi, p->scaled.psi_star);
+    at.eta_pi = inputs_here(now).eta_pi;
+    at.psi = bit_tilt(at.F_0, at.eta_pi, p->scaled.psi_star);
     at.Theta = at.theta - at.psi;
     position(now, &at.x, &at.z);
     return at;
@@ -131,7 +135,6 @@ static inline Present present(Drilling *d) {
 static inline double output(const Drilling *d, const Present *at, Output which, int i) {
     const Scaled *scaled = &d->integrator.scaled;
     const Loads *loads = &at->loads;
-    const ScaledInputs *inputs = &d->integrator.now.inputs;
     double l1 = at->l1, F_star = at->F_star;
     int n = scaled->n;
     switch (which) {
@@ -145,13 +148,13 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_STABILIZER_FORCE: return at->F[i] * F_star;
         case OUT_STABILIZER_CONTACT: return wall(at->F[i]);
         case OUT_BIT_TILT_SATURATION:
-            return side_beyond(at->F_0 / inputs->eta_pi, -scaled->psi_star, scaled->psi_star, ROUNDING);
+            return side_beyond(at->F_0 / at->eta_pi, -scaled->psi_star, scaled->psi_star, ROUNDING);
         case OUT_BIT_LATERAL_FORCE: return at->F_0 * F_star;
         case OUT_BIT_MOMENT: return -row_value(&at->mode->M, loads, n) * F_star * l1;
         case OUT_BOREHOLE_CURVATURE: return (at->Theta - at->earlier) / l1;
         case OUT_DISPLACEMENT: return at->x * l1;
         case OUT_TRUE_VERTICAL_DEPTH: return at->z * l1;
-        case OUT_ETA_PI: return inputs->eta_pi;
+        case OUT_ETA_PI: return at->eta_pi;
     }
     return NAN;
 }

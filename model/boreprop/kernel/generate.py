@@ -21,7 +21,7 @@ SIZES = {"1": "ONE", "n": "EACH_STABILIZER", "n-1": "EACH_NON_IDEAL"}
 ROOMS = {"1": "", "n": "[MAX_STABILIZERS]", "n-1": "[MAX_STABILIZERS - 1]"}
 
 NAMES = {quantity.name: quantity.name for quantity in QUANTITIES} | {
-    "rss_force_slope": "rss_force_slope",
+    **{name: name for name in (f"{quantity.name}_slope" for quantity in INPUTS if quantity.slope)},
     **DERIVED,
     "parameters": "parameters",
     "state": "state",

@@ -65,8 +65,12 @@ static inline double shortest_step(const Integrator *p, double xi) {
     return p->options.smallest_step * larger(1.0, xi);
 }
 
+/* The law of the next step. Under a changing ηΠ each step has its own, made where it starts. */
 static inline const Law *present_law(Integrator *p) {
-    if (!p->law_known) p->law = make_law(&p->scaled, &p->modes, p->now.regime, p->now.inputs, p->now.inputs_xi);
+    const State *now = &p->now;
+    double xi = now->inputs.eta_pi_slope == 0 ? now->inputs_xi : now->step.end;
+    ScaledInputs inputs = inputs_ahead(now->inputs, xi - now->inputs_xi);
+    if (!p->law_known) p->law = make_law(&p->scaled, &p->modes, now->regime, inputs, xi);
     p->law_known = 1;
     return &p->law;
 }
@@ -145,7 +149,7 @@ static inline Plan first_plan(const Step *last, int kink, const Law *law, double
 
 /* Choose the length of the trial: as planned, but no kink lies within it, and none is left a short step ahead. */
 static inline void choose_length(const Integrator *p, const Law *law, double xi, Plan *plan) {
-    double largest = p->options.largest_step, h = smaller(plan->planned, largest);
+    double largest = smaller(p->options.largest_step, law->longest), h = smaller(plan->planned, largest);
     double way = next_kink(&p->now.kinks, &p->scaled, law->gains, p->options.relative_tolerance, xi, 2 * h) - xi;
     double longest = plan->repeated ? h : smaller(STRETCH * h, largest);
     if (way < 2 * h) h = way <= longest ? way : way / 2;
@@ -217,6 +221,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     Trial trial;
     if (!has_room(p)) return FULL;
     int kink = leave(p, &last, x);
+    if (now->inputs.eta_pi_slope != 0) p->law_known = 0;
     Plan plan = first_plan(&last, kink, present_law(p), p->options.layers);
     Status status = find_step(p, last.end, x, &plan, &trial, problem);
     if (status != DONE) return status;
@@ -227,9 +232,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     step_state(step, step->end, end);
     for (int c = ANGLE; c < LATERAL; c++)
         if (!(fabs(end[c]) <= LARGEST_INCLINATION)) return failed(p, TURNS_OVER, step->end, problem);
-    ScaledInputs inputs = now->inputs;
-    inputs.F_rss += now->inputs.F_rss_slope * (last.end - now->inputs_xi);
-    append(&now->hole, step, inputs);
+    append(&now->hole, step, inputs_ahead(now->inputs, last.end - now->inputs_xi));
     if (kink <= SMOOTHEST_KINK)
         add_kink(&now->kinks, p->scaled.n, last.end, kink, step_jump(&last, step, kink, last.end));
     now->accepted++;

@@ -8,7 +8,7 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "8c25980881f10613" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "c5d65ce9b5d1526b" /* of this file, but for this line, and of problems.h */
 #define MOST_DRILLED 100000.0 /* m in a communication step */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: forces between closer ones are rounding errors */
 
@@ -33,6 +33,7 @@ typedef struct {
     double rss_force; /* N: force of the steering pads on the BHA, positive builds */
     double rss_force_slope; /* N/m: its change per metre drilled */
     double active_weight_on_bit; /* N: weight on bit that goes into drilling */
+    double active_weight_on_bit_slope; /* N/m: its change per metre drilled */
 } Inputs;
 
 /* How many values a quantity has. */

@@ -66,6 +66,7 @@ static inline void pass_snapshot(Tape *tape, int n, Snapshot *snapshot) {
     pass(tape, 1, &now->inputs.F_rss);
     pass(tape, 1, &now->inputs.F_rss_slope);
     pass(tape, 1, &now->inputs.eta_pi);
+    pass(tape, 1, &now->inputs.eta_pi_slope);
     pass(tape, 1, &now->inputs_xi);
     pass(tape, 2, now->path);
     pass(tape, DIRECTIONS, now->origin);
@@ -116,7 +117,7 @@ static inline void drilling_save(const Drilling *d, double *state) {
 static inline int is_consistent(const Drilling *d, const Snapshot *snapshot) {
     const State *now = &snapshot->now;
     const Step *step = &now->step;
-    double xi = now->xi, eta_pi = now->inputs.eta_pi;
+    double xi = now->xi, eta_pi = inputs_here(now).eta_pi;
     if (!(fabs(snapshot->drilled_length / length_scale(&d->system) - xi) <= ROUNDING_OF_XI * xi)) return 0;
     if (!(eta_pi > 0) || !isfinite(1 / eta_pi) || now->inputs_xi > xi) return 0;
     if (step->xi > xi || xi > step->end || !(step->h > 0) || !(step->next_h > 0)) return 0;

@@ -74,10 +74,34 @@ static inline double force_scale(const System *system) {
     return 3.0 * system->flexural_stiffness / (length_scale(system) * length_scale(system));
 }
 
-/* The inputs where they were taken over: F_RSS, its change per ξ, and ηΠ. */
+/* The inputs where they were taken over: F_RSS and ηΠ, and their changes per ξ. */
 typedef struct {
-    double F_rss, F_rss_slope, eta_pi;
+    double F_rss, F_rss_slope, eta_pi, eta_pi_slope;
 } ScaledInputs;
+
+/* The inputs a length `ahead` of where they were taken over. */
+static inline ScaledInputs inputs_ahead(ScaledInputs inputs, double ahead) {
+    inputs.F_rss += inputs.F_rss_slope * ahead;
+    inputs.eta_pi += inputs.eta_pi_slope * ahead;
+    return inputs;
+}
+
+/* Whether inputs change along the way. */
+static inline int are_ramps(ScaledInputs inputs) { return inputs.F_rss_slope != 0 || inputs.eta_pi_slope != 0; }
+
+#define SAME 1e-12 /* relative: ramps that differ by less at both ends of a way differ by rounding */
+
+static inline int is_same(double a, double a_end, double b, double b_end) {
+    double most = SAME * larger(fabs(b), fabs(b_end));
+    return fabs(a - b) <= most && fabs(a_end - b_end) <= most;
+}
+
+/* Whether two pairs of inputs are the same along a way. */
+static inline int same_inputs(ScaledInputs a, ScaledInputs b, double way) {
+    if (!are_ramps(a) && !are_ramps(b)) return a.F_rss == b.F_rss && a.eta_pi == b.eta_pi;
+    ScaledInputs a_end = inputs_ahead(a, way), b_end = inputs_ahead(b, way);
+    return is_same(a.F_rss, a_end.F_rss, b.F_rss, b_end.F_rss) && is_same(a.eta_pi, a_end.eta_pi, b.eta_pi, b_end.eta_pi);
+}
 
 /* λ_i: distance from stabilizer i−1 (the bit) to stabilizer i, counted from 0 here. */
 static inline double lambda_(const Scaled *scaled, int i) { return scaled->s[i] - (i ? scaled->s[i - 1] : 0.0); }
