@@ -4,11 +4,12 @@ from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import repeat
+from operator import attrgetter
 from typing import NamedTuple
 
 from ..core.checks import check_increasing, check_number, check_part, check_quantity, checked_float
 from ..core.errors import ParameterError
-from ..core.quantities import values_of
+from ..core.quantities import INPUTS
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly, eta_pi
 
@@ -241,7 +242,11 @@ class Case:
 
     def profiles(self) -> dict[str, Profile]:
         """Each input that the case gives over the drilled length, by name."""
-        constant = {name: Profile((0.0,), (value,)) for name, value in values_of("", self).items()}
+        constant = {
+            quantity.name: Profile((0.0,), (attrgetter(quantity.field)(self),))
+            for quantity in INPUTS
+            if quantity.field and quantity.part != "schedule"
+        }
         scheduled = self.inputs.profiles() if self.inputs else {}
         return {"rss_force": self.schedule.profile()} | constant | scheduled
 

@@ -114,7 +114,7 @@ class Law:
 
     def __init__(self, modes: Modes, regime: Regime, inputs: Inputs, xi: float) -> None:
         scaled, mode, eta_pi = modes.scaled, modes[regime.contact], inputs.eta_pi
-        self.s, self.xi = scaled.s, xi  # the delays; where it is made
+        self.s, self.xi, self.ramp = scaled.s, xi, inputs.ramp  # the delays; where it is made; whether inputs change
         self.growth = inputs.eta_pi_slope / eta_pi  # of ηΠ per ξ, over ηΠ at `xi`
         self.longest = LONGEST_RAMP / abs(self.growth) if self.growth else inf  # step under a changing ηΠ
         self.bounds = [

@@ -70,7 +70,7 @@ class Trial(NamedTuple):
     Ys: list[float]
     delayed: list[list[float]]  # Y(ξ − s_i), a list for each stabilizer
     sines: list[float]
-    aheads: list[float]  # distance from where the law was made
+    aheads: list[float]  # distance from where the law was made; none if the inputs do not change
     error: float  # estimated, over the tolerance
 
 
@@ -84,7 +84,7 @@ def try_step(law: Law, hole: Hole, xi: float, h: float, theta: float, Y: float, 
     average = Y - delayed[0][0]
     sine = Sine(average, sin(average), cos(average))
     J = law.jacobian(sine)
-    aheads = [xi - law.xi + t * h for t in radau.POINTS]
+    aheads = [xi - law.xi + t * h for t in radau.POINTS] if law.ramp else []
     if law.growth:
         return _try_ramp(law, J, Trial(Step(xi, h, (theta,), (Y,), xi + h), [], [], delayed, [], aheads, inf), options)
     frozen = sine.linear([Y - Y_1 for Y_1 in delayed[0]])

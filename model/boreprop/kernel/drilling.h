@@ -10,6 +10,8 @@ enum { LEAST_CAPACITY = 1024, MOST_PIECES = 1 << 19 }; /* of hole */
 typedef struct {
     System system;
     double drilled_length; /* m */
+    Inputs given;          /* the inputs that were given last, and … */
+    ScaledInputs scaled;   /* … what they are in the paper's numbers */
     Integrator integrator;
 } Drilling;
 
@@ -20,18 +22,24 @@ static inline int check_inputs(Inputs inputs, Problem *problem) {
            check_finite(Q_ACTIVE_WEIGHT_ON_BIT_SLOPE, 0, inputs.active_weight_on_bit_slope, problem);
 }
 
-/* The dimensionless inputs; 0, and the problem, if these numbers, or the inputs, are out of range. */
-static inline int scale_inputs(const System *system, Inputs inputs, ScaledInputs *scaled, Problem *problem) {
+/* Make the inputs dimensionless; 0, and the problem, if these numbers, or the inputs, are out of range. */
+static inline int take_given(Drilling *d, Inputs inputs, Problem *problem) {
+    const System *system = &d->system;
     double F_star = force_scale(system);
-    scaled->F_rss = inputs.rss_force / F_star;
-    scaled->F_rss_slope = inputs.rss_force_slope * length_scale(system) / F_star;
-    scaled->eta_pi = eta_pi(system, inputs.active_weight_on_bit);
-    scaled->eta_pi_slope = eta_pi(system, inputs.active_weight_on_bit_slope) * length_scale(system);
-    return check_inputs(inputs, problem) && check_finite(Q_SCALED_FORCE, 0, scaled->F_rss, problem) &&
-           check_finite(Q_SCALED_SLOPE, 0, scaled->F_rss_slope, problem) &&
-           check_positive(Q_ETA_PI, scaled->eta_pi, problem) &&
-           check_finite(Q_ETA_PI_SLOPE, 0, scaled->eta_pi_slope, problem) &&
-           check_finite(Q_INVERSE_ETA_PI, 0, 1 / scaled->eta_pi, problem);
+    if (!memcmp(&inputs, &d->given, sizeof inputs)) return 1;
+    ScaledInputs scaled = {
+        inputs.rss_force / F_star, inputs.rss_force_slope * length_scale(system) / F_star,
+        eta_pi(system, inputs.active_weight_on_bit),
+        eta_pi(system, inputs.active_weight_on_bit_slope) * length_scale(system)
+    };
+    if (!check_inputs(inputs, problem) || !check_finite(Q_SCALED_FORCE, 0, scaled.F_rss, problem) ||
+        !check_finite(Q_SCALED_SLOPE, 0, scaled.F_rss_slope, problem) ||
+        !check_positive(Q_ETA_PI, scaled.eta_pi, problem) ||
+        !check_finite(Q_ETA_PI_SLOPE, 0, scaled.eta_pi_slope, problem) ||
+        !check_finite(Q_INVERSE_ETA_PI, 0, 1 / scaled.eta_pi, problem))
+        return 0;
+    d->given = inputs, d->scaled = scaled;
+    return 1;
 }
 
 /* The capacity, in pieces of hole, that a run needs if its inputs do not change often. */
@@ -67,6 +75,7 @@ static inline Status drilling_prepare(
         return FAILED;
     d->system = *system;
     d->drilled_length = 0.0;
+    d->given.rss_force = (double)NAN;
     options.relative_tolerance = system->relative_tolerance;
     prepare(&d->integrator, &scaled, length_scale(system), options);
     drilling_move(d, memory, capacity);
@@ -75,22 +84,20 @@ static inline Status drilling_prepare(
 
 /* Start at the end of the survey, which need not live on. */
 static inline Status drilling_start(Drilling *d, const Survey *survey, Inputs inputs, Problem *problem) {
-    ScaledInputs scaled_inputs;
     if (!check_survey(survey, problem)) return FAILED;
-    if (!scale_inputs(&d->system, inputs, &scaled_inputs, problem)) return FAILED;
+    if (!take_given(d, inputs, problem)) return FAILED;
     if (d->integrator.now.hole.capacity < drilling_capacity(&d->system, survey)) return FULL;
-    return begin(&d->integrator, survey, scaled_inputs, problem);
+    return begin(&d->integrator, survey, d->scaled, problem);
 }
 
 /* Drill on to a length, m from the start, under inputs from here; where the bit is, only they are taken over.
    After FULL: `drilling_move`, and the same call again, which goes on; or `drilling_cancel`, and nothing has moved. */
 static inline Status drilling_advance(Drilling *d, double drilled_length, Inputs inputs, Problem *problem) {
-    ScaledInputs scaled_inputs;
-    if (!scale_inputs(&d->system, inputs, &scaled_inputs, problem)) return FAILED;
+    if (!take_given(d, inputs, problem)) return FAILED;
     if (!check_number(Q_DRILLED_LENGTH, 0, drilled_length, -INFINITY, d->drilled_length, INFINITY, problem))
         return FAILED;
     double xi = drilled_length / length_scale(&d->system);
-    Status status = drill(&d->integrator, xi, scaled_inputs, problem);
+    Status status = drill(&d->integrator, xi, d->scaled, problem);
     if (status == DONE) d->drilled_length = drilled_length;
     return status;
 }

@@ -68,9 +68,9 @@ static inline double shortest_step(const Integrator *p, double xi) {
 /* The law of the next step. Under a changing ηΠ each step has its own, made where it starts. */
 static inline const Law *present_law(Integrator *p) {
     const State *now = &p->now;
+    if (p->law_known) return &p->law;
     double xi = now->inputs.eta_pi_slope == 0 ? now->inputs_xi : now->step.end;
-    ScaledInputs inputs = inputs_ahead(now->inputs, xi - now->inputs_xi);
-    if (!p->law_known) p->law = make_law(&p->scaled, &p->modes, now->regime, inputs, xi);
+    p->law = make_law(&p->scaled, &p->modes, now->regime, inputs_ahead(now->inputs, xi - now->inputs_xi), xi);
     p->law_known = 1;
     return &p->law;
 }

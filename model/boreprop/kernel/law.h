@@ -188,11 +188,18 @@ static inline void rates_along(const Law *law, const Trial *trial, double theta_
     }
 }
 
+/* A function that is seldom called: inlined, it would slow down what is. */
+#ifdef __GNUC__
+#define APART __attribute__((noinline))
+#else
+#define APART
+#endif
+
 #define RAMP_ITERATIONS 20 /* at most; each gains a digit or more */
 
 /* Collocation under a changing ηΠ: what the Jacobian, which is that at the start, neglects is added to the right-hand
    side until it is small. Returns whether it is; gives the right-hand side with the state frozen, and the parts. */
-static inline int collocate_on_ramp(
+APART static int collocate_on_ramp(
     const Law *law, const Options *options, const double x[COMPONENTS], Jacobian J, Trial *trial, double f_theta[POINTS],
     double f_Y[POINTS], double parts_theta[S], double parts_Y[S]
 ) {

@@ -96,7 +96,9 @@ static inline Status steer(Integrator *p, ScaledInputs inputs, Problem *problem)
 /* Drill on to `xi` under inputs that act from where the bit is. After FULL the same call goes on in larger rings. */
 static inline Status drill(Integrator *p, double xi, ScaledInputs inputs, Problem *problem) {
     State *now = &p->now;
-    int changed = !same_inputs(inputs_here(now), inputs, xi > now->xi ? xi - now->xi : 1.0);
+    int changed = inputs.F_rss != now->inputs.F_rss || inputs.eta_pi != now->inputs.eta_pi;
+    if (are_ramps(&inputs) || are_ramps(&now->inputs))
+        changed = !same_ramps(inputs_here(now), inputs, xi > now->xi ? xi - now->xi : 1.0);
     if (changed || xi > now->step.end) {
         if (!set_out(p)) return FULL;
         Status status = changed ? steer(p, inputs, problem) : DONE;

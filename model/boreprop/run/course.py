@@ -51,8 +51,9 @@ class Course:
 
     def at(self, length: Floats, piece: NDArray[np.intc]) -> Floats:
         """The inputs at drilled lengths, m, each on the piece of that number; shape (lengths, inputs)."""
-        ahead: Floats = (length - self.starts[piece])[:, None]
-        values: Floats = self.values[piece] + self.slopes[piece] * ahead
+        values: Floats = np.take(self.values, piece, axis=0)
+        if self.slopes.any():
+            values += self.slopes[piece] * (length - self.starts[piece])[:, None]
         return values
 
 
@@ -68,10 +69,16 @@ def course_of_force(schedule: Schedule) -> Course:
 
 def acting(course: Course, length: Floats, piece: NDArray[np.intc]) -> Floats:
     """What an engine is given for legs that start at some lengths, each on a piece; (legs, inputs) as of `ACTING`."""
-    inputs, values = np.zeros((len(length), len(ACTING))), course.at(length, piece)
+    on_pieces = np.zeros((len(course.starts), len(ACTING)))
     for i, name in enumerate(course.names):
         if name in ACTING:
-            inputs[:, ACTING.index(name)] = values[:, i]
+            on_pieces[:, ACTING.index(name)] = course.values[:, i]
             if f"{name}_slope" in ACTING:
-                inputs[:, ACTING.index(f"{name}_slope")] = course.slopes[piece, i]
+                on_pieces[:, ACTING.index(f"{name}_slope")] = course.slopes[:, i]
+    inputs: Floats = np.take(on_pieces, piece, axis=0)
+    if course.slopes.any():
+        values = course.at(length, piece)
+        for i, name in enumerate(course.names):
+            if name in ACTING:
+                inputs[:, ACTING.index(name)] = values[:, i]
     return inputs
