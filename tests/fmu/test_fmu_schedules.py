@@ -19,7 +19,7 @@ LENGTH = 24.0
 
 def scheduled(case: Case, interpolation: str, rates: tuple[float, ...] = ()) -> Case:
     """The paper's case under a force, a weight and perhaps a rate that change at lengths of their own."""
-    inputs = [("active_weight_on_bit", (2e3, 6e3, 1e3))]
+    inputs: list[tuple[str, tuple[float, ...]]] = [("active_weight_on_bit", (2e3, 6e3, 1e3))]
     if rates:
         inputs.append(("rate_of_penetration", rates))
     return replace(
