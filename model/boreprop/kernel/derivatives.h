@@ -32,8 +32,7 @@ static inline double output_gain(const Drilling *d, const Present *at, Output wh
     double by_force = input == IN_RSS_FORCE ? 1 / at->F_star : 0.0;                      /* of F_RSS */
     double by_weight = input == IN_ACTIVE_WEIGHT_ON_BIT ? eta_pi(&d->system, 1.0) : 0.0; /* of ηΠ */
     double F_0 = at->mode->F_0.rss * by_force, psi = 0.0;                                /* changes */
-    if (fabs(at->F_0 / at->eta_pi) <= d->integrator.scaled.psi_star)
-        psi = (F_0 - at->psi * by_weight) / at->eta_pi;
+    if (fabs(at->F_0 / at->eta_pi) <= d->integrator.scaled.psi_star) psi = (F_0 - at->psi * by_weight) / at->eta_pi;
     switch (which) {
         case OUT_BOREHOLE_INCLINATION: return -psi;
         case OUT_BIT_TILT: return psi;

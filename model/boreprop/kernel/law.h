@@ -200,8 +200,8 @@ static inline void rates_along(const Law *law, const Trial *trial, double theta_
 /* Collocation under a changing ηΠ: what the Jacobian, which is that at the start, neglects is added to the right-hand
    side until it is small. Returns whether it is; gives the right-hand side with the state frozen, and the parts. */
 APART static int collocate_on_ramp(
-    const Law *law, const Options *options, const double x[COMPONENTS], Jacobian J, Trial *trial, double f_theta[POINTS],
-    double f_Y[POINTS], double parts_theta[S], double parts_Y[S]
+    const Law *law, const Options *options, const double x[COMPONENTS], Jacobian J, Trial *trial,
+    double f_theta[POINTS], double f_Y[POINTS], double parts_theta[S], double parts_Y[S]
 ) {
     double h = trial->step.h, *theta = trial->x[ANGLE], *Y = trial->x[LATERAL], *Y_1 = trial->delayed[0][0];
     double rate[POINTS], Theta[POINTS], allowed = REST * options->relative_tolerance;

@@ -87,11 +87,13 @@ static inline ScaledInputs inputs_ahead(ScaledInputs inputs, double ahead) {
 }
 
 /* Whether inputs change along the way. */
-static inline int are_ramps(const ScaledInputs *inputs) { return inputs->F_rss_slope != 0 || inputs->eta_pi_slope != 0; }
+static inline int are_ramps(const ScaledInputs *inputs) {
+    return inputs->F_rss_slope != 0 || inputs->eta_pi_slope != 0;
+}
 
 #define SAME 1e-12 /* relative: ramps that differ by less at both ends of a way differ by rounding */
 
-static inline int is_same(double a, double a_end, double b, double b_end) {
+static inline int same_ramp(double a, double a_end, double b, double b_end) {
     double most = SAME * larger(fabs(b), fabs(b_end));
     return fabs(a - b) <= most && fabs(a_end - b_end) <= most;
 }
@@ -99,7 +101,8 @@ static inline int is_same(double a, double a_end, double b, double b_end) {
 /* Whether two pairs of inputs, of which one is a ramp, are the same along a way. */
 static inline int same_ramps(ScaledInputs a, ScaledInputs b, double way) {
     ScaledInputs a_end = inputs_ahead(a, way), b_end = inputs_ahead(b, way);
-    return is_same(a.F_rss, a_end.F_rss, b.F_rss, b_end.F_rss) && is_same(a.eta_pi, a_end.eta_pi, b.eta_pi, b_end.eta_pi);
+    return same_ramp(a.F_rss, a_end.F_rss, b.F_rss, b_end.F_rss) &&
+           same_ramp(a.eta_pi, a_end.eta_pi, b.eta_pi, b_end.eta_pi);
 }
 
 /* λ_i: distance from stabilizer i−1 (the bit) to stabilizer i, counted from 0 here. */
