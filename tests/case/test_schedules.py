@@ -150,7 +150,7 @@ def test_a_weight_is_given_once(paper_text: str) -> None:
 
 
 def test_a_file_without_any_input_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "log.csv").write_text("drilled_length,force\n0,1\n")
+    (tmp_path / "log.csv").write_text("drilled_length,hook_load\n0,1\n")
     with pytest.raises(InputError, match=r"log\.csv: must have a column 'rss_force' or 'active_weight_on_bit' or "):
         read_inputs(tmp_path / "log.csv")
 

@@ -79,7 +79,7 @@ def test_a_ramp_to_a_bad_value_moves_nothing_and_half_of_it_is_good(one: Instanc
     assert (one.get("active_weight_on_bit"), one.get("rss_force")) == (500.0, 10.0)
 
 
-def test_a_step_that_fails_on_its_way_up_the_stairs_moves_nothing(one: Instance) -> None:
+def test_a_step_that_fails_on_its_way_up_a_ramp_moves_nothing(one: Instance) -> None:
     one.initialize()
     one.steps(3, 0.5)
     ramp(one, active_weight_on_bit=10.0, rss_force=1e9)  # turns the bit over, some metres on

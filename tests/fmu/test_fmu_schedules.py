@@ -89,3 +89,20 @@ def test_an_fmu_that_does_not_interpolate_refuses_a_linear_schedule(
     done = command_here("boreprop-fmu", "run", pack(scheduled(case, "linear"), PYTHON), "--output", "run.csv")
     assert_refused(done, "Borehole.fmu: must interpolate inputs for a linear schedule", "--runtime native")
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.usefixtures("kernel")
+def test_a_schedule_file_gives_any_input_and_leaves_the_others(
+    fmu: Path, case: Case, command: Command, tmp_path: Path
+) -> None:
+    (tmp_path / "schedule.csv").write_text("drilled_length,force_kN,active_weight_on_bit_kN\n0,1,2\n3.3,-1,5\n")
+    run = run_of(command, fmu, tmp_path, "--schedule", "schedule.csv", "--step", "1", "--stop", str(LENGTH))
+    weights = ("active_weight_on_bit", (2e3, 5e3))
+    given = replace(
+        case,
+        active_weight_on_bit=2e3,
+        schedule=Schedule((0.0, 3.3), (1e3, -1e3)),
+        inputs=InputSchedule((0.0, 3.3), (weights,)),
+    )
+    assert run.case == given
+    assert_drilled(run, given, 1.0)

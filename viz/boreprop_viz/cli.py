@@ -43,7 +43,7 @@ def view(
     ] = None,
     schedule: Annotated[
         Path | None,
-        typer.Option(metavar="S.csv", help="Steering force over drilled length or measured depth, for an FMU."),
+        typer.Option(metavar="S.csv", help="Inputs over drilled length or measured depth, for an FMU."),
     ] = None,
     step: Annotated[
         float | None, typer.Option(parser=positive, metavar="S", help="Communication step, s, for an FMU.")

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 from fmpy.fmi1 import FMICallException
 
-from boreprop.case.case import RATE, Schedule
+from boreprop.case.case import RATE, InputSchedule, Schedule
 from boreprop.case.packed import read_packed_case
 from boreprop.core.checks import check_number
 from boreprop.core.quantities import INPUTS, OUTPUTS
 from boreprop.errors import InputError
-from boreprop.run.course import Course, course_of, course_of_force
+from boreprop.run.course import Course
 from boreprop.run.trajectory import Stopped, Trajectory
 
 from .instance import interruptions, open_instance, read_description, uninterrupted
@@ -34,7 +34,9 @@ class FmuRun:
         An FMI 2.0 co-simulation FMU with an input rss_force and an output drilled_length.
     schedule
         The force over the drilled length; a step in which it changes is split there. None: the schedule of the case
-        that is packed in the FMU or, without one, the FMU's own start value. Other inputs are those of that case.
+        that is packed in the FMU or, without one, the FMU's own start value.
+    inputs
+        Other inputs over the drilled length. None: those of the case that is packed in the FMU.
     step, stop
         Communication step and last communication point, s. None: those of the FMU's default experiment.
     relative_tolerance
@@ -60,6 +62,7 @@ class FmuRun:
         self,
         fmu: str | Path,
         schedule: Schedule | None = None,
+        inputs: InputSchedule | None = None,
         *,
         step: float | None = None,
         stop: float | None = None,
@@ -69,9 +72,14 @@ class FmuRun:
         self._description = read_description(self.fmu)
         self.case = read_packed_case(self.fmu)
         if self.case is not None:
-            self.case = replace(self.case, schedule=schedule or self.case.schedule)
-            schedule = self.case.schedule
-        self._course = self._course_of(schedule)
+            weights = dict(inputs.inputs).get("active_weight_on_bit") if inputs else None
+            self.case = replace(
+                self.case,
+                schedule=schedule or self.case.schedule,
+                inputs=inputs or self.case.inputs,
+                active_weight_on_bit=weights[0] if weights else self.case.active_weight_on_bit,
+            )
+        self._course = self._course_of(schedule, inputs)
         experiment = self._description.defaultExperiment
         self.start = float(getattr(experiment, "startTime", None) or 0.0)
         self.step = self._choose("step", step, getattr(experiment, "stepSize", None))
@@ -142,14 +150,16 @@ class FmuRun:
             raise InputError(f"{self.fmu}: {name}: must be given (--{name}), since the FMU has no default, got nothing")
         return float(default if given is None else given)  # type: ignore[arg-type]
 
-    def _course_of(self, schedule: Schedule | None) -> Course | None:
+    def _course_of(self, schedule: Schedule | None, inputs: InputSchedule | None) -> Course | None:
         """The inputs of the run; `InputError` if the FMU cannot follow them."""
         if self.case is not None:
-            course = course_of(self.case)
-        elif schedule is not None:
-            course = course_of_force(schedule)
+            profiles = self.case.profiles()
         else:
+            profiles = {} if schedule is None else {"rss_force": schedule.profile()}
+            profiles |= {} if inputs is None else inputs.profiles()
+        if not profiles:
             return None
+        course = Course.of(profiles)
         if course.slopes.any() and not self._description.coSimulation.canInterpolateInputs:
             remedy = "build it with --runtime native, or take held schedules"
             raise InputError(

@@ -130,6 +130,15 @@ class InputSchedule:
     ParameterError
         If a value is out of range, the lengths do not start at 0 or do not increase, the shapes differ, there is no
         such interpolation, or a rate of penetration is 0, with which no next entry would be reached.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> from boreprop import InputSchedule, paper_case, simulate
+    >>> weights = (("active_weight_on_bit", (2e3, 3e3)),)
+    >>> case = replace(paper_case(), inputs=InputSchedule((0.0, 10.0), weights, "linear"))
+    >>> simulate(case, length=20.0, sample_interval=5.0)["active_weight_on_bit"].tolist()
+    [2000.0, 2500.0, 3000.0, 3000.0, 3000.0]
     """
 
     drilled_length: tuple[float, ...]

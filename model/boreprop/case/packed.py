@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from .archive import open_archive
-from .case import Case, Schedule
+from .case import Case, InputSchedule, Schedule
 from .file import parse_case
-from .tables import read_schedule
+from .tables import read_inputs
 
 CASE_FILE = "resources/case.toml"
 
@@ -34,13 +34,13 @@ def read_packed_case(fmu: str | Path) -> Case | None:
     return parse_case(text, Path(fmu, CASE_FILE))
 
 
-def read_schedule_for(fmu: str | Path, path: str | Path) -> Schedule:
-    """Read a force schedule for an FMU. Measured depths in it count from the bit of the case that is packed in the FMU.
+def read_schedules_for(fmu: str | Path, path: str | Path) -> tuple[Schedule | None, InputSchedule | None]:
+    """Read schedules for an FMU, see `read_inputs`. Measured depths count from the bit of the case packed in the FMU.
 
     Raises
     ------
     InputError
-        As `read_schedule`, also for measured depths if no case is packed in the FMU; or as `read_packed_case`.
+        As `read_inputs`, also for measured depths if no case is packed in the FMU; or as `read_packed_case`.
     """
     case = read_packed_case(fmu)
-    return read_schedule(path, None if case is None else case.survey.measured_depth[-1])
+    return read_inputs(path, None if case is None else case.survey.measured_depth[-1])

@@ -91,7 +91,7 @@ def read_inputs(
     """Read a schedule of inputs: a CSV file with the columns drilled_length or measured_depth (m), and names of inputs.
 
     These are in SI units; a force may also be rss_force_kN, active_weight_on_bit_lbf, …, and the rate of penetration
-    rate_of_penetration_m_h or rate_of_penetration_ft_h.
+    rate_of_penetration_m_h or rate_of_penetration_ft_h. The steering force may be called force, as in `read_schedule`.
 
     Returns
     -------
@@ -103,6 +103,8 @@ def read_inputs(
         As `read_schedule`, and if no input is there.
     """
     inputs = [_spellings(name, BY_NAME[name].unit) for name in NAMES_OF_INPUTS]
+    force = {heading: of._replace(name="rss_force") for heading, of in _group("rss", "force").items()}
+    inputs = [group | force if "rss_force" in group else group for group in inputs]
     columns = _read_columns(path, [_group("rss", *LENGTHS)], inputs)
     with naming(path):
         return input_schedule(columns, bit_depth, interpolation)

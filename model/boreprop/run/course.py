@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Floats
-from ..case.case import Case, Profile, Schedule
+from ..case.case import Case, Profile
 from ..core.quantities import ACTING
 
 
@@ -60,11 +60,6 @@ class Course:
 def course_of(case: Case) -> Course:
     """The course of all inputs that a case gives."""
     return Course.of(case.profiles())
-
-
-def course_of_force(schedule: Schedule) -> Course:
-    """The course of the steering force alone."""
-    return Course.of({"rss_force": schedule.profile()})
 
 
 def acting(course: Course, length: Floats, piece: NDArray[np.intc]) -> Floats:
