@@ -4,8 +4,7 @@
 
 #include "instance.h"
 
-#define LEAST_SHARE                                                                                                    \
-    5e-4 /* a weight that comes from 0, or goes there, is at least this share of that at the other end */
+#define LEAST_SHARE 5e-4 /* of a weight at one end of a step, at least, is that at the other end, also where it is 0 */
 
 /* Drill to a length while the inputs go from their present values to those at its end; force and active weight on bit
    are linear in the length. If that fails, nothing has moved. */
