@@ -42,7 +42,7 @@ def rows(name: str) -> Iterator[dict[str, float]]:
     """The rows of a reference trajectory."""
     table = np.genfromtxt(FOLDER / f"{name}.csv", delimiter=",", names=True, deletechars="")
     for row in table:
-        yield dict(zip(table.dtype.names, map(float, row), strict=True))
+        yield dict(zip(table.dtype.names or (), map(float, row), strict=True))
 
 
 @st.composite

@@ -138,7 +138,7 @@ def test_a_byte_order_mark_and_windows_line_ends_are_no_trouble(paper_text: str,
         ("[0.0, 0.0, 0.5]", "[0.0, 0.5]", "hole.inclination_deg: must hold one value per measured_depth, 3 in all"),
         ("[0.0, 0.0, 0.5]", "[0.0, nan, 0.5]", "hole.inclination_deg[2]: must be a finite number, got nan"),
         ("[hole]", '[hole]\nsurvey = ""', "hole: must hold either measured_depth and inclination_deg, or survey, got "),
-        ("drilled_length = [0.0]", "", "rss: must hold either drilled_length and force, or schedule, got ['force']"),
+        ("drilled_length = [0.0]", "", "rss: must hold either drilled_length and force, or measured_depth and force"),
         ("drilled_length = [0.0]", "drilled_length = [1]", "rss.drilled_length: must start at 0, got (1.0,)"),
         ("drilled_length = [0.0]", "drilled_length = [0, 5, 5]", "rss.drilled_length: must increase, got "),
         ("force          = [0.0]", "force = []", "rss.force: must hold one value per drilled_length, 1 in all, got ()"),
@@ -222,7 +222,7 @@ def test_a_long_wrong_column_is_shown_by_its_beginning(paper_text: str) -> None:
         ("drilled_length,force\n", ": drilled_length: must start at 0, got ()"),
         (
             "length,force\n0,1\n",
-            ": must have a column 'drilled_length' (m) or 'drilled_length_ft' (ft), got ['length', ",
+            ": must have a column 'drilled_length' (m) or 'drilled_length_ft' (ft) or 'measured_depth' (m) or ",
         ),
     ],
 )

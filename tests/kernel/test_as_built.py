@@ -34,13 +34,14 @@ def started(name: str, tolerance: float) -> NativeDrilling:
 
 def largest_errors(name: str, tolerance: float) -> dict[str, float]:
     """The largest difference from a reference of θ, Θ, rad, F_0 and the largest force on the body, N."""
-    run, schedule, worst = started(name, tolerance), list(CASES[name]["schedule"]), {}
+    worst: dict[str, float] = {}
+    run, schedule = started(name, tolerance), list(CASES[name]["schedule"])
     for row in rows(name):
         while len(schedule) > 1 and schedule[1][0] <= row["drilled_length"] + 1e-9:
-            [_, force, active, _], *schedule = schedule
-            run.advance(schedule[0][0], force, active)
-        [[_, force, active, _]] = schedule[:1]
-        run.advance(row["drilled_length"], force, active)
+            [_, force, active, weight], *schedule = schedule
+            run.advance(schedule[0][0], force, active, weight_on_bit=weight)
+        [[_, force, active, weight]] = schedule[:1]
+        run.advance(row["drilled_length"], force, active, weight_on_bit=weight)
         outputs = run.outputs()
         forces = [value for column, value in row.items() if column.startswith("body_force")]
         errors = {
@@ -69,22 +70,25 @@ def test_at_the_usual_tolerance_a_run_is_within_a_millionth_of_a_radian(name: st
 
 
 def test_a_saved_run_with_its_body_on_the_wall_goes_on_as_it_was() -> None:
-    run, active = started("fulcrum_20deg", 1e-7), CASES["fulcrum_20deg"]["schedule"][0][2]
-    run.advance(11.3, 0.0, active)
+    run, [_, _, active, weight] = started("fulcrum_20deg", 1e-7), CASES["fulcrum_20deg"]["schedule"][0]
+    run.advance(11.3, 0.0, active, weight_on_bit=weight)
     saved, other = run.save(), started("fulcrum_20deg", 1e-7)
     other.restore(saved)
     np.testing.assert_array_equal(other.save(), saved)
     for one in (run, other):
-        one.advance(25.0, 0.0, active)
+        one.advance(25.0, 0.0, active, weight_on_bit=weight)
     assert other.outputs() == run.outputs()
 
 
 def test_steps_of_the_integrator_do_not_depend_on_where_outputs_are_read() -> None:
-    runs, active = [started("pendulum_20deg", 1e-7) for _ in range(2)], CASES["pendulum_20deg"]["schedule"][0][2]
+    runs, [_, _, active, weight] = (
+        [started("pendulum_20deg", 1e-7) for _ in "ab"],
+        CASES["pendulum_20deg"]["schedule"][0],
+    )
     for length in np.linspace(0.37, 15.0, 41):
-        runs[0].advance(float(length), 0.0, active)
+        runs[0].advance(float(length), 0.0, active, weight_on_bit=weight)
         runs[0].outputs()
-    runs[1].advance(15.0, 0.0, active)
+    runs[1].advance(15.0, 0.0, active, weight_on_bit=weight)
     assert runs[0].outputs() == runs[1].outputs()
 
 
@@ -109,8 +113,8 @@ def handbook_numbers(bha: BottomHoleAssembly, weight: float, inclination: float)
 
     def bit(psi: float, curvature: float) -> tuple[float, float]:
         offsets, sine = -psi * s - curvature * s**2 / 2, sin(inclination + psi)
-        more = {"weight_on_bit": weight, "inclination": inclination}
-        found = lie(bha, offsets[None], np.zeros(1), np.array([sine]), **more)
+        loads = offsets[None], np.zeros(1), np.array([sine])
+        found = lie(bha, *loads, weight_on_bit=weight, inclination=inclination)
         return float(found.bit_force[0]) - weight * psi, float(found.bit_moment[0])
 
     def side_force(curvature: float) -> float:

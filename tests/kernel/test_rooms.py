@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from boreprop.core.events import extremes
+from boreprop.core.inputs import Inputs
 from boreprop.core.law import Laws
 from boreprop.core.modes import Modes
 from boreprop.core.system import Scaled
@@ -132,4 +133,4 @@ def test_a_jump_at_a_stabilizer_counts_as_much_as_in_the_core(rooms: ctypes.CDLL
     modes, gains = Modes(scaled), doubles([0.0] * 3)
     numbers = map(ctypes.c_double, (scaled.w, scaled.epsilon, 0.05))
     rooms.gains_of(3, doubles(scaled.s), doubles(scaled.y_star), *numbers, gains)
-    assert list(gains) == pytest.approx(Laws(modes, 0.0, 0.05)[modes.free()].gains, rel=1e-12)
+    assert list(gains) == pytest.approx(Laws(modes, Inputs(0.0, 0.05), 0.0)[modes.free()].gains, rel=1e-12)

@@ -32,7 +32,7 @@ def with_parameters(case: Case, values: Mapping[str, float]) -> Case:
     case
         The case to start from.
     values
-        Scalar name, see `parameters` → value in SI units. An "rss_force" replaces the schedule by a constant force.
+        Scalar name, see `parameters` → value in SI units. An input replaces its schedule by a constant value.
 
     Raises
     ------
@@ -52,4 +52,7 @@ def with_parameters(case: Case, values: Mapping[str, float]) -> Case:
     }
     if "schedule" in changed:
         parts["schedule"] = Schedule((0.0,), (wanted["rss_force"],))
+    for name in values:
+        if case.inputs is not None and name in dict(case.inputs.inputs):
+            parts["inputs"] = case.inputs.without(name)
     return replace(case, **parts, **fields_of("", wanted, structure))

@@ -10,6 +10,7 @@ F_STAR = "(3 flexural_stiffness / stabilizer_position[1]^2)"
 DERIVED = {
     "scaled_force": f"rss_force / {F_STAR}",
     "scaled_slope": f"rss_force_slope / {F_STAR}",
+    "eta_pi_slope": f"lateral_steering_resistance active_weight_on_bit_slope / {F_STAR}",
     "inverse_eta_pi": "1 / eta_pi",
     "force_scale": F_STAR.strip("()"),
     "scaled_reach": "stabilizer_position[n] / stabilizer_position[1]",

@@ -76,7 +76,7 @@ class Quantity:
     follows
         Of an output, the inputs and parameters that it follows at once, without any drilling.
     slope
-        Of an input, whether the native engine also takes its change per metre drilled.
+        Of an input, whether the engines also take its change per metre drilled.
     key
         Its table and key in a case file, such as "bha.rss_position". A key that ends in _deg holds degrees.
     field
@@ -141,7 +141,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("drilled_length", "output", "m", "ξ ℓ₁", "(17)", "length drilled since the start of the run", at_least=0.0, nominal=100.0, key="rss.drilled_length", field="schedule.drilled_length"),
 
     Quantity("rss_force", "input", "N", "F_RSS", "(21)", "force of the steering pads on the BHA, positive builds", nominal=1e4, slope=True, key="rss.force", field="schedule.rss_force"),
-    Quantity("active_weight_on_bit", "input", "N", "Π F*", "(3)", "weight on bit that goes into drilling", above=0.0, nominal=1e4, key="drilling.active_weight_on_bit", field="active_weight_on_bit"),
+    Quantity("active_weight_on_bit", "input", "N", "Π F*", "(3)", "weight on bit that goes into drilling", above=0.0, nominal=1e4, slope=True, key="drilling.active_weight_on_bit", field="active_weight_on_bit"),
     Quantity("rate_of_penetration", "input", "m/s", "", "", "drilled length per time", at_least=0.0, start=1.0),
     Quantity("weight_on_bit", "input", "N", "W", "(3)", "all of the weight on bit, which presses the BHA along its axis; 0: the active weight", size="axial", at_least=0.0, nominal=1e5, key="drilling.weight_on_bit", field="weight_on_bit"),
 
@@ -178,7 +178,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("angular_steering_resistance", "parameter", "", "χ", "(4)", "angular over axial drilling resistance", above=0.0, key="bit.angular_steering_resistance", field="bit.angular_steering_resistance"),
     Quantity("bit_tilt_limit", "parameter", "rad", "ψ*", "(10)", "tilt at which the bit gauge meets the wall", above=0.0, at_most=pi / 2, nominal=0.01, key="bit.tilt_limit_deg", field="bit.tilt_limit"),
     Quantity("relative_tolerance", "parameter", "", "", "", "local error allowed in one step of the integrator, relative to 1 rad and ℓ₁", at_least=1e-12, at_most=1e-2, nominal=1e-7, start=RELATIVE_TOLERANCE),
-    Quantity("survey_file", "parameter", "", "", "", "survey of the existing hole (plain CSV: UTF-8, commas, decimal points, m, degrees); empty: the survey packed in the FMU", kind="String", start="", key="hole.survey"),
+    Quantity("survey_file", "parameter", "", "", "", "survey of the existing hole, its last station is the bit (plain CSV: UTF-8, commas, decimal points, m, degrees); empty: the survey packed in the FMU", kind="String", start="", key="hole.survey"),
 
     Quantity("section_outer_diameter", "case", "m", "", "", "outer diameter of the section; 0: not given", size="sections", at_least=0.0, key="section.outer_diameter", field="bha.section_outer_diameters"),
     Quantity("mud_density", "case", "kg/m3", "", "", "density of the mud, for the buoyant weight of sections given by their diameters", at_least=0.0, key="bha.mud_density"),
@@ -187,10 +187,19 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("axial_load", "case", "", "N", "", "whether the load along the BHA counts in its bending", kind="Boolean", size="axial", key="bha.axial_load", field="bha.axial_load"),
     Quantity("bit_diameter", "case", "m", "", "", "diameter of the hole", above=0.0, at_most=1.5, key="bit.diameter", field="bit_diameter"),
     Quantity("length", "case", "m", "", "", "length to drill", above=0.0, key="drilling.length", field="length"),
-    Quantity("measured_depth", "case", "m", "", "", "stations along the existing hole, the last one is the bit", size="column", key="hole.measured_depth", field="survey.measured_depth"),
+    Quantity("measured_depth", "case", "m", "", "", "stations along the existing hole, the last one is the bit if bit_depth does not say where it is", size="column", key="hole.measured_depth", field="survey.measured_depth"),
     Quantity("inclination", "case", "rad", "Θ", "", "inclination of the existing hole at each station", at_least=-pi, at_most=pi, size="column", key="hole.inclination_deg", field="survey.inclination"),
-    Quantity("schedule_file", "case", "", "", "", "steering force over the drilled length (CSV)", kind="String", key="rss.schedule"),
+    Quantity("bit_depth", "case", "m", "", "", "measured depth of the bit at the start of the run; beyond the survey the hole is straight", nominal=1e3, key="hole.bit_depth"),
+    Quantity("schedule_depth", "case", "m", "", "", "measured depths at which the forces begin, in place of drilled lengths", size="column", nominal=1e3, key="rss.measured_depth"),
+    Quantity("full_force", "case", "N", "", "", "force of the steering pads at a duty of 1", at_least=0.0, nominal=1e4, key="rss.full_force"),
+    Quantity("duty", "case", "", "", "", "share of the time in which the pads push to the side of the toolface", size="column", at_least=0.0, at_most=1.0, key="rss.duty"),
+    Quantity("toolface", "case", "rad", "", "", "side to which the pads push: 0 up, 180° down", size="column", key="rss.toolface_deg"),
+    Quantity("drilling_schedule", "case", "", "", "", "inputs over drilled length or measured depth (a CSV file, or columns in the case file)", kind="String", key="drilling.schedule"),
+    Quantity("drilling_interpolation", "case", "", "", "", "how these inputs go from each entry to the next: held or linear", kind="String", start="held", key="drilling.interpolation"),
+    Quantity("interpolation", "case", "", "", "", "how the force goes from each entry to the next: held or linear", kind="String", start="held", key="rss.interpolation", field="schedule.interpolation"),
+    Quantity("schedule_file", "case", "", "", "", "steering force over drilled length or measured depth (CSV)", kind="String", key="rss.schedule"),
     Quantity("engine", "case", "", "", "", "which engine drilled the case, in the case file beside the run", kind="String", key="run.engine"),
+    Quantity("study", "case", "", "", "", "what a study computed and which parameters it varied, in the case file beside its results", kind="String", key="run.study"),
     Quantity("stopped", "case", "", "", "", "why the run ended before the length of the case, in the case file beside the run", kind="String", key="run.stopped"),
 )  # fmt: skip
 
@@ -198,6 +207,8 @@ BY_NAME = {quantity.name: quantity for quantity in QUANTITIES}
 INPUTS = tuple(quantity for quantity in QUANTITIES if quantity.role == "input")
 OUTPUTS = tuple(quantity for quantity in QUANTITIES if quantity.role == "output")
 PARAMETERS = tuple(quantity for quantity in QUANTITIES if quantity.role == "parameter")
+ACTING = tuple(name for q in INPUTS if q.field for name in ((q.name, f"{q.name}_slope") if q.slope else (q.name,)))
+"""What an engine is given for a leg: the inputs where it starts, and the changes per metre of those that may change."""
 VARIABLES = INPUTS + OUTPUTS + PARAMETERS  # what an FMU has
 
 

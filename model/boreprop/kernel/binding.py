@@ -13,11 +13,11 @@ from ..arrays import Floats
 from ..core.errors import BorepropError, error_of
 from ..core.options import Options, Statistics
 from ..core.problems import SENTENCES, Problem
-from ..core.quantities import OUTPUTS, scalar_names, values_of
+from ..core.quantities import ACTING, OUTPUTS, scalar_names, values_of
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly
 from .compiler import library_path, sources_digest
-from .generate import NAMES, SYSTEM, acting, quantities_digest
+from .generate import NAMES, SYSTEM, quantities_digest
 
 CODES, QUANTITIES = ("", *SENTENCES), ("", *NAMES.values())  # by their numbers in problems.h
 
@@ -29,7 +29,7 @@ class KernelError(BorepropError, RuntimeError):
 class Inputs(ctypes.Structure):
     """The inputs, as in quantities.h."""
 
-    _fields_ = tuple((name, ctypes.c_double) for name, _, _ in acting())
+    _fields_ = tuple((name, ctypes.c_double) for name in ACTING)
 
 
 class OptionsInC(ctypes.Structure):
@@ -90,11 +90,7 @@ def load(path: Path) -> ctypes.CDLL:
         ("sentence", None, (problem, ctypes.c_char_p)),
         ("start", run, (_array(np.intc), reals, options, whole, reals, reals, inputs, problem)),
         ("end", None, (run,)),
-        (
-            "follow",
-            whole,
-            (run, whole, reals, reals, ctypes.c_double, ctypes.c_double, _array(np.intc), reals, problem),
-        ),
+        ("follow", whole, (run, whole, reals, reals, _array(np.intc), reals, problem)),
         (
             "lie",
             whole,
@@ -222,7 +218,6 @@ class NativeDrilling:
     ) -> None:
         structure = bha.structure
         given = values_of("bha", bha) | values_of("bit", bit) | {"relative_tolerance": options.relative_tolerance}
-        self._weight_on_bit = weight_on_bit
         self._names = scalar_names(OUTPUTS, structure)
         self._problem = ProblemInC()
         self._library = library()
@@ -259,36 +254,35 @@ class NativeDrilling:
         self._library.boreprop_statistics(self._run, counts)
         return Statistics(*map(int, counts))
 
-    def advance(self, drilled_length: float, rss_force: float, active_weight_on_bit: float) -> None:
-        """Drill on under inputs held from here, as `Drilling.advance`."""
-        self.follow([drilled_length], [rss_force], active_weight_on_bit, [-1], np.empty((0, len(self._names))))
+    def advance(
+        self,
+        drilled_length: float,
+        rss_force: float,
+        active_weight_on_bit: float,
+        *,
+        rss_force_slope: float = 0.0,
+        active_weight_on_bit_slope: float = 0.0,
+        weight_on_bit: float = 0.0,
+    ) -> None:
+        """Drill on under inputs from here, constant or linear in the drilled length, as `Drilling.advance`."""
+        inputs = [[rss_force, rss_force_slope, active_weight_on_bit, active_weight_on_bit_slope, weight_on_bit]]
+        self.follow([drilled_length], inputs, [-1], np.empty((0, len(self._names))))
 
     def follow(
         self,
         lengths: Floats | list[float],
-        forces: Floats | list[float],
-        active_weight_on_bit: float,
+        inputs: Floats | list[list[float]],
         rows: NDArray[np.intc] | list[int],
         table: Floats,
     ) -> None:
         """Drill leg after leg, as `Drilling.follow`; `ValueError` if the arrays do not fit together."""
-        legs, on_rows = len(lengths), numbers(rows, np.intc)
-        if not len(forces) == len(on_rows) == legs or (on_rows >= len(table)).any():
-            constraint = f"must hold {legs} values like lengths, and rows below {len(table)}"
-            raise ValueError(f"forces, rows: {constraint}, got {len(forces)} forces and rows {on_rows.tolist()}")
+        legs, on_rows, given = len(lengths), numbers(rows, np.intc), numbers(inputs)
+        if given.shape != (legs, len(ACTING)) or len(on_rows) != legs or (on_rows >= len(table)).any():
+            constraint = f"must hold {legs} times {', '.join(ACTING)}, like lengths, and rows below {len(table)}"
+            raise ValueError(f"inputs, rows: {constraint}, got shape {given.shape} and rows {on_rows.tolist()}")
         if table.shape != (len(table), len(self._names)):
             raise ValueError(f"table: must have {len(self._names)} columns, got shape {table.shape}")
-        done = self._library.boreprop_follow(
-            self._run,
-            legs,
-            numbers(lengths),
-            numbers(forces),
-            active_weight_on_bit,
-            self._weight_on_bit,
-            on_rows,
-            table,
-            self._problem,
-        )
+        done = self._library.boreprop_follow(self._run, legs, numbers(lengths), given, on_rows, table, self._problem)
         self._check(done == legs)
 
     def step(self) -> None:

@@ -30,11 +30,10 @@ EXPORT Run *boreprop_start(
 );
 EXPORT void boreprop_end(Run *run);
 
-/* Drill leg after leg, to lengths[k] under forces[k]. Unless rows[k] is negative, the outputs there become that row of
+/* Drill leg after leg, to lengths[k] under inputs[k], which are those where the leg starts. Unless rows[k] is negative, the outputs there become that row of
    the table. Returns how many legs are drilled; if not all are, the problem is that of the next one. */
 EXPORT Count boreprop_follow(
-    Run *run, Count count, const double *lengths, const double *forces, double active_weight_on_bit,
-    double weight_on_bit, const int *rows, double *table, Problem *problem
+    Run *run, Count count, const double *lengths, const Inputs *inputs, const int *rows, double *table, Problem *problem
 );
 
 /* Drill on to the end of the integrator's next step, under the inputs as they are; 0, and the problem, if that fails. */

@@ -10,6 +10,8 @@ enum { LEAST_CAPACITY = 1024, MOST_PIECES = 1 << 19 }; /* of hole */
 typedef struct {
     System system;
     double drilled_length;  /* m */
+    Inputs given;           /* the inputs that were given last, and … */
+    ScaledInputs scaled;    /* … what they are in the paper's numbers */
     double buckling_weight; /* over F*: under it the BHA buckles; infinite if the axial load does not count */
     Integrator integrator;
 } Drilling;
@@ -17,7 +19,8 @@ typedef struct {
 static inline int check_inputs(Inputs inputs, Problem *problem) {
     return check_quantity(&INPUT_TABLE[IN_RSS_FORCE], 0, inputs.rss_force, problem) &&
            check_finite(Q_RSS_FORCE_SLOPE, 0, inputs.rss_force_slope, problem) &&
-           check_quantity(&INPUT_TABLE[IN_ACTIVE_WEIGHT_ON_BIT], 0, inputs.active_weight_on_bit, problem);
+           check_quantity(&INPUT_TABLE[IN_ACTIVE_WEIGHT_ON_BIT], 0, inputs.active_weight_on_bit, problem) &&
+           check_finite(Q_ACTIVE_WEIGHT_ON_BIT_SLOPE, 0, inputs.active_weight_on_bit_slope, problem);
 }
 
 /* Take the inclination, of which this is the cosine, as that at which the weight acts along the beam. */
@@ -40,19 +43,26 @@ static inline int check_weight(const Drilling *d, Inputs inputs, Problem *proble
     return weight < most || wrong(problem, BUCKLES, Q_WEIGHT_ON_BIT, 0, weight, most);
 }
 
-/* The dimensionless inputs; 0, and the problem, if these numbers, or the inputs, are out of range. */
-static inline int scale_inputs(const Drilling *d, Inputs inputs, ScaledInputs *scaled, Problem *problem) {
+/* Make the inputs dimensionless; 0, and the problem, if these numbers, or the inputs, are out of range. */
+static inline int take_given(Drilling *d, Inputs inputs, Problem *problem) {
     const System *system = &d->system;
     double F_star = force_scale(system);
-    scaled->F_rss = inputs.rss_force / F_star;
-    scaled->F_rss_slope = inputs.rss_force_slope * length_scale(system) / F_star;
-    scaled->eta_pi = eta_pi(system, inputs.active_weight_on_bit);
-    scaled->W = system->structure.axial ? whole_weight(inputs) / F_star : 0.0;
-    return check_inputs(inputs, problem) && (!system->structure.axial || check_weight(d, inputs, problem)) &&
-           check_finite(Q_SCALED_FORCE, 0, scaled->F_rss, problem) &&
-           check_finite(Q_SCALED_SLOPE, 0, scaled->F_rss_slope, problem) &&
-           check_positive(Q_ETA_PI, scaled->eta_pi, problem) &&
-           check_finite(Q_INVERSE_ETA_PI, 0, 1 / scaled->eta_pi, problem);
+    if (!memcmp(&inputs, &d->given, sizeof inputs)) return 1;
+    ScaledInputs scaled = {
+        inputs.rss_force / F_star, inputs.rss_force_slope * length_scale(system) / F_star,
+        eta_pi(system, inputs.active_weight_on_bit),
+        eta_pi(system, inputs.active_weight_on_bit_slope) * length_scale(system),
+        system->structure.axial ? whole_weight(inputs) / F_star : 0.0
+    };
+    if (!check_inputs(inputs, problem) || (system->structure.axial && !check_weight(d, inputs, problem)) ||
+        !check_finite(Q_SCALED_FORCE, 0, scaled.F_rss, problem) ||
+        !check_finite(Q_SCALED_SLOPE, 0, scaled.F_rss_slope, problem) ||
+        !check_positive(Q_ETA_PI, scaled.eta_pi, problem) ||
+        !check_finite(Q_ETA_PI_SLOPE, 0, scaled.eta_pi_slope, problem) ||
+        !check_finite(Q_INVERSE_ETA_PI, 0, 1 / scaled.eta_pi, problem))
+        return 0;
+    d->given = inputs, d->scaled = scaled;
+    return 1;
 }
 
 /* The capacity, in pieces of hole, that a run needs if its inputs do not change often. */
@@ -88,6 +98,7 @@ static inline Status drilling_prepare(
         return FAILED;
     d->system = *system;
     d->drilled_length = 0.0;
+    d->given.rss_force = (double)NAN;
     options.relative_tolerance = system->relative_tolerance;
     prepare(&d->integrator, &scaled, length_scale(system), options);
     take_cosine(d, 0.0);
@@ -97,23 +108,21 @@ static inline Status drilling_prepare(
 
 /* Start at the end of the survey, which need not live on. */
 static inline Status drilling_start(Drilling *d, const Survey *survey, Inputs inputs, Problem *problem) {
-    ScaledInputs scaled_inputs;
     if (!check_survey(survey, problem)) return FAILED;
     take_cosine(d, cos(survey->inclination[survey->count - 1]));
-    if (!scale_inputs(d, inputs, &scaled_inputs, problem)) return FAILED;
+    if (!take_given(d, inputs, problem)) return FAILED;
     if (d->integrator.now.hole.capacity < drilling_capacity(&d->system, survey)) return FULL;
-    return begin(&d->integrator, survey, scaled_inputs, problem);
+    return begin(&d->integrator, survey, d->scaled, problem);
 }
 
 /* Drill on to a length, m from the start, under inputs from here; where the bit is, only they are taken over.
    After FULL: `drilling_move`, and the same call again, which goes on; or `drilling_cancel`, and nothing has moved. */
 static inline Status drilling_advance(Drilling *d, double drilled_length, Inputs inputs, Problem *problem) {
-    ScaledInputs scaled_inputs;
-    if (!scale_inputs(d, inputs, &scaled_inputs, problem)) return FAILED;
+    if (!take_given(d, inputs, problem)) return FAILED;
     if (!check_number(Q_DRILLED_LENGTH, 0, drilled_length, -INFINITY, d->drilled_length, INFINITY, problem))
         return FAILED;
     double xi = drilled_length / length_scale(&d->system);
-    Status status = drill(&d->integrator, xi, scaled_inputs, problem);
+    Status status = drill(&d->integrator, xi, d->scaled, problem);
     if (status == DONE) d->drilled_length = drilled_length;
     return status;
 }
@@ -129,7 +138,7 @@ static inline void drilling_cancel(Drilling *d) { go_back(&d->integrator); }
 
 /* What the outputs are computed from: the state where the bit is. */
 typedef struct {
-    double l1, F_star, theta, Y, Theta, psi, F_0, F[MAX_PLACES], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
+    double l1, F_star, eta_pi, theta, Y, Theta, psi, F_0, F[MAX_PLACES], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
     double body_force, body_place, wall_distance; /* the largest force on the body and where it acts; the least gap */
     Loads loads;
     const Mode *mode;
@@ -161,7 +170,8 @@ static inline Present present(Drilling *d) {
     at.mode = settle(&p->modes, &at.loads, now->regime.contact);
     at.F_0 = row_value(&at.mode->F_0, &at.loads);
     contact_forces(at.mode, &at.loads, at.F);
-    at.psi = bit_tilt(at.F_0, now->inputs.eta_pi, p->scaled.psi_star);
+    at.eta_pi = inputs_here(now).eta_pi;
+    at.psi = bit_tilt(at.F_0, at.eta_pi, p->scaled.psi_star);
     at.Theta = at.theta - at.psi;
     position(now, &at.x, &at.z);
     find_body(d, &at);
@@ -172,7 +182,6 @@ static inline Present present(Drilling *d) {
 static inline double output(const Drilling *d, const Present *at, Output which, int i) {
     const Scaled *scaled = &d->integrator.scaled;
     const Loads *loads = &at->loads;
-    const ScaledInputs *inputs = &d->integrator.now.inputs;
     double l1 = at->l1, F_star = at->F_star;
     switch (which) {
         case OUT_DRILLED_LENGTH: return d->drilled_length;
@@ -185,7 +194,7 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_STABILIZER_FORCE: return at->F[i] * F_star;
         case OUT_STABILIZER_CONTACT: return wall(at->F[i]);
         case OUT_BIT_TILT_SATURATION:
-            return side_beyond(at->F_0 / inputs->eta_pi, -scaled->psi_star, scaled->psi_star, ROUNDING);
+            return side_beyond(at->F_0 / at->eta_pi, -scaled->psi_star, scaled->psi_star, ROUNDING);
         case OUT_BIT_LATERAL_FORCE: return at->F_0 * F_star;
         case OUT_BIT_MOMENT: return -row_value(&at->mode->M, loads) * F_star * l1;
         case OUT_BOREHOLE_CURVATURE: return (at->Theta - at->earlier) / l1;
@@ -194,7 +203,7 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_WALL_DISTANCE: return at->wall_distance * l1;
         case OUT_DISPLACEMENT: return at->x * l1;
         case OUT_TRUE_VERTICAL_DEPTH: return at->z * l1;
-        case OUT_ETA_PI: return inputs->eta_pi;
+        case OUT_ETA_PI: return at->eta_pi;
     }
     return NAN;
 }

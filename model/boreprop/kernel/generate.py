@@ -49,7 +49,7 @@ ROOMS = {
 LARGEST = Structure(MAX_STABILIZERS, MAX_SECTIONS, 1, MAX_POINTS)
 
 NAMES = {quantity.name: quantity.name for quantity in QUANTITIES} | {
-    "rss_force_slope": "rss_force_slope",
+    **{name: name for name in (f"{quantity.name}_slope" for quantity in INPUTS if quantity.slope)},
     **DERIVED,
     "parameters": "parameters",
     "state": "state",

@@ -95,7 +95,8 @@ static inline Plan first_plan(const Step *last, int kink, const Law *law, double
 
 /* Choose the length of the trial: as planned, but no kink lies within it, and none is left a short step ahead. */
 static inline void choose_length(const Integrator *p, const Law *law, double xi, Plan *plan) {
-    double largest = smaller(p->options.largest_step, p->now.places.nearest), h = smaller(plan->planned, largest);
+    double largest = smaller(smaller(p->options.largest_step, p->now.places.nearest), law->longest);
+    double h = smaller(plan->planned, largest);
     double way = next_kink(&p->now.kinks, &p->now.places, law->gains, p->options.relative_tolerance, xi, 2 * h) - xi;
     double longest = plan->repeated ? h : smaller(STRETCH * h, largest);
     if (way < 2 * h) h = way <= longest ? way : way / 2;
@@ -191,6 +192,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     Trial trial;
     if (!has_room(p)) return FULL;
     int kink = leave(p, &last, x);
+    if (now->inputs.eta_pi_slope != 0) p->law_known = 0;
     Plan plan = first_plan(&last, kink, present_law(p), p->options.layers);
     Status status = find_step(p, last.end, x, &plan, &trial, problem);
     if (status == DONE && p->scaled.points) status = keep_clear(p, &last, kink, x, &plan, &trial, problem);
@@ -202,9 +204,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     step_state(step, step->end, end);
     for (int c = ANGLE; c < LATERAL; c++)
         if (!(fabs(end[c]) <= LARGEST_INCLINATION)) return failed(p, TURNS_OVER, step->end, problem);
-    ScaledInputs inputs = now->inputs;
-    inputs.F_rss += now->inputs.F_rss_slope * (last.end - now->inputs_xi);
-    append(&now->hole, step, inputs);
+    append(&now->hole, step, inputs_ahead(now->inputs, last.end - now->inputs_xi));
     if (kink <= SMOOTHEST_KINK)
         add_kink(&now->kinks, p->scaled.n, last.end, kink, step_jump(&last, step, kink, last.end));
     now->accepted++;

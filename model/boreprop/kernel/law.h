@@ -44,11 +44,16 @@ typedef struct {
     double lower, upper;
 } Bound;
 
+#define LONGEST_RAMP 0.1 /* by which share ηΠ changes within a step, at most: it then takes about six iterations */
+
 /* The right-hand side in one regime under given inputs, and the bounds within which it holds. */
 typedef struct {
-    int count;        /* of places */
+    int count, last; /* of places, and that of the last stabilizer, which is the tilt's */
+    int saturated;
     int axial;        /* whether the sine is that of θ */
-    double inputs_xi; /* where the inputs were taken over */
+    double inputs_xi; /* where the inputs are those that it was made under */
+    double growth;    /* of ηΠ per ξ, over ηΠ there */
+    double longest;   /* step under a changing ηΠ */
     Linear theta_rate, Theta;
     double relaxation; /* length over which θ forgets */
     int bound_count;
@@ -88,7 +93,10 @@ static inline void make_law(
     const Mode *mode = mode_of(modes, regime.contact);
     int n = scaled->n, count = places->count;
     Bound *of_tilt = &law->bounds[0];
-    law->count = count, law->axial = scaled->axial, law->inputs_xi = inputs_xi, law->bound_count = 1;
+    law->count = count, law->last = n - 1, law->axial = scaled->axial, law->inputs_xi = inputs_xi, law->bound_count = 1;
+    law->saturated = regime.saturation != 0;
+    law->growth = inputs.eta_pi_slope / inputs.eta_pi;
+    law->longest = law->growth == 0 ? INFINITY : LONGEST_RAMP / fabs(law->growth);
     make_linear(&law->theta_rate, &mode->M, places, inputs, 1 / (scaled->epsilon * inputs.eta_pi));
     of_tilt->part = n - 1;
     make_linear(&of_tilt->value, &mode->F_0, places, inputs, 1 / inputs.eta_pi);
@@ -108,6 +116,9 @@ static inline void make_law(
     find_gains(law);
 }
 
+/* ηΠ where a law was made over that a length `ahead` of there. M and F_0 are divided by ηΠ. */
+static inline double eta_pi_ratio(const Law *law, double ahead) { return 1 / (1 + law->growth * ahead); }
+
 /* A bounded value at one place. */
 static inline double law_at(
     const Law *law, const Bound *bound, double xi, const double x[COMPONENTS], double delayed[][DIRECTIONS]
@@ -116,7 +127,8 @@ static inline double law_at(
     double sine = sin(law->axial ? x[ANGLE] : x[LATERAL] - delayed[0][0]);
     double value = f->theta * x[ANGLE] + f->Y * x[LATERAL] + f->g * sine + f->constant;
     for (int i = 0; i < law->count; i++) value += f->delayed[i] * delayed[i][0];
-    return value + f->slope * (xi - law->inputs_xi);
+    value += f->slope * (xi - law->inputs_xi);
+    return law->growth != 0 && bound->part == law->last ? value * eta_pi_ratio(law, xi - law->inputs_xi) : value;
 }
 
 /* Add the terms of all places but the first, and that of a force which changes along the step. */
@@ -128,13 +140,19 @@ static inline void add_others(const Linear *f, int count, const Trial *trial, do
         for (int k = 0; k < POINTS; k++) values[k] += f->slope * trial->ahead[k];
 }
 
-/* A bounded value at the points of a trial step. */
-static inline void law_along(const Law *law, const Bound *bound, const Trial *trial, double values[POINTS]) {
-    const Linear *f = &bound->value;
+/* The values of a row at the points of a trial step, by the ηΠ where the law was made. */
+static inline void linear_along(const Linear *f, int count, const Trial *trial, double values[POINTS]) {
     const double *theta = trial->x[ANGLE], *Y = trial->x[LATERAL], *Y_1 = trial->delayed[0][0];
     for (int k = 0; k < POINTS; k++)
         values[k] = f->constant + f->theta * theta[k] + f->Y * Y[k] + f->delayed[0] * Y_1[k] + f->g * trial->sines[k];
-    add_others(f, law->count, trial, values);
+    add_others(f, count, trial, values);
+}
+
+/* A bounded value at the points of a trial step. */
+static inline void law_along(const Law *law, const Bound *bound, const Trial *trial, double values[POINTS]) {
+    linear_along(&bound->value, law->count, trial, values);
+    if (law->growth == 0 || bound->part != law->last) return;
+    for (int k = 0; k < POINTS; k++) values[k] *= eta_pi_ratio(law, trial->ahead[k]);
 }
 
 /* The same of a part of the right-hand side, with (θ, Y) frozen at the start of the step. */
@@ -189,6 +207,63 @@ static inline int sines_agree(
     return largest * gain <= allowed;
 }
 
+/* The sines at the points of a trial step. */
+static inline void sines_along(const Law *law, Trial *trial) {
+    const double *theta = trial->x[ANGLE], *Y = trial->x[LATERAL], *Y_1 = trial->delayed[0][0];
+    for (int k = 0; k < POINTS; k++) trial->sines[k] = sin(law->axial ? theta[k] : Y[k] - Y_1[k]);
+}
+
+/* θ' and Y' at the points of a trial step under a changing ηΠ. */
+static inline void rates_along(const Law *law, const Trial *trial, double theta_rate[POINTS], double Theta[POINTS]) {
+    const double *theta = trial->x[ANGLE];
+    linear_along(&law->theta_rate, law->count, trial, theta_rate);
+    linear_along(&law->Theta, law->count, trial, Theta);
+    for (int k = 0; k < POINTS; k++) {
+        double ratio = eta_pi_ratio(law, trial->ahead[k]);
+        theta_rate[k] *= ratio;
+        if (!law->saturated) Theta[k] = theta[k] + ratio * (Theta[k] - theta[k]);
+    }
+}
+
+/* A function that is seldom called: inlined, it would slow down what is. */
+#ifdef __GNUC__
+#define APART __attribute__((noinline))
+#else
+#define APART
+#endif
+
+#define RAMP_ITERATIONS 20 /* at most; each gains a digit or more */
+
+/* Collocation under a changing ηΠ: what the Jacobian, which is that at the start, neglects is added to the right-hand
+   side until it is small. Returns whether it is; gives the right-hand side with the state frozen, and the parts. */
+APART static int collocate_on_ramp(
+    const Law *law, const Options *options, const double x[COMPONENTS], Jacobian J, Trial *trial,
+    double f_theta[POINTS], double f_Y[POINTS], double parts_theta[S], double parts_Y[S]
+) {
+    double h = trial->step.h, *theta = trial->x[ANGLE], *Y = trial->x[LATERAL];
+    double rate[POINTS], Theta[POINTS], allowed = REST * options->relative_tolerance;
+    for (int k = 0; k < POINTS; k++) theta[k] = x[ANGLE], Y[k] = x[LATERAL];
+    sines_along(law, trial);
+    rates_along(law, trial, f_theta, f_Y);
+    for (int iteration = 0; iteration < RAMP_ITERATIONS; iteration++) {
+        double off_theta = 0.0, off_Y = 0.0;
+        collocate(h, J, f_theta, f_Y, parts_theta, parts_Y);
+        radau_values(x[ANGLE], parts_theta, theta);
+        radau_values(x[LATERAL], parts_Y, Y);
+        sines_along(law, trial);
+        rates_along(law, trial, rate, Theta);
+        for (int k = 0; k < POINTS; k++) {
+            double moved_theta = theta[k] - x[ANGLE], moved_Y = Y[k] - x[LATERAL];
+            rate[k] -= f_theta[k] + J.theta_theta * moved_theta + J.theta_Y * moved_Y;
+            Theta[k] -= f_Y[k] + J.Y_theta * moved_theta + J.Y_Y * moved_Y;
+            off_theta = larger(off_theta, fabs(rate[k])), off_Y = larger(off_Y, fabs(Theta[k]));
+        }
+        if (off_theta <= allowed * (fabs(law->theta_rate.theta) + 1 / h) && off_Y <= allowed / h) return 1;
+        for (int k = 0; k < POINTS; k++) f_theta[k] += rate[k], f_Y[k] += Theta[k];
+    }
+    return 0;
+}
+
 /* Collocation from the state `x` over a trial step, whose place, length and delayed hole are given. */
 static inline void law_try(const Law *law, const Options *options, const double x[COMPONENTS], Trial *trial) {
     const Linear *rate = &law->theta_rate, *Theta = &law->Theta;
@@ -203,7 +278,9 @@ static inline void law_try(const Law *law, const Options *options, const double 
         trial->ahead[k] = trial->step.xi - law->inputs_xi + POINT[k] * h;
         frozen[k] = tangent.sine + tangent.cosine * (x[tangent.part] - tangent.behind[k] - tangent.from);
     }
-    for (int iteration = 0; iteration < ITERATIONS; iteration++) {
+    int ramp = law->growth != 0;
+    int found = ramp && collocate_on_ramp(law, options, x, J, trial, f_theta, f_Y, parts_theta, parts_Y);
+    for (int iteration = 0; !ramp && iteration < ITERATIONS; iteration++) {
         linear_frozen(rate, law->count, x, trial, frozen, f_theta);
         linear_frozen(Theta, law->count, x, trial, frozen, f_Y);
         collocate(h, J, f_theta, f_Y, parts_theta, parts_Y);
@@ -220,6 +297,7 @@ static inline void law_try(const Law *law, const Options *options, const double 
         h, J, radau_slope(parts_theta) - h * slope_theta, radau_slope(parts_Y) - h * slope_Y, &error_theta, &error_Y
     );
     trial->error = larger(options->theta_weight * fabs(error_theta), fabs(error_Y)) / options->relative_tolerance;
+    if (ramp && !found) trial->error = larger(trial->error, 2.0); /* tried again, shorter */
 }
 
 #define SMALL_TURN 0.05 /* rad: up to here the series below are off by less than 1e-15 */

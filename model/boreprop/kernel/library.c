@@ -26,15 +26,11 @@ Run *boreprop_start(
 void boreprop_end(Run *run) { run_end(run); }
 
 Count boreprop_follow(
-    Run *run, Count count, const double *lengths, const double *forces, double active_weight_on_bit,
-    double weight_on_bit, const int *rows, double *table, Problem *problem
+    Run *run, Count count, const double *lengths, const Inputs *inputs, const int *rows, double *table, Problem *problem
 ) {
     Count width = output_count(run->drilling.system.structure);
     for (Count k = 0; k < count; k++) {
-        Inputs inputs = {
-            .rss_force = forces[k], .active_weight_on_bit = active_weight_on_bit, .weight_on_bit = weight_on_bit
-        };
-        if (run_advance(run, lengths[k], inputs, problem) != DONE) return k;
+        if (run_advance(run, lengths[k], inputs[k], problem) != DONE) return k;
         if (rows[k] >= 0) drilling_outputs(&run->drilling, table + rows[k] * width);
     }
     return count;

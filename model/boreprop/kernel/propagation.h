@@ -11,7 +11,7 @@
 static inline Loads present_loads(const Integrator *p) {
     double x[COMPONENTS];
     step_state(&p->now.step, p->now.xi, x);
-    return loads_at(p, p->now.xi, x, force_at(&p->now, p->now.xi));
+    return loads_at(p, p->now.xi, x, inputs_here(&p->now).F_rss);
 }
 
 /* Θ under given loads, eq. (16): algebraic, so it jumps with the inputs. */
@@ -30,9 +30,10 @@ static inline double earlier_inclination(Integrator *p, double xi) {
     }
     double ahead = larger(xi - at->start, 0.0), x[COMPONENTS];
     for (int c = 0; c < COMPONENTS; c++) x[c] = polynomial(at->x[c], ahead * at->rate);
-    Loads loads = loads_at(p, at->start + ahead, x, at->inputs.F_rss + at->inputs.F_rss_slope * ahead);
-    bear(p, at->inputs.W);
-    double Theta = inclination_under(p, x[ANGLE], &loads, at->inputs.eta_pi);
+    ScaledInputs inputs = inputs_ahead(at->inputs, ahead);
+    Loads loads = loads_at(p, at->start + ahead, x, inputs.F_rss);
+    bear(p, inputs.W);
+    double Theta = inclination_under(p, x[ANGLE], &loads, inputs.eta_pi);
     bear(p, p->now.inputs.W);
     return Theta;
 }
@@ -73,23 +74,29 @@ static inline Status restart(
 /* Take over inputs on the way: the path up to the bit, and the jump of curvature where a slope changes, count too. */
 static inline Status steer(Integrator *p, ScaledInputs inputs, Problem *problem) {
     State *now = &p->now;
-    double bend = inputs.F_rss_slope - now->inputs.F_rss_slope, x[COMPONENTS];
+    ScaledInputs before = inputs_here(now);
+    double bend = inputs.F_rss_slope - before.F_rss_slope, turn = inputs.eta_pi_slope - before.eta_pi_slope;
+    double x[COMPONENTS];
     Loads loads = present_loads(p);
     step_state(&now->step, now->xi, x);
-    double Theta = inclination_under(p, x[ANGLE], &loads, now->inputs.eta_pi);
+    double Theta = inclination_under(p, x[ANGLE], &loads, before.eta_pi);
     move_path(now, now->xi);
     Status status = restart(p, inputs, x, Theta, problem);
-    if (status != DONE || bend == 0 || now->regime.saturation) return status;
-    const Mode *mode = mode_of(&p->modes, now->regime.contact);
-    add_kink(&now->kinks, p->scaled.n, now->xi, 2, fabs(bend * mode->F_0.rss / inputs.eta_pi));
+    if (status != DONE || (bend == 0 && turn == 0) || now->regime.saturation) return status;
+    loads = loads_at(p, now->xi, x, inputs.F_rss);
+    const Mode *mode = mode_of(&p->modes, now->regime.contact); /* (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ */
+    double psi = row_value(&mode->F_0, &loads) / inputs.eta_pi;
+    add_kink(&now->kinks, p->scaled.n, now->xi, 2, fabs((bend * mode->F_0.rss - turn * psi) / inputs.eta_pi));
     return DONE;
 }
 
 /* Drill on to `xi` under inputs that act from where the bit is. After FULL the same call goes on in larger rings. */
 static inline Status drill(Integrator *p, double xi, ScaledInputs inputs, Problem *problem) {
     State *now = &p->now;
-    int changed = inputs.F_rss != force_at(now, now->xi) || inputs.F_rss_slope != now->inputs.F_rss_slope ||
-                  inputs.eta_pi != now->inputs.eta_pi || inputs.W != now->inputs.W;
+    int changed = inputs.F_rss != now->inputs.F_rss || inputs.eta_pi != now->inputs.eta_pi;
+    if (are_ramps(&inputs) || are_ramps(&now->inputs))
+        changed = !same_ramps(inputs_here(now), inputs, xi > now->xi ? xi - now->xi : 1.0);
+    changed |= inputs.W != now->inputs.W;
     if (changed || xi > now->step.end) {
         if (!set_out(p)) return FULL;
         Status status = changed ? steer(p, inputs, problem) : DONE;

@@ -8,7 +8,7 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "4e41116c87243298" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "148e4c1ea9bf7620" /* of this file, but for this line, and of problems.h */
 #define MOST_DRILLED 100000.0 /* m in a communication step */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: forces between closer ones are rounding errors */
 #define POINTS_ALONG_BHA 36 /* at which its distance from the hole is looked at */
@@ -49,6 +49,7 @@ typedef struct {
     double rss_force; /* N: force of the steering pads on the BHA, positive builds */
     double rss_force_slope; /* N/m: its change per metre drilled */
     double active_weight_on_bit; /* N: weight on bit that goes into drilling */
+    double active_weight_on_bit_slope; /* N/m: its change per metre drilled */
     double weight_on_bit; /* N: all of the weight on bit, which presses the BHA along its axis; 0: the active weight */
 } Inputs;
 

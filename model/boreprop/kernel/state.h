@@ -85,6 +85,7 @@ static inline void pass_snapshot(Tape *tape, const Scaled *scaled, Snapshot *sna
     pass(tape, 1, &now->inputs.F_rss);
     pass(tape, 1, &now->inputs.F_rss_slope);
     pass(tape, 1, &now->inputs.eta_pi);
+    pass(tape, 1, &now->inputs.eta_pi_slope);
     pass(tape, 1, &now->inputs.W);
     pass(tape, 1, &now->cosine);
     pass(tape, 1, &now->inputs_xi);
@@ -140,7 +141,7 @@ static inline void drilling_save(const Drilling *d, double *state) {
 static inline int is_consistent(const Drilling *d, const Snapshot *snapshot) {
     const State *now = &snapshot->now;
     const Step *step = &now->step;
-    double xi = now->xi, eta_pi = now->inputs.eta_pi;
+    double xi = now->xi, eta_pi = inputs_here(now).eta_pi;
     if (!(fabs(snapshot->drilled_length / length_scale(&d->system) - xi) <= ROUNDING_OF_XI * xi)) return 0;
     if (!(eta_pi > 0) || !isfinite(1 / eta_pi) || now->inputs_xi > xi) return 0;
     if (d->system.structure.axial ? !(now->inputs.W > 0) || !(fabs(now->cosine) <= 1)

@@ -146,11 +146,37 @@ static inline double force_scale(const System *system) {
     return 3.0 * system->flexural_stiffness / (length_scale(system) * length_scale(system));
 }
 
-/* The inputs where they were taken over: F_RSS, its change per ξ, ηΠ, and the weight on the bit W, which is zero if the
-   axial load does not count. */
+/* The inputs where they were taken over: F_RSS and ηΠ, their changes per ξ, and the weight on the bit W, which is zero if
+   the axial load does not count. */
 typedef struct {
-    double F_rss, F_rss_slope, eta_pi, W;
+    double F_rss, F_rss_slope, eta_pi, eta_pi_slope, W;
 } ScaledInputs;
+
+/* The inputs a length `ahead` of where they were taken over. */
+static inline ScaledInputs inputs_ahead(ScaledInputs inputs, double ahead) {
+    inputs.F_rss += inputs.F_rss_slope * ahead;
+    inputs.eta_pi += inputs.eta_pi_slope * ahead;
+    return inputs;
+}
+
+/* Whether inputs change along the way. */
+static inline int are_ramps(const ScaledInputs *inputs) {
+    return inputs->F_rss_slope != 0 || inputs->eta_pi_slope != 0;
+}
+
+#define SAME 1e-12 /* relative: ramps that differ by less at both ends of a way differ by rounding */
+
+static inline int same_ramp(double a, double a_end, double b, double b_end) {
+    double most = SAME * larger(fabs(b), fabs(b_end));
+    return fabs(a - b) <= most && fabs(a_end - b_end) <= most;
+}
+
+/* Whether two pairs of inputs, of which one is a ramp, are the same along a way. */
+static inline int same_ramps(ScaledInputs a, ScaledInputs b, double way) {
+    ScaledInputs a_end = inputs_ahead(a, way), b_end = inputs_ahead(b, way);
+    return same_ramp(a.F_rss, a_end.F_rss, b.F_rss, b_end.F_rss) &&
+           same_ramp(a.eta_pi, a_end.eta_pi, b.eta_pi, b_end.eta_pi);
+}
 
 /* λ_i: distance from stabilizer i−1 (the bit) to stabilizer i, counted from 0 here. */
 static inline double lambda_(const Scaled *scaled, int i) { return scaled->s[i] - (i ? scaled->s[i - 1] : 0.0); }

@@ -14,7 +14,7 @@ import study_functions
 from boreprop.analysis.study.compute import probability, quantiles, study
 from boreprop.analysis.study.design import grid, sample
 from boreprop.analysis.study.figures import FIGURES, key_figures
-from boreprop.analysis.study.table import Line
+from boreprop.analysis.study.store import Line
 from boreprop.analysis.summary import summarize
 from boreprop.case.paper import paper_case
 from boreprop.errors import InputError
