@@ -92,8 +92,8 @@ def test_steps_of_the_integrator_do_not_depend_on_where_outputs_are_read() -> No
     assert runs[0].outputs() == runs[1].outputs()
 
 
-# Side force (lbf) and curvature without side force (degrees per 100 ft) by weight on bit (klb) and inclination (degrees)
-# of a pendulum assembly: BHAtp.jl (BottomHoleAssemblyAnalysis), case_01.
+# Side force, lbf, and curvature without side force, °/100 ft, by weight on bit, klb, and inclination, °, of a pendulum
+# assembly: BHAtp.jl (BottomHoleAssemblyAnalysis), case_01.
 PUBLISHED = {
     (20, 20): (582.89, -2.9515),
     (20, 30): (844.38, -3.2430),

@@ -173,9 +173,13 @@ def test_contacts_satisfy_the_complementarity_problem(
 
 def test_a_string_that_lies_on_the_low_side_is_held_there() -> None:
     bha = replace(
-        BottomHoleAssembly((10.0,), (), 0.5, 1000.0, 1e7), section_lengths=(10.0,), section_distributed_weights=(1000.0,),
-        section_flexural_stiffnesses=(1e7,), section_outer_diameters=(0.17,), end_deflection=-0.03,
-    )  # fmt: skip
+        BottomHoleAssembly((10.0,), (), 0.5, 1000.0, 1e7),
+        section_lengths=(10.0,),
+        section_distributed_weights=(1000.0,),
+        section_flexural_stiffnesses=(1e7,),
+        section_outer_diameters=(0.17,),
+        end_deflection=-0.03,
+    )
     found = one(bha, np.zeros(1), places=(10.0,))
     assert found.shape[0, 0] == pytest.approx(-0.03, rel=1e-12)
     assert found.bit_force[0] == pytest.approx(3 * 1e7 * 0.03 / 10.0**3, rel=1e-12)
