@@ -5,7 +5,7 @@ BIN = .venv/bin
 C = $(wildcard model/boreprop/kernel/*.[ch] fmu_build/boreprop_fmu/native/*.[ch] fmu_build/boreprop_fmu/native/*/*.h)
 
 .PRECIOUS: .venv/%.installed
-.PHONY: demo binaries test soak lint bench clean
+.PHONY: demo binaries wheels test soak lint bench clean
 
 demo: .venv/all.compiled  # the main job: case file, FMU, run, viewer recording, figures, summary; results in out/
 	mkdir -p out
@@ -26,6 +26,11 @@ demo: .venv/all.compiled  # the main job: case file, FMU, run, viewer recording,
 
 binaries: .venv/dev.installed  # what native FMUs are packed with, for all platforms
 	$(BIN)/python -m boreprop_fmu.native all
+
+wheels: .venv/dev.installed  # wheels for all platforms and the source distribution, in dist/; then all that is asked of them
+	rm -rf dist
+	$(BIN)/python build_wheels.py
+	$(BIN)/python -m pytest tests/wheels --wheels dist --verbose
 
 test: .venv/dev.compiled  # the whole suite
 	$(BIN)/python -m pytest -n auto
