@@ -38,12 +38,13 @@ test: .venv/dev.compiled  # the whole suite
 soak: .venv/dev.compiled  # new examples of the property tests, then the fuzzers: make soak MINUTES=40 [SEED=…]
 	$(BIN)/python tests/soak.py --minutes $(MINUTES) $(if $(SEED),--seed $(SEED))
 
-lint: .venv/dev.installed  # style, types and the import contract; style and faults of the C
+lint: .venv/dev.installed  # style, types and the import contract; style and faults of the C; the workflows
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/python tests/lint_c.py
+	$(BIN)/python tests/lint_yaml.py
 
 bench: .venv/bench.compiled  # speed, side by side with something else
 	$(BIN)/python benchmarks/integrator.py
