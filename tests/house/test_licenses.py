@@ -1,0 +1,40 @@
+"""The page of licenses names every package that a requirement of ours names, and each with a license."""
+
+import re
+import tomllib
+
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+from places import ROOT
+
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+ROWS = dict(
+    re.findall(r"^\| ([a-z0-9-]+) \| (.+) \|$", (ROOT / "docs" / "licenses.md").read_text(encoding="utf-8"), re.M)
+)
+OPEN = (
+    "0BSD",
+    "Apache",
+    "BSD",
+    "CC0",
+    "ISC",
+    "MIT",
+    "Mozilla",
+    "MPL",
+    "PSF",
+    "Public domain",
+    "Python Software",
+    "Zlib",
+)
+
+
+def test_every_requirement_of_every_extra_has_its_license_on_the_page() -> None:
+    lists = [PROJECT["dependencies"], *PROJECT["optional-dependencies"].values()]
+    named = {canonicalize_name(Requirement(line).name) for lines in lists for line in lines} - {"boreprop"}
+    assert len(named) > 40
+    assert sorted(named - set(ROWS)) == [], "run: python docs/make_licenses.py"
+
+
+def test_every_license_lets_code_that_uses_the_package_have_another() -> None:
+    parts = {name: re.split(r" AND | OR |, ", text) for name, text in ROWS.items()}
+    assert {name: found for name, found in parts.items() if not all(part.startswith(OPEN) for part in found)} == {}
