@@ -24,9 +24,10 @@ NOT_SAID = {"fmpy": "BSD-2-Clause"}  # in its metadata, but in the license that 
 HEAD = """\
 # Licenses
 
-boreprop is under the [MIT license](../LICENSE). What the compiler links into its libraries besides boreprop's own code is
-named in [THIRD_PARTY.txt](../model/boreprop/kernel/THIRD_PARTY.txt), which every wheel and every native FMU has in it; a
-Python FMU has the license of pythonfmu. Everything else is installed as packages of their own, under their own licenses.
+boreprop is under the [MIT license](../LICENSE). What the compiler links into its libraries besides boreprop's own code
+is named in [THIRD_PARTY.txt](../model/boreprop/kernel/THIRD_PARTY.txt), which every wheel and every native FMU has in
+it; a Python FMU has the license of pythonfmu. Everything else is installed as packages of their own, under their own
+licenses.
 
 This page is made by `python docs/make_licenses.py` from what the packages say of themselves, as they are installed on
 Linux with Python 3.11; other systems and versions bring a few others.
