@@ -30,7 +30,7 @@ binaries: .venv/dev.installed  # what native FMUs are packed with, for all platf
 wheels: .venv/dev.installed  # wheels for all platforms and the source distribution, in dist/; then all that is asked of them
 	rm -rf dist
 	$(BIN)/python build_wheels.py
-	$(BIN)/python -m pytest tests/wheels --wheels dist --verbose
+	$(BIN)/python -m pytest tests/wheels --wheels dist -n auto --dist loadfile -rap
 
 test: .venv/dev.compiled  # the whole suite
 	$(BIN)/python -m pytest -n auto
