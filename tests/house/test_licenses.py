@@ -24,3 +24,12 @@ def test_every_requirement_of_every_extra_has_its_license_on_the_page() -> None:
 def test_every_license_lets_code_that_uses_the_package_have_another() -> None:
     parts = {name: re.split(r" AND | OR |, ", text) for name, text in ROWS.items()}
     assert {name: found for name, found in parts.items() if not all(re.match(OPEN, part) for part in found)} == {}
+
+
+def test_the_compiler_that_is_pinned_is_the_one_that_notices_and_messages_name() -> None:
+    (pinned,) = {line for line in PROJECT["optional-dependencies"]["dev"] if line.startswith("ziglang==")}
+    version = pinned.partition("==")[2]
+    kernel = ROOT / "model" / "boreprop" / "kernel"
+    named = {path.name: path.read_text(encoding="utf-8") for path in [kernel / "THIRD_PARTY.txt", *kernel.glob("*.py")]}
+    assert f"Zig {version} " in named["THIRD_PARTY.txt"]
+    assert {found for text in named.values() for found in re.findall(r"ziglang==([\d.]+\d)", text)} == {version}
