@@ -32,7 +32,7 @@ class Library:
     oldest
         The version of the system from which on it loads: of glibc or macOS; (0,) where it does not say.
     inside
-        On Linux the source files, on macOS the functions that it was linked from. Windows' are stripped of that.
+        On Linux the source files, on macOS the functions that it was linked from, unless it is stripped.
     signed
         Whether it holds a signature, without which Apple's processors run nothing.
     """
@@ -73,7 +73,11 @@ def elf(content: bytes) -> Library:
             if symbol["st_info"]["bind"] == "STB_GLOBAL" and symbol["st_shndx"] != "SHN_UNDEF"
         ),
         max(tuple(map(int, name.removeprefix("GLIBC_").split("."))) for name in versions),
-        frozenset(symbol.name for symbol in symbols.iter_symbols() if symbol["st_info"]["type"] == "STT_FILE"),
+        frozenset(
+            symbol.name
+            for symbol in (symbols.iter_symbols() if symbols else ())
+            if symbol["st_info"]["type"] == "STT_FILE"
+        ),
     )
 
 

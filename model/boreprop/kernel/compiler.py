@@ -70,9 +70,17 @@ class Platform:
     links: tuple[str, ...] = ("-lm",)
 
 
+# What zig has compiled of glibc, once for all that it links, names the places where it did so.
+_LINUX_LINKS = ("-lm", "-Wl,--strip-debug")
+
 PLATFORMS = {  # under the names of FMI 2.0.4
     "linux64": Platform(
-        "linux", "x86_64", "x86_64-linux-gnu.2.17", ".so", "manylinux_2_17_x86_64.manylinux2014_x86_64"
+        "linux",
+        "x86_64",
+        "x86_64-linux-gnu.2.17",
+        ".so",
+        "manylinux_2_17_x86_64.manylinux2014_x86_64",
+        links=_LINUX_LINKS,
     ),
     "win64": Platform(
         "win32",
@@ -85,7 +93,12 @@ PLATFORMS = {  # under the names of FMI 2.0.4
     ),
     "darwin64": Platform("darwin", "x86_64", "x86_64-macos.11.0", ".dylib", "macosx_11_0_x86_64"),
     "aarch64-linux": Platform(
-        "linux", "aarch64", "aarch64-linux-gnu.2.17", ".so", "manylinux_2_17_aarch64.manylinux2014_aarch64"
+        "linux",
+        "aarch64",
+        "aarch64-linux-gnu.2.17",
+        ".so",
+        "manylinux_2_17_aarch64.manylinux2014_aarch64",
+        links=_LINUX_LINKS,
     ),
     "aarch64-darwin": Platform("darwin", "aarch64", "aarch64-macos.11.0", ".dylib", "macosx_11_0_arm64"),
 }
