@@ -127,6 +127,9 @@ def documents(case: Case, identifier: str, runtime: str, start: Mapping[str, flo
     written = {"index.html": page(case, identifier, runtime, start), "licenses/license.txt": license_text("boreprop")}
     if runtime == "python":
         written |= {"externalDependencies.txt": EXTERNAL, "licenses/pythonfmu.txt": license_text("pythonfmu")}
+    else:
+        third_party = files("boreprop.kernel").joinpath("THIRD_PARTY.txt")
+        written["licenses/third_party.txt"] = third_party.read_text(encoding="utf-8")
     return {f"documentation/{name}": text.encode() for name, text in written.items()}
 
 
