@@ -38,7 +38,7 @@ def rows_along(
     """Drill leg after leg; the outputs at the ends that are rows, by column."""
     names = list(run.outputs())
     table = np.full((max(rows) + 1, len(names)), np.nan)
-    inputs = held(len(ends), np.array(forces), eta_pi)
+    inputs = held(len(ends), np.array(forces), eta_pi, run.bit)
     run.follow(np.array(ends), inputs, np.array(rows, dtype=np.intc), table)
     return dict(zip(names, table.T, strict=True))
 

@@ -68,7 +68,7 @@ def test_no_other_mode_has_a_response(steady: Steady, F: float) -> None:
         for line in candidates
         if all(
             bound.lower - 1e-12 <= bound.scale * bound.row(line.loads(F)) <= bound.upper + 1e-12
-            for bound in line.regime.bounds(steady.modes, steady.eta_pi)
+            for bound in steady.bounds(line.regime)
         )
     ]
     assert holding

@@ -99,7 +99,8 @@ def test_a_hole_under_its_holding_force_stays_straight(case: Case, saturated: bo
     state = model.save()
     theta = (inclination + response.bit_tilt, *state["step"].theta[1:])
     model.restore(state | {"step": state["step"]._replace(theta=theta)})
-    model.drill(20.0, F, pi_)
+    model.steer(F, pi_)
+    model.advance(20.0)
     assert model.inclination() == pytest.approx(inclination, abs=1e-6)
     assert at_the_bit(model)["psi"] == pytest.approx(response.bit_tilt, abs=1e-6)
 

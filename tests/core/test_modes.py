@@ -63,7 +63,7 @@ def test_the_regime_has_the_walls_and_the_saturation_of_the_lcp(system: System, 
     scaled, at, eta_pi, guess = system
     modes, m = Modes(scaled), len(scaled.y_star)
     start = Regime(modes.touching(tuple(guess)), side)
-    regime = start.settle(lambda regime: (regime.bounds(modes, eta_pi), at))
+    regime = start.settle(lambda regime: (regime.bounds(modes, eta_pi, scaled.psi_star), at))
     z = lemke(*lcp(modes.beam, scaled.y_star, scaled.psi_star, eta_pi, at))
     expected = [z[i] - z[m + i] for i in range(m)] + [z[2 * m + 1] - z[2 * m]]
     for value, got, clearance in zip(

@@ -67,8 +67,10 @@ def test_python_passes_a_kink_nearer_than_the_shortest_step() -> None:
     """As far down the hole, with shorter steps forbidden instead."""
     model = start("steering_two_stabilizers", smallest_step=1e-6)
     model.advance(5.0)
-    model.drill(5.0 + 4e-6, model.F_rss + 1e-3, model.eta_pi)
-    model.drill(9.0, model.F_rss - 3e-3, model.eta_pi)
+    model.steer(model.F_rss + 1e-3, model.eta_pi)
+    model.advance(5.0 + 4e-6)
+    model.steer(model.F_rss - 3e-3, model.eta_pi)
+    model.advance(9.0)
     assert model.xi == 9.0
 
 

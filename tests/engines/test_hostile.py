@@ -62,7 +62,7 @@ def test_a_bad_input_on_the_way_is_refused_and_moves_nothing(
     engine: str, case: Case, name: str, value: float, constraint: str
 ) -> None:
     run = drilling(engine, case)
-    leg = {"drilled_length": 3.0, "rss_force": 0.0, "active_weight_on_bit": case.active_weight_on_bit}
+    leg: dict[str, Any] = {"drilled_length": 3.0, "rss_force": 0.0, "active_weight_on_bit": case.active_weight_on_bit}
     run.advance(**leg)
     before, outputs = repr(list(run.save())), run.outputs()
     with pytest.raises(ParameterError) as refused:

@@ -14,6 +14,7 @@ from boreprop.case.case import Case, InputSchedule, Schedule
 from boreprop.case.paper import paper_case
 from boreprop.core.errors import CannotContinue, ParameterError
 from boreprop.core.options import Options
+from boreprop.core.quantities import ACTING, ROCK
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop.run.course import acting, course_of
@@ -111,16 +112,15 @@ def test_rows_lie_anywhere_without_a_trace(case: Case, interval: float) -> None:
         np.testing.assert_allclose(few[name], many[name][::4][: few.row_count], rtol=0, atol=1e-9 * scale, err_msg=name)
 
 
-def legs(case: Case, ends: np.ndarray) -> Iterator[tuple[float, dict[str, float]]]:
+def legs(case: Case, ends: np.ndarray) -> Iterator[tuple[float, dict[str, Any]]]:
     """The legs to these lengths and to where the course bends: where each ends, and what `advance` is given for it."""
     course = course_of(case)
     stops = np.union1d(ends, course.starts[1:])
     begins = np.append(0.0, stops[:-1])
     pieces = (np.searchsorted(course.starts, begins, side="right") - 1).astype(np.intc)
     for end, values in zip(stops.tolist(), acting(course, begins, pieces).tolist(), strict=True):
-        force, force_slope, weight, weight_slope = values
-        slopes = {"rss_force_slope": force_slope, "active_weight_on_bit_slope": weight_slope}
-        yield end, {"rss_force": force, "active_weight_on_bit": weight, **slopes}
+        given_ = dict(zip(ACTING, values, strict=True))
+        yield end, {name: value for name, value in given_.items() if name not in ROCK}  # as at the start
 
 
 def test_a_state_saved_on_a_ramp_goes_on_as_if_nothing_had_been(engine: str, case: Case) -> None:
@@ -169,7 +169,7 @@ def test_the_weight_at_the_bit_is_on_its_ramp(engine: str, case: Case) -> None:
     ],
 )
 def test_a_slope_that_is_no_number_is_refused_and_nothing_moves(
-    engine: str, given_: dict[str, float], message: str
+    engine: str, given_: dict[str, Any], message: str
 ) -> None:
     case = paper_case()
     run = DRILLING[engine](case.bha, case.bit, case.survey, active_weight_on_bit=2e3)

@@ -106,3 +106,31 @@ def test_a_schedule_file_gives_any_input_and_leaves_the_others(
     )
     assert run.case == given
     assert_drilled(run, given, 1.0)
+
+
+def interbedded(case: Case) -> Case:
+    """The paper's case in hard and soft rock, with bits whose tilt is limited more and less."""
+    rock = (
+        ("lateral_steering_resistance", (10.0, 25.0, 6.0)),
+        ("angular_steering_resistance", (1.0, 0.8, 1.3)),
+        ("bit_tilt_limit", (0.03, 0.004, 0.02)),
+    )
+    schedule = Schedule((0.0, 5.0, 9.5), (0.0, 3e3, -1e3))
+    return replace(case, length=LENGTH, schedule=schedule, inputs=InputSchedule((0.0, 6.3, 13.0), rock))
+
+
+@pytest.mark.usefixtures("kernel")
+@both_flavours
+def test_rock_is_followed_exactly(case: Case, flavour: Flavour, pack: Pack, command: Command, tmp_path: Path) -> None:
+    rock = interbedded(case)
+    run = run_of(command, pack(rock, flavour), tmp_path, "--step", "1.5")
+    assert run.case == rock
+    assert_drilled(run, rock, 1.5)
+    assert run["bit_tilt_limit"].tolist() == [0.03] * 5 + [0.004] * 4 + [0.02] * 8
+
+
+@pytest.mark.usefixtures("kernel")
+def test_rock_is_held_while_a_force_is_linear(case: Case, pack: Pack, command: Command, tmp_path: Path) -> None:
+    rock = interbedded(case)
+    ramp = replace(rock, schedule=replace(rock.schedule, interpolation="linear"))
+    assert_drilled(run_of(command, pack(ramp, NATIVE), tmp_path, "--step", "0.4"), ramp, 0.4)

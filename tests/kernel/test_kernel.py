@@ -63,7 +63,7 @@ def test_arrays_that_do_not_fit_are_refused(case: Case, forces: int, rows: list[
         ValueError,
         match=rf"must (hold 2 times rss_force, .* like lengths, and rows below 2|have {columns} columns), got ",
     ):
-        run.follow(np.array([1.0, 2.0]), held(forces, 0.0, 5e4), rows, np.empty((2, columns - lacking)))
+        run.follow(np.array([1.0, 2.0]), held(forces, 0.0, 5e4, run.bit), rows, np.empty((2, columns - lacking)))
 
 
 # what happens where it is not

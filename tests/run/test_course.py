@@ -1,7 +1,7 @@
 """The course of a case's inputs, against the entries of its schedules, looked up one by one."""
 
 from bisect import bisect_right
-from dataclasses import replace
+from dataclasses import astuple, replace
 
 import numpy as np
 from hypothesis import given
@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from boreprop.case.case import Case, InputSchedule, Profile, Schedule
 from boreprop.case.paper import paper_case
-from boreprop.core.quantities import ACTING
+from boreprop.core.quantities import ACTING, ROCK
 from boreprop.run.course import Course, acting, course_of
 from boreprop.run.simulate import simulate
 
@@ -49,11 +49,13 @@ def scheduled(case: Case) -> Case:
 
 def test_what_an_engine_is_given_does_not_hold_the_rate_of_penetration() -> None:
     course = course_of(scheduled(paper_case()))
-    assert course.names == ("rss_force", "active_weight_on_bit", "rate_of_penetration")
+    assert course.names == ("rss_force", "active_weight_on_bit", *ROCK, "rate_of_penetration")
     assert course.starts.tolist() == [0.0, 2.0, 4.0, 6.0]
     given_ = acting(course, np.array([0.0, 3.0]), np.array([0, 1], dtype=np.intc))
-    assert ACTING == ("rss_force", "rss_force_slope", "active_weight_on_bit", "active_weight_on_bit_slope")
-    assert given_.tolist() == [[0.0, 500.0, 2e3, 500.0], [1e3, 0.0, 3500.0, 500.0]]
+    slopes = ("rss_force", "rss_force_slope", "active_weight_on_bit", "active_weight_on_bit_slope")
+    assert ACTING == (*slopes, *ROCK, "weight_on_bit")
+    assert given_[:, :4].tolist() == [[0.0, 500.0, 2e3, 500.0], [1e3, 0.0, 3500.0, 500.0]]
+    assert given_[:, 4:].tolist() == [[*astuple(paper_case().bit), 0.0]] * 2
 
 
 def test_a_run_has_a_column_for_each_input_that_its_case_schedules() -> None:

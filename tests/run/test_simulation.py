@@ -12,7 +12,7 @@ from boreprop.case.case import Case, Schedule
 from boreprop.case.file import load_case
 from boreprop.case.paper import LENGTH_SCALE, paper_case
 from boreprop.core.errors import ParameterError
-from boreprop.core.quantities import INPUTS, OUTPUTS, scalar_names
+from boreprop.core.quantities import INPUTS, OUTPUTS, ROCK, scalar_names
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop.report.tables.summary import lines, whether_it_ripples
@@ -62,7 +62,7 @@ def test_the_example_file_is_the_paper_case() -> None:
 def test_columns_are_the_inputs_and_outputs_of_the_table() -> None:
     run = simulate(paper_case(), length=1.0)
     names = scalar_names(INPUTS, 2) + scalar_names(OUTPUTS, 2)
-    assert list(run.columns) == [name for name in names if name != "rate_of_penetration"]
+    assert list(run.columns) == [name for name in names if name not in ("rate_of_penetration", *ROCK)]
 
 
 def test_moment_and_tilt_obey_the_bit_rock_law() -> None:

@@ -75,12 +75,10 @@ class FmuRun:
         self._description = read_description(self.fmu)
         self.case = read_packed_case(self.fmu)
         if self.case is not None:
-            weights = dict(inputs.inputs).get("active_weight_on_bit") if inputs else None
             self.case = replace(
                 self.case,
                 schedule=schedule or self.case.schedule,
                 inputs=inputs or self.case.inputs,
-                active_weight_on_bit=weights[0] if weights else self.case.active_weight_on_bit,
             )
         self._course = self._course_of(schedule, inputs)
         experiment = self._description.defaultExperiment

@@ -111,11 +111,22 @@ static int are_off_bottom(const double input[INPUT_COUNT]) {
     return input[IN_ACTIVE_WEIGHT_ON_BIT] == 0.0 && input[IN_RATE_OF_PENETRATION] == 0.0;
 }
 
+/* The inputs that are held along a communication step: bit and rock, and the whole weight on bit. */
+static Inputs held_inputs(const Component *c) {
+    Inputs inputs = {
+        .lateral_steering_resistance = c->value[IN_LATERAL_STEERING_RESISTANCE],
+        .angular_steering_resistance = c->value[IN_ANGULAR_STEERING_RESISTANCE],
+        .bit_tilt_limit = c->value[IN_BIT_TILT_LIMIT],
+        .weight_on_bit = c->packed.variables.structure.axial ? c->value[IN_WEIGHT_ON_BIT] : 0.0
+    };
+    return inputs;
+}
+
 /* What the run is given: without weight there is no ηΠ, and the last one that drilled stands for it. */
 static Inputs present_inputs(const Component *c) {
     double weight = c->value[IN_ACTIVE_WEIGHT_ON_BIT];
-    Inputs inputs = {.rss_force = c->value[IN_RSS_FORCE], .active_weight_on_bit = weight == 0.0 ? c->weight : weight};
-    if (c->packed.variables.structure.axial) inputs.weight_on_bit = c->value[IN_WEIGHT_ON_BIT];
+    Inputs inputs = held_inputs(c);
+    inputs.rss_force = c->value[IN_RSS_FORCE], inputs.active_weight_on_bit = weight == 0.0 ? c->weight : weight;
     return inputs;
 }
 
@@ -179,7 +190,7 @@ static int check_given(const double input[INPUT_COUNT], char why[LINE]) {
     for (int i = 0; i < INPUT_COUNT; i++)
         if (!check_quantity(&INPUT_TABLE[i], 0, input[i], &problem)) {
             if (i == IN_ACTIVE_WEIGHT_ON_BIT && are_off_bottom(input)) continue;
-            if (input[i] != 0.0) return tell(&problem, why);
+            if (i != IN_ACTIVE_WEIGHT_ON_BIT || input[i] != 0.0) return tell(&problem, why);
             return explain(why, "active_weight_on_bit: must be > 0 where rate_of_penetration is > 0, got 0.0");
         }
     return 1;

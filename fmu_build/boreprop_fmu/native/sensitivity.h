@@ -29,13 +29,15 @@ static double change_in_time(Component *c, const Present *at, fmi2ValueReference
     return slope * c->value[IN_RATE_OF_PENETRATION];
 }
 
-/* Change of an output per change of an input. Off bottom no weight has a say, until it drills. */
+/* Change of an output per change of an input. Off bottom no weight has a say until it drills, and ηΠ is zero. */
 static double change_with(
     const Component *c, const Present *at, fmi2ValueReference reference, fmi2ValueReference given
 ) {
     const Variable *output = variable_at(c, reference);
-    if (given == IN_ACTIVE_WEIGHT_ON_BIT && c->value[given] == 0.0) return 0.0;
-    return output_gain(&c->run->drilling, at, (Output)output->quantity, output->index, (Input)given);
+    int off_bottom = c->value[IN_ACTIVE_WEIGHT_ON_BIT] == 0.0;
+    if (off_bottom && (given == IN_ACTIVE_WEIGHT_ON_BIT || output->quantity == OUT_ETA_PI)) return 0.0;
+    double eta = c->value[IN_LATERAL_STEERING_RESISTANCE];
+    return output_gain(&c->run->drilling, at, (Output)output->quantity, output->index, (Input)given, eta);
 }
 
 /* First derivatives of outputs in time. */

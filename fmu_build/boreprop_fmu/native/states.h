@@ -5,7 +5,7 @@
 #include "instance.h"
 #include "serialized.h"
 
-enum { FIXED = 12 }; /* numbers of a state before the values of the variables */
+enum { FIXED = 9 + INPUT_COUNT }; /* numbers of a state before the values of the variables */
 
 static fmi2Status save(Component *c, Saved *saved) {
     Count count = c->run ? drilling_state_size(&c->run->drilling) : 0;
@@ -13,9 +13,9 @@ static fmi2Status save(Component *c, Saved *saved) {
     size_t text = strlen(c->survey_file), size = ((size_t)(count + all->count) + FIXED) * 8 + text;
     unsigned char *bytes = malloc(size), *to = bytes;
     double *numbers = malloc((size_t)(count + 1) * sizeof *numbers);
-    double fixed[FIXED] = {c->phase,         c->time,           c->since,         c->from,
-                           c->rate,          c->run_has_inputs, c->derivative[0], c->derivative[1],
-                           c->derivative[2], c->weight,         c->has_tolerance, (double)text};
+    double fixed[FIXED] = {c->phase,          c->time,   c->since,         c->from,     c->rate,
+                           c->run_has_inputs, c->weight, c->has_tolerance, (double)text};
+    memcpy(fixed + FIXED - INPUT_COUNT, c->derivative, sizeof c->derivative);
     if (bytes && numbers) {
         for (int i = 0; i < FIXED; i++) to = put_double(to, fixed[i]);
         for (int i = 0; i < all->count; i++) to = put_double(to, all->at[i].role == OUTPUT ? 0.0 : c->value[i]);
@@ -39,7 +39,7 @@ static int restore(Component *c, const Saved *saved, char why[LINE]) {
     if (size < least) return explain(why, "state: must be one of this FMU, got one of %lu bytes", (unsigned long)size);
     for (int i = 0; i < FIXED; i++) fixed[i] = get_double(&from);
     for (int i = 0; i < all->count; i++) value[i] = get_double(&from);
-    double text = fixed[FIXED - 1];
+    double text = fixed[8];
     int phase = fixed[0] >= 0.0 && fixed[0] <= 8.0 ? (int)fixed[0] : 0;
     if (!(phase == INSTANTIATED || phase == INITIALIZATION || phase == STEPPING || phase == TERMINATED) ||
         !(text >= 0.0 && text <= (double)(size - least)) || (size - (size_t)text) % 8)
@@ -75,8 +75,8 @@ static int restore(Component *c, const Saved *saved, char why[LINE]) {
     c->run = run, c->survey_file = survey_file, c->phase = (Phase)phase, c->outputs = STALE, c->discarded = 0;
     c->time = fixed[1], c->since = fixed[2], c->from = fixed[3], c->rate = fixed[4],
     c->run_has_inputs = fixed[5] != 0.0;
-    memcpy(c->derivative, fixed + 6, sizeof c->derivative);
-    c->weight = fixed[9], c->has_tolerance = fixed[10] != 0.0;
+    c->weight = fixed[6], c->has_tolerance = fixed[7] != 0.0;
+    memcpy(c->derivative, fixed + FIXED - INPUT_COUNT, sizeof c->derivative);
     memcpy(c->value, value, sizeof value);
     if (isfinite(c->next_look)) c->next_look = 0.0; /* it may be another hole */
     return 1;

@@ -7,17 +7,17 @@
 #define LEAST_SHARE 5e-4 /* of a weight at one end of a step, at least, is that at the other end, also where it is 0 */
 
 /* Drill to a length while the inputs go from their present values to those at its end; force and active weight on bit
-   are linear in the length, the whole weight on bit is held. If that fails, nothing has moved. */
+   are linear in the length, bit, rock and the whole weight on bit are held. If that fails, nothing has moved. */
 static int drill_on(Component *c, double to, const double end[INPUT_COUNT], char why[LINE]) {
     double way = to - drilling_length(&c->run->drilling), force = c->value[IN_RSS_FORCE];
     double weight = c->value[IN_ACTIVE_WEIGHT_ON_BIT], end_weight = end[IN_ACTIVE_WEIGHT_ON_BIT];
     double least = LEAST_SHARE * larger(weight, end_weight);
-    int axial = c->packed.variables.structure.axial;
-    int stays = (!axial || end[IN_WEIGHT_ON_BIT] == c->value[IN_WEIGHT_ON_BIT]) && end[IN_RSS_FORCE] == force &&
-                end_weight == weight;
+    int axial = c->packed.variables.structure.axial, held = 1;
+    for (int i = IN_LATERAL_STEERING_RESISTANCE; i < IN_WEIGHT_ON_BIT + axial; i++) held &= end[i] == c->value[i];
+    int stays = end[IN_RSS_FORCE] == force && end_weight == weight;
     weight = larger(weight, least), end_weight = larger(end_weight, least);
-    Inputs inputs = {.rss_force = force, .active_weight_on_bit = weight};
-    if (axial) inputs.weight_on_bit = c->value[IN_WEIGHT_ON_BIT];
+    Inputs inputs = held_inputs(c);
+    inputs.rss_force = force, inputs.active_weight_on_bit = weight;
     Problem problem;
     if (way > 0) {
         inputs.rss_force_slope = (end[IN_RSS_FORCE] - force) / way;
@@ -25,7 +25,7 @@ static int drill_on(Component *c, double to, const double end[INPUT_COUNT], char
     }
     if (run_advance(c->run, to, inputs, &problem) != DONE) return tell(&problem, why);
     if (way > 0) c->weight = end_weight;
-    c->run_has_inputs = stays || (way > 0 && !axial);
+    c->run_has_inputs = held && (stays || (way > 0 && !axial));
     return 1;
 }
 

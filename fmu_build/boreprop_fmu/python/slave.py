@@ -30,7 +30,7 @@ from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop_fmu.python.process import forget, give_ctrl_c_back, open_log, write_to_user
 
-STATE_FORMAT = "boreprop-fmu-state-5"
+STATE_FORMAT = "boreprop-fmu-state-6"
 INSTANTIATED, INITIALIZATION, STEPPING, TERMINATED = "instantiated", "initialization", "stepping", "terminated"
 BEFORE_THE_END = (INSTANTIATED, INITIALIZATION, STEPPING)
 TIGHTEST, LOOSEST = 1e-12, 1e-5  # tolerance that a host may choose: some choose 1e-3 always, too coarse for a hole
@@ -174,11 +174,15 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
             told = f"tolerance: must be {TIGHTEST:g} to {LOOSEST:g}, got {tolerance!r}"
             self._log(f"{told}; relative_tolerance stays {self._given['relative_tolerance']!r}", Fmi2Status.warning)
 
+    def _bit(self) -> BitRock:
+        """Bit and rock as they are given."""
+        return BitRock(**fields_of("bit", self._given, self._n))
+
     def _build(self, survey: Survey) -> Drilling:
         given = self._given
         return Drilling(
             BottomHoleAssembly(**fields_of("bha", given, self._n)),
-            BitRock(**fields_of("bit", given, self._n)),
+            self._bit(),
             survey,
             active_weight_on_bit=given["active_weight_on_bit"] or self._weight,
             rss_force=given["rss_force"],
@@ -237,9 +241,10 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         check_number("step_size * rate_of_penetration", drilled_length - drilling.drilled_length, at_most=MOST_DRILLED)
         if weight == 0.0:  # off bottom, as while a pipe is connected: nothing moves
             check_quantity("rss_force", given["rss_force"])
+            self._bit()
         else:
             drills = drilled_length > drilling.drilled_length
-            drilling.advance(drilled_length, given["rss_force"], weight)
+            drilling.advance(drilled_length, given["rss_force"], weight, bit=self._bit())
             self._weight, self._stale = weight if drills else self._weight, True
         self._time, self._anchor = current_time + step_size, anchor
         if warning := self._watch.look(drilling):
@@ -254,7 +259,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         """
         drilling, force, weight = self._ready(), self._given["rss_force"], self._given["active_weight_on_bit"]
         before = None if weight else drilling.save()
-        drilling.advance(drilling.drilled_length, force, weight or self._weight)
+        drilling.advance(drilling.drilled_length, force, weight or self._weight, bit=self._bit())
         self._outputs = drilling.outputs()
         if before:
             drilling.restore(before)

@@ -34,7 +34,7 @@ from ..case.case import Case
 from ..core.checks import check_number
 from ..core.errors import ParameterError
 from ..core.linear import dot
-from ..core.modes import ROUNDING, Loads, Mode, Modes, Regime, Row, wall
+from ..core.modes import ROUNDING, Bound, Loads, Mode, Modes, Regime, Row, wall
 from ..core.system import BottomHoleAssembly, Scaled, scale
 
 MOST_PIECES = 1000  # of the curve, so that the way along it ends: there are at most 729 regimes, few of them met twice
@@ -314,10 +314,14 @@ class Steady:
         self.sine, self.cosine = sin(inclination), cos(inclination)
         self.modes = Modes(scaled)
 
+    def bounds(self, regime: Regime) -> list[Bound]:
+        """The bounds within which a regime holds."""
+        return regime.bounds(self.modes, self.eta_pi, self.scaled.psi_star)
+
     def line_at(self, F_rss: float) -> Line:
         """The line of the regime that holds under a force, found by pivoting from no contact and no saturation."""
         free = self.modes.free()
-        regime = free.settle(lambda regime: (regime.bounds(self.modes, self.eta_pi), Line(self, regime).loads(F_rss)))
+        regime = free.settle(lambda regime: (self.bounds(regime), Line(self, regime).loads(F_rss)))
         return Line(self, regime)
 
     def walk(self, start: float, stop: float) -> Iterator[tuple[Line, float, float]]:
@@ -339,7 +343,7 @@ class Steady:
         """The first force from `at` on at which a line meets a bound, the part that the bound is of, and its side."""
         loads = line.loads(at)
         met = (inf, 0, 0)
-        for bound in line.regime.bounds(self.modes, self.eta_pi):
+        for bound in self.bounds(line.regime):
             slope, value = bound.scale * line.slope(bound.row), bound.scale * bound.row(loads)
             side = 1 if slope > 0 else -1
             limit = bound.upper if slope > 0 else bound.lower

@@ -115,7 +115,8 @@ class _OpenEndedRun:
         """The run down to a drilled length, m; `Stopped` if the integrator cannot go on."""
         more = np.empty((int(length / self.interval) + 1 - len(self.rows), len(self.names)))
         lengths = self.interval * np.arange(len(self.rows), len(self.rows) + len(more), dtype=np.float64)
-        inputs = held(len(more), rss_force=self.case.schedule.rss_force[0], weight=self.case.active_weight_on_bit)
+        case = self.case
+        inputs = held(len(more), case.schedule.rss_force[0], case.active_weight_on_bit, case.bit)
         each = np.arange(len(more), dtype=np.intc)
         try:
             self.drilling.follow(lengths, inputs, each, more)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from ..core.checks import check_increasing, check_number, check_part, check_quantity, checked_float
 from ..core.errors import ParameterError
-from ..core.quantities import INPUTS
+from ..core.quantities import BY_NAME, INPUTS
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly, eta_pi
 
@@ -123,7 +123,8 @@ class InputSchedule:
     inputs
         Name of each input in the table of quantities, and its value at each of these lengths, in SI units, shape (k,).
     interpolation
-        "held" or "linear". The rate of penetration is always constant from each entry to the next.
+        "held" or "linear". Bit and rock, the whole weight on bit and the rate of penetration are always constant from
+        each entry to the next.
 
     Raises
     ------
@@ -156,7 +157,9 @@ class InputSchedule:
     def profiles(self) -> dict[str, Profile]:
         """Each input over the drilled length."""
         linear = self.interpolation == "linear"
-        return {name: Profile(self.drilled_length, values, linear and name != RATE) for name, values in self.inputs}
+        return {
+            name: Profile(self.drilled_length, values, linear and BY_NAME[name].slope) for name, values in self.inputs
+        }
 
     def without(self, name: str) -> "InputSchedule | None":
         """The same without one of the inputs; None if it is the only one."""
@@ -221,8 +224,8 @@ class Case:
     schedule
         The steering force over the drilled length; without it there is none.
     inputs
-        Other inputs over the drilled length; None: they are constant. A weight in it takes the place of
-        `active_weight_on_bit`, which is then the one at the start.
+        Other inputs over the drilled length; None: they are constant. Those in it take the place of the weights and of
+        the properties of `bit`, which are then those at the start.
     weight_on_bit
         All of the weight on bit, N, which presses a BHA with `axial_load`; 0: it is the active weight on bit.
 
@@ -250,9 +253,22 @@ class Case:
     weight_on_bit: float = 0.0
 
     def __post_init__(self) -> None:
+        self._take_first_inputs()
         check_part("", self)
         if self.weight_on_bit:
             check_number("weight_on_bit", self.weight_on_bit, at_least=self.active_weight_on_bit)
+
+    def _take_first_inputs(self) -> None:
+        """Let weights and bit be those at the start where they are scheduled."""
+        bit = {}
+        for name, values in self.inputs.inputs if self.inputs else ():
+            quantity = BY_NAME[name]
+            if quantity.part == "bit":
+                bit[quantity.attribute] = values[0]
+            elif quantity.field and not quantity.part:
+                object.__setattr__(self, quantity.attribute, values[0])
+        if bit:
+            object.__setattr__(self, "bit", replace(self.bit, **bit))
 
     def profiles(self) -> dict[str, Profile]:
         """Each input that the case gives over the drilled length, by name."""

@@ -52,7 +52,7 @@ def with_parameters(case: Case, values: Mapping[str, float]) -> Case:
     }
     if "schedule" in changed:
         parts["schedule"] = Schedule((0.0,), (wanted["rss_force"],))
+    inputs = case.inputs
     for name in values:
-        if case.inputs is not None and name in dict(case.inputs.inputs):
-            parts["inputs"] = case.inputs.without(name)
-    return replace(case, **parts, **fields_of("", wanted, structure))
+        inputs = inputs and inputs.without(name)
+    return replace(case, **parts, inputs=inputs, **fields_of("", wanted, structure))

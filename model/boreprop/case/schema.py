@@ -19,7 +19,7 @@ from pydantic_core import ErrorDetails
 
 from ..core.checks import check_number
 from ..core.errors import ParameterError
-from ..core.quantities import Quantity, columns_of, quantity_of
+from ..core.quantities import BY_NAME, ROCK, Quantity, columns_of, quantity_of
 from ..core.survey import Survey
 from ..errors import InputError, shown
 from .body import place_points
@@ -30,6 +30,7 @@ from .tables import BY_KEY, read_inputs, read_schedule, read_survey
 
 Document = dict[str, dict[str, Any]]  # table → key → value
 
+TILT_LIMIT_DEG = "bit_tilt_limit_deg"  # in a schedule, in place of bit_tilt_limit
 DEEPEST = 100  # parts that a dotted key may have
 TABLES = ("bha", "bit", "drilling", "hole", "rss", "run")  # of a file, in the order in which they are written
 OF_FILES = ("hole.survey", "rss.schedule", "drilling.schedule")
@@ -46,6 +47,9 @@ CHOICES: dict[str, tuple[tuple[str, ...], ...]] = {
     ),
 }
 """Table → the sets of keys of which it holds one."""
+
+SCHEDULED = ("active_weight_on_bit", *ROCK)
+"""Inputs that a case file gives by a key of their own, unless the schedule of the table [drilling] has them."""
 
 BESIDE = {"hole": ("bit_depth",), "rss": ("full_force", "interpolation")}
 """Table → the keys that may stand beside each of these sets."""
@@ -106,25 +110,38 @@ def _with_inputs(case: Case, document: Document, bit_depth: float, source: Path)
         force, inputs = read_inputs(source.parent / given, bit_depth, interpolation)
     else:
         lengths = set(given) & set(LENGTHS)
-        if len(lengths) != 1 or len(given) == 1 or set(given) - lengths - set(NAMES_OF_INPUTS):
-            constraint = f"must hold either {' or '.join(LENGTHS)}, and any of {', '.join(NAMES_OF_INPUTS)}"
+        known = (*NAMES_OF_INPUTS, TILT_LIMIT_DEG)
+        if len(lengths) != 1 or len(given) == 1 or set(given) - lengths - set(known):
+            constraint = f"must hold either {' or '.join(LENGTHS)}, and any of {', '.join(known)}"
             raise InputError(f"{source}: {where}: {constraint}, got {shown(given)}")
         columns = {key: _typed(_COLUMN, document, f"{where}.{key}", source) for key in given}
+        if TILT_LIMIT_DEG in columns:
+            columns["bit_tilt_limit"] = tuple(map(radians, columns.pop(TILT_LIMIT_DEG)))
         with _naming(where, source):
             force, inputs = input_schedule(columns, bit_depth, interpolation)
     if force is not None:
         if "rss" in document:
             raise InputError(f"{source}: rss: must be left out where {where} gives rss_force, got both")
         case = replace(case, schedule=force)
-    weights = dict(inputs.inputs).get("active_weight_on_bit") if inputs else None
-    if weights is None and "active_weight_on_bit" not in table:
-        raise InputError(f"{source}: drilling.active_weight_on_bit: must be given, got nothing")
-    if weights is not None and table.get("active_weight_on_bit", weights[0]) != weights[0]:
-        constraint = f"must be left out, or {weights[0]!r} as {where} has it at the start"
-        raise InputError(
-            f"{source}: drilling.active_weight_on_bit: {constraint}, got {table['active_weight_on_bit']!r}"
-        )
-    return replace(case, inputs=inputs, active_weight_on_bit=weights[0] if weights else case.active_weight_on_bit)
+    for name in SCHEDULED:
+        _check_start(document, name, dict(inputs.inputs).get(name, ()) if inputs else (), source)
+    with _naming(where, source):
+        return replace(case, inputs=inputs)
+
+
+def _check_start(document: Document, name: str, scheduled: tuple[float, ...], source: Path) -> None:
+    """Raise `InputError` unless an input is given by its key, or scheduled; by both only with the same start."""
+    key = BY_NAME[name].key
+    table, _, own = key.partition(".")
+    written = document.get(table, {}).get(own)
+    if written is None and not scheduled:
+        raise InputError(f"{source}: {key}: must be given, got nothing")
+    if written is None or not scheduled:
+        return
+    if (_radians(written) if key.endswith("_deg") else written) != scheduled[0]:
+        start = degrees(scheduled[0]) if key.endswith("_deg") else scheduled[0]
+        constraint = f"must be left out, or {start!r} as drilling.schedule has it at the start"
+        raise InputError(f"{source}: {key}: {constraint}, got {shown(written)}")
 
 
 def _case(document: Document, source: Path) -> Case:
@@ -133,8 +150,10 @@ def _case(document: Document, source: Path) -> Case:
     if "survey" in document.get("hole", {}):
         fields["survey"] = asdict(read_survey(source.parent / document["hole"]["survey"]))
     fields.pop("schedule", None)
-    if "schedule" in document.get("drilling", {}):
-        fields.setdefault("active_weight_on_bit", 1.0)  # that of the schedule takes its place
+    if "schedule" in document.get("drilling", {}):  # what it holds takes the place of these
+        for name in SCHEDULED:
+            quantity = BY_NAME[name]
+            (fields.setdefault(quantity.part, {}) if quantity.part else fields).setdefault(quantity.attribute, 1.0)
     try:
         # Validated as JSON: there, even strict types accept an object for a dataclass and an array for a tuple.
         return _CASE.validate_json(json.dumps(fields, default=str), strict=True)

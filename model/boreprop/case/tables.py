@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from math import radians
+from math import pi, radians
 from pathlib import Path
 from typing import NamedTuple
 
@@ -20,6 +20,7 @@ OTHER_UNITS = {
     "m": {"ft": 0.3048},
     "N": {"kN": 1e3, "lbf": 4.4482216152605},
     "m/s": {"m_h": 1 / 3600, "ft_h": 0.3048 / 3600},
+    "rad": {"deg": pi / 180},
 }
 """Unit of a column → the ends of names under which it may stand in another unit, and what that is in the first one."""
 

@@ -11,9 +11,9 @@ from .integrator import Integrator
 from .modes import Modes, bit_tilt, saturation, wall
 from .options import Options, Statistics
 from .problems import DERIVED, Problem
-from .quantities import ACTING
+from .quantities import ACTING, ROCK, fields_of
 from .survey import Survey
-from .system import BitRock, BottomHoleAssembly, eta_pi, scale
+from .system import BitRock, BottomHoleAssembly, epsilon, eta_pi, scale
 
 
 class Drilling:
@@ -34,6 +34,8 @@ class Drilling:
     ----------
     drilled_length
         Where the bit is, m from the start of the run.
+    bit
+        Bit and rock at the start.
     integrator
         The integrator, which has dimensionless lengths and forces.
 
@@ -53,14 +55,12 @@ class Drilling:
         rss_force: float = 0.0,
         options: Options = Options(),  # noqa: B008 - frozen
     ) -> None:
-        self._bha, self._bit = bha, bit
+        self._bha, self.bit = bha, bit
         self._length, self._force = bha.length_scale, bha.force_scale
         self.drilled_length = 0.0
-        self._given, self._inputs = (
-            (nan,) * 4,
-            Inputs(nan, nan),
-        )  # the last that were given, in N and as the paper's numbers
-        scaled, inputs = scale(bha, bit), self._scaled_inputs(rss_force, active_weight_on_bit)
+        self._given: tuple[Any, ...] = ()  # the last inputs that were given, in N, and …
+        self._inputs = Inputs(*(nan,) * 6)  # … as the paper's numbers
+        scaled, inputs = scale(bha, bit), self._scaled_inputs(bit, rss_force, active_weight_on_bit)
         try:
             self.integrator = Integrator(Modes(scaled), survey, self._length, inputs.F_rss, inputs.eta_pi, options)
         except ParameterError:
@@ -69,21 +69,24 @@ class Drilling:
             raise error_of(Problem("no start", "parameters")) from error
 
     def _scaled_inputs(
-        self, force: float, weight: float, force_slope: float = 0.0, weight_slope: float = 0.0
+        self, bit: BitRock, force: float, weight: float, force_slope: float = 0.0, weight_slope: float = 0.0
     ) -> Inputs:
         """The dimensionless inputs; `ParameterError` if these numbers, or the inputs, are out of range."""
-        given = (force, weight, force_slope, weight_slope)
+        given = (bit, force, weight, force_slope, weight_slope)
         if given == self._given:
             return self._inputs
+        ratio = epsilon(bit)
         check_quantity("rss_force", force)
         check_number("rss_force_slope", force_slope)
         check_quantity("active_weight_on_bit", weight)
         check_number("active_weight_on_bit_slope", weight_slope)
         inputs = Inputs(
             F_rss=force / self._force,
-            eta_pi=eta_pi(self._bha, self._bit, weight),
+            eta_pi=eta_pi(self._bha, bit, weight),
             F_rss_slope=force_slope * self._length / self._force,
-            eta_pi_slope=eta_pi(self._bha, self._bit, weight_slope) * self._length,
+            eta_pi_slope=eta_pi(self._bha, bit, weight_slope) * self._length,
+            epsilon=ratio,
+            psi_star=bit.tilt_limit,
         )
         check_number(DERIVED["scaled_force"], inputs.F_rss)
         check_number(DERIVED["scaled_slope"], inputs.F_rss_slope)
@@ -102,6 +105,7 @@ class Drilling:
         rss_force_slope: float = 0.0,
         active_weight_on_bit_slope: float = 0.0,
         weight_on_bit: float = 0.0,
+        bit: BitRock | None = None,
     ) -> None:
         """Drill on under inputs from here, which are constant or linear in the drilled length.
 
@@ -115,6 +119,8 @@ class Drilling:
             Their change per metre drilled, N/m.
         weight_on_bit
             All of the weight, N, which acts on a BHA with `axial_load` only, and so not here.
+        bit
+            Bit and rock from here; None: those of the start.
 
         Raises
         ------
@@ -125,9 +131,11 @@ class Drilling:
         """
         drilled_length, rss_force = float(drilled_length), float(rss_force)  # numpy's own would slow down what follows
         check_quantity("weight_on_bit", weight_on_bit)
-        inputs = self._scaled_inputs(rss_force, active_weight_on_bit, rss_force_slope, active_weight_on_bit_slope)
+        inputs = self._scaled_inputs(
+            bit or self.bit, rss_force, active_weight_on_bit, rss_force_slope, active_weight_on_bit_slope
+        )
         check_number("drilled_length", drilled_length, at_least=self.drilled_length)
-        self.integrator.drill(drilled_length / self._length, *inputs)
+        self.integrator.drill(drilled_length / self._length, inputs)
         self.drilled_length = drilled_length
 
     def follow(self, lengths: Iterable[float], inputs: Iterable[Any], rows: Iterable[int], table: Any) -> None:
@@ -149,8 +157,13 @@ class Drilling:
         ParameterError, CannotContinue
             As in `advance`, for the leg that fails; the bit is then where the leg before ended.
         """
+        rock: tuple[float, ...] = ()
         for length, values, row in zip(lengths, inputs, rows, strict=True):
-            self.advance(length, **dict(zip(ACTING, map(float, values), strict=True)))
+            acting = dict(zip(ACTING, map(float, values), strict=True))
+            before, rock = rock, tuple(acting[name] for name in ROCK)
+            if rock != before:
+                bit = BitRock(**fields_of("bit", acting, self._bha.structure))
+            self.advance(length, bit=bit, **{name: value for name, value in acting.items() if name not in ROCK})
             if row >= 0:
                 table[row] = tuple(self.outputs().values())
 
@@ -171,7 +184,7 @@ class Drilling:
         loads = p.loads()
         mode = p.settled(loads)
         F, delta, F_0 = [row(loads) for row in mode.F], [row(loads) for row in mode.delta], mode.F_0(loads)
-        psi = bit_tilt(F_0, p.eta_pi, scaled.psi_star)
+        psi = bit_tilt(F_0, p.eta_pi, p.psi_star)
         Theta = theta - psi
         # λ_i (⟨Θ⟩_i − θ) = e_i − e_{i−1}
         offsets = [0.0, *loads.e]
@@ -188,7 +201,7 @@ class Drilling:
         values |= {f"stabilizer_force[{i}]": f * F_star for i, f in enumerate(F, 1)}
         values |= {f"stabilizer_contact[{i}]": wall(f) for i, f in enumerate(F, 1)}
         return values | {
-            "bit_tilt_saturation": saturation(F_0, p.eta_pi, scaled.psi_star),
+            "bit_tilt_saturation": saturation(F_0, p.eta_pi, p.psi_star),
             "bit_lateral_force": F_0 * F_star,
             "bit_moment": -mode.M(loads) * F_star * l1,
             "borehole_curvature": (Theta - p.earlier_inclination(p.xi - 1.0)) / l1,

@@ -6,12 +6,14 @@ SAME = 1e-12  # relative: ramps that differ by less at both ends of a way differ
 
 
 class Inputs(NamedTuple):
-    """F_RSS and ηΠ where they were taken over, and their changes per ξ."""
+    """F_RSS and ηΠ where they were taken over, their changes per ξ, and the ε = χ/η and ψ* of bit and rock."""
 
     F_rss: float
     eta_pi: float
-    F_rss_slope: float = 0.0
-    eta_pi_slope: float = 0.0
+    F_rss_slope: float
+    eta_pi_slope: float
+    epsilon: float
+    psi_star: float
 
     @property
     def ramp(self) -> bool:
@@ -28,6 +30,8 @@ class Inputs(NamedTuple):
         """Whether other inputs are the same along a way."""
         if not self.ramp and not other.ramp:
             return self == other
+        if self.epsilon != other.epsilon or self.psi_star != other.psi_star:
+            return False
         mine, others = self.ahead(way), other.ahead(way)
         for a, a_end, b, b_end in zip(self[:2], mine[:2], other[:2], others[:2], strict=True):
             most = SAME * max(abs(b), abs(b_end))

@@ -109,18 +109,17 @@ class Integrator:
             self.kinks.add_images(kink, 2, jump)
         theta = self.hole.final_inclination
         self.present = Step.standstill(0.0, theta, 0.0)  # the step that the bit is in
-        self._restart(self._loads(0.0, theta, 0.0, F_rss), Inputs(F_rss, eta_pi), theta)
+        inputs = Inputs(F_rss, eta_pi, 0.0, 0.0, self.scaled.epsilon, self.scaled.psi_star)
+        self._restart(self._loads(0.0, theta, 0.0, F_rss), inputs, theta)
 
     # moving
 
-    def drill(
-        self, xi: float, F_rss: float, eta_pi: float, F_rss_slope: float = 0.0, eta_pi_slope: float = 0.0
-    ) -> None:
-        """Drill on to `xi` under inputs that act from where the bit is, and change by these slopes per ξ.
+    def drill(self, xi: float, inputs: Inputs) -> None:
+        """Drill on to `xi` under inputs that act from where the bit is.
 
         Raises `CannotContinue` if that fails; then nothing has changed.
         """
-        inputs, way = Inputs(F_rss, eta_pi, F_rss_slope, eta_pi_slope), xi - self.xi
+        way = xi - self.xi
         changed = not self._inputs_here().same(inputs, way if way > 0.0 else 1.0)
         if changed or xi > self.present.end:
             with self._all_or_nothing():
@@ -131,11 +130,12 @@ class Integrator:
 
     def advance(self, xi: float) -> None:
         """Drill on to `xi` under the inputs as they are, see `drill`."""
-        self.drill(xi, *self._inputs_here())
+        self.drill(xi, self._inputs_here())
 
     def steer(self, F_rss: float, eta_pi: float) -> None:
-        """Take over inputs where the bit is, see `drill`."""
-        self.drill(self.xi, F_rss, eta_pi)
+        """Take over other inputs where the bit is, see `drill`; bit and rock stay."""
+        here = self._inputs_here()
+        self.drill(self.xi, Inputs(F_rss, eta_pi, 0.0, 0.0, here.epsilon, here.psi_star))
 
     def step(self) -> Step:
         """Drill on to the end of the integrator's next step, and return that step; errors as in `drill`."""
@@ -168,18 +168,23 @@ class Integrator:
             self._take_step()
 
     def _steer(self, inputs: Inputs) -> None:
-        """Take over inputs where the bit is. Where a slope changes, the curvature jumps."""
+        """Take over inputs where the bit is. Where a slope or ε changes, the curvature jumps."""
         loads, (theta, Y), before = self.loads(), self.present.state(self.xi), self._inputs_here()
-        Theta = self._inclination(theta, loads, before.eta_pi)
+        Theta = self._inclination(theta, loads, before)
         self._move_path(self.xi)
         self.present = Step.standstill(self.xi, theta, Y)
         loads = loads._replace(F_rss=inputs.F_rss)
         self._restart(loads, inputs, Theta)
         bend, turn = inputs.F_rss_slope - before.F_rss_slope, inputs.eta_pi_slope - before.eta_pi_slope
-        if (bend or turn) and not self.regime.saturation:
-            F_0 = self.modes[self.regime.contact].F_0  # (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ
-            psi = F_0(loads) / inputs.eta_pi
-            self.kinks.add_images(self.xi, 2, abs((bend * F_0.rss - turn * psi) / inputs.eta_pi))
+        mode, bent = self.modes[self.regime.contact], 0.0  # jump of Θ' = θ' − ψ'
+        if inputs.epsilon != before.epsilon:  # θ' = M/(εηΠ)
+            rate = mode.M(loads) / inputs.eta_pi * (1 / inputs.epsilon - 1 / before.epsilon)
+            bent = self._law.Theta.theta * rate
+        if (bend or turn) and not self.regime.saturation:  # (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ
+            psi = mode.F_0(loads) / inputs.eta_pi
+            bent -= (bend * mode.F_0.rss - turn * psi) / inputs.eta_pi
+        if bent:
+            self.kinks.add_images(self.xi, 2, abs(bent))
 
     # looking
 
@@ -196,6 +201,11 @@ class Integrator:
         """ηΠ where the bit is."""
         return self._inputs_here().eta_pi
 
+    @property
+    def psi_star(self) -> float:
+        """ψ* where the bit is."""
+        return self.inputs.psi_star
+
     def state(self) -> tuple[float, float]:
         """θ and Y (counted from the start of the run) at the bit."""
         theta, Y = self.present.state(self.xi)
@@ -203,7 +213,7 @@ class Integrator:
 
     def inclination(self) -> float:
         """Θ at the bit, eq. (16): algebraic, it jumps with the inputs."""
-        return self._inclination(self.present.state(self.xi)[0], self.loads(), self.eta_pi)
+        return self._inclination(self.present.state(self.xi)[0], self.loads(), self._inputs_here())
 
     def earlier_inclination(self, xi: float) -> float:
         """Θ as it was when the bit was at `xi`, at most LOOK_BACK behind; where Θ jumped, its value after the jump."""
@@ -215,10 +225,10 @@ class Integrator:
         xi = max(xi, hole.starts[k])
         theta = drilled.at((xi - hole.starts[k]) * hole.rates[k])
         inputs = drilled.inputs.ahead(xi - hole.starts[k])
-        return self._inclination(theta, self._loads(xi, theta, hole.Y(xi), inputs.F_rss), inputs.eta_pi)
+        return self._inclination(theta, self._loads(xi, theta, hole.Y(xi), inputs.F_rss), inputs)
 
-    def _inclination(self, theta: float, loads: Loads, eta_pi: float) -> float:
-        return theta - bit_tilt(self.settled(loads).F_0(loads), eta_pi, self.scaled.psi_star)
+    def _inclination(self, theta: float, loads: Loads, inputs: Inputs) -> float:
+        return theta - bit_tilt(self.settled(loads).F_0(loads), inputs.eta_pi, inputs.psi_star)
 
     def loads(self) -> Loads:
         """What bends the beam where the bit is."""
@@ -282,7 +292,7 @@ class Integrator:
     def _restart(self, loads: Loads, inputs: Inputs, Theta: float) -> None:
         """Take over inputs, find the regime under them, and mark the jump of the inclination, which was Θ so far."""
         self._take_over(inputs, self.xi)
-        mode, psi_star = self.settled(loads), self.scaled.psi_star
+        mode, psi_star = self.settled(loads), inputs.psi_star
         F_0 = mode.F_0(loads)
         jump = abs(self.present.theta[0] - bit_tilt(F_0, self.eta_pi, psi_star) - Theta)
         if not (isfinite(jump) and isfinite(F_0)):

@@ -113,19 +113,20 @@ class Law:
     """The right-hand side in one regime, and the bounds within which it holds, under inputs as they are at `xi`."""
 
     def __init__(self, modes: Modes, regime: Regime, inputs: Inputs, xi: float) -> None:
-        scaled, mode, eta_pi = modes.scaled, modes[regime.contact], inputs.eta_pi
-        self.s, self.xi, self.ramp = scaled.s, xi, inputs.ramp  # the delays; where it is made; whether inputs change
+        mode, eta_pi = modes[regime.contact], inputs.eta_pi
+        self.s = modes.scaled.s  # the delays
+        self.xi, self.ramp = xi, inputs.ramp  # where it is made; whether inputs change
         self.growth = inputs.eta_pi_slope / eta_pi  # of ηΠ per ξ, over ηΠ at `xi`
         self.longest = LONGEST_RAMP / abs(self.growth) if self.growth else inf  # step under a changing ηΠ
         self.bounds = [
             Bound(bound.part, Linear.of(bound.row, self.s, inputs, bound.scale), bound.lower, bound.upper)
-            for bound in regime.bounds(modes, eta_pi)
+            for bound in regime.bounds(modes, eta_pi, inputs.psi_star)
         ]
         psi = self.bounds[0].value  # without saturation
         self.saturated, self._tilt = regime.saturation != 0, self.bounds[0].part
-        self.theta_rate = Linear.of(mode.M, self.s, inputs, ratio(1, scaled.epsilon * eta_pi))
+        self.theta_rate = Linear.of(mode.M, self.s, inputs, ratio(1, inputs.epsilon * eta_pi))
         if regime.saturation:
-            self.Theta = Linear(1.0, 0.0, (0.0,) * len(self.s), 0.0, -regime.saturation * scaled.psi_star)
+            self.Theta = Linear(1.0, 0.0, (0.0,) * len(self.s), 0.0, -regime.saturation * inputs.psi_star)
         else:
             less = tuple(-c for c in psi.delayed)
             self.Theta = Linear(1.0 - psi.theta, -psi.Y, less, -psi.g, -psi.constant, -psi.slope)

@@ -140,9 +140,9 @@ class Regime(NamedTuple):
     contact: Contact
     saturation: int
 
-    def bounds(self, modes: Modes, eta_pi: float) -> list[Bound]:
+    def bounds(self, modes: Modes, eta_pi: float, psi_star: float) -> list[Bound]:
         """The bounds within which this regime holds: of ψ = F_0/(ηΠ), (11), then of the stabilizers, (7)."""
-        mode, psi_star = modes[self.contact], modes.scaled.psi_star
+        mode = modes[self.contact]
         lower, upper = {0: (-psi_star, psi_star), 1: (psi_star, inf), -1: (-inf, -psi_star)}[self.saturation]
         return [Bound(len(self.contact), mode.F_0, 1 / eta_pi, lower, upper), *mode.bounds]
 

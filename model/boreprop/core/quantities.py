@@ -76,7 +76,7 @@ class Quantity:
     follows
         Of an output, the inputs and parameters that it follows at once, without any drilling.
     slope
-        Of an input, whether the engines also take its change per metre drilled.
+        Of an input, whether the engines also take its change per metre drilled; without it, it is held along a leg.
     key
         Its table and key in a case file, such as "bha.rss_position". A key that ends in _deg holds degrees.
     field
@@ -143,6 +143,9 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("rss_force", "input", "N", "F_RSS", "(21)", "force of the steering pads on the BHA, positive builds", nominal=1e4, slope=True, key="rss.force", field="schedule.rss_force"),
     Quantity("active_weight_on_bit", "input", "N", "Π F*", "(3)", "weight on bit that goes into drilling", above=0.0, nominal=1e4, slope=True, key="drilling.active_weight_on_bit", field="active_weight_on_bit"),
     Quantity("rate_of_penetration", "input", "m/s", "", "", "drilled length per time", at_least=0.0, start=1.0),
+    Quantity("lateral_steering_resistance", "input", "", "η", "(4)", "lateral over axial drilling resistance", above=0.0, nominal=10.0, key="bit.lateral_steering_resistance", field="bit.lateral_steering_resistance"),
+    Quantity("angular_steering_resistance", "input", "", "χ", "(4)", "angular over axial drilling resistance", above=0.0, key="bit.angular_steering_resistance", field="bit.angular_steering_resistance"),
+    Quantity("bit_tilt_limit", "input", "rad", "ψ*", "(10)", "tilt at which the bit gauge meets the wall", above=0.0, at_most=pi / 2, nominal=0.01, key="bit.tilt_limit_deg", field="bit.tilt_limit"),
     Quantity("weight_on_bit", "input", "N", "W", "(3)", "all of the weight on bit, which presses the BHA along its axis; 0: the active weight", size="axial", at_least=0.0, nominal=1e5, key="drilling.weight_on_bit", field="weight_on_bit"),
 
     Quantity("bit_inclination", "output", "rad", "θ", "(17)", "inclination of the bit axis from the downward vertical", follows=("survey_file",)),
@@ -174,9 +177,6 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("body_point_position", "parameter", "m", "s", "", "where the body between the stabilizers may touch the wall, from the bit", size="points", above=0.0, nominal=10.0, key="bha.body_point_positions", field="bha.body_point_positions"),
     Quantity("body_point_clearance", "parameter", "m", "y*", "(7)", "clearance between the body there and the wall on each side", size="points", above=0.0, nominal=1e-2, key="bha.body_point_clearances", field="bha.body_point_clearances"),
     Quantity("end_deflection", "parameter", "m", "δ_n", "(5)", "offset of the BHA from the borehole axis at the last stabilizer, positive to the high side", size="stepped", nominal=1e-2, key="bha.end_deflection", field="bha.end_deflection"),
-    Quantity("lateral_steering_resistance", "parameter", "", "η", "(4)", "lateral over axial drilling resistance", above=0.0, nominal=10.0, key="bit.lateral_steering_resistance", field="bit.lateral_steering_resistance"),
-    Quantity("angular_steering_resistance", "parameter", "", "χ", "(4)", "angular over axial drilling resistance", above=0.0, key="bit.angular_steering_resistance", field="bit.angular_steering_resistance"),
-    Quantity("bit_tilt_limit", "parameter", "rad", "ψ*", "(10)", "tilt at which the bit gauge meets the wall", above=0.0, at_most=pi / 2, nominal=0.01, key="bit.tilt_limit_deg", field="bit.tilt_limit"),
     Quantity("relative_tolerance", "parameter", "", "", "", "local error allowed in one step of the integrator, relative to 1 rad and ℓ₁", at_least=1e-12, at_most=1e-2, nominal=1e-7, start=RELATIVE_TOLERANCE),
     Quantity("survey_file", "parameter", "", "", "", "survey of the existing hole, its last station is the bit (plain CSV: UTF-8, commas, decimal points, m, degrees); empty: the survey packed in the FMU", kind="String", start="", key="hole.survey"),
 
@@ -209,6 +209,8 @@ OUTPUTS = tuple(quantity for quantity in QUANTITIES if quantity.role == "output"
 PARAMETERS = tuple(quantity for quantity in QUANTITIES if quantity.role == "parameter")
 ACTING = tuple(name for q in INPUTS if q.field for name in ((q.name, f"{q.name}_slope") if q.slope else (q.name,)))
 """What an engine is given for a leg: the inputs where it starts, and the changes per metre of those that may change."""
+ROCK = tuple(q.name for q in INPUTS if q.part == "bit")
+"""The inputs that say what bit and rock are like."""
 VARIABLES = INPUTS + OUTPUTS + PARAMETERS  # what an FMU has
 
 

@@ -175,7 +175,10 @@ class BitRock:
 
 @dataclass(frozen=True)
 class Scaled:
-    """The drilling system in the paper's numbers: lengths over ℓ₁, forces over F*, moments over F*ℓ₁."""
+    """The drilling system in the paper's numbers: lengths over ℓ₁, forces over F*, moments over F*ℓ₁.
+
+    Bit and rock, ε and ψ*, are those at the start: the integrator has them among its inputs.
+    """
 
     s: tuple[float, ...]  # s_1 … s_n, distance of the stabilizers from the bit; s_1 = 1
     y_star: tuple[float, ...]  # y*_1 … y*_{n-1}
@@ -206,19 +209,26 @@ def scale(bha: BottomHoleAssembly, bit: BitRock) -> Scaled:
         )
     l1 = bha.length_scale
     check_number(DERIVED["force_scale"], bha.force_scale, above=0.0)
-    scaled = Scaled(
-        s=tuple(position / l1 for position in bha.stabilizer_positions),
+    s = tuple(position / l1 for position in bha.stabilizer_positions)
+    w = bha.distributed_weight * l1 / bha.force_scale
+    check_number(DERIVED["scaled_reach"], s[-1])
+    check_number(DERIVED["scaled_weight"], w)
+    return Scaled(
+        s=s,
         y_star=tuple(clearance / l1 for clearance in bha.stabilizer_clearances),
         Delta=bha.rss_position / l1,
-        w=bha.distributed_weight * l1 / bha.force_scale,
-        epsilon=bit.angular_steering_resistance / bit.lateral_steering_resistance,
+        w=w,
+        epsilon=epsilon(bit),
         psi_star=bit.tilt_limit,
     )
-    check_number(DERIVED["scaled_reach"], scaled.s[-1])
-    check_number(DERIVED["scaled_weight"], scaled.w)
-    check_number(DERIVED["epsilon"], scaled.epsilon, above=0.0)
-    check_number(DERIVED["inverse_epsilon"], 1 / scaled.epsilon)
-    return scaled
+
+
+def epsilon(bit: BitRock) -> float:
+    """ε = χ/η; `ParameterError` if it or its inverse is not finite, though χ and η are in their ranges."""
+    value = bit.angular_steering_resistance / bit.lateral_steering_resistance
+    check_number(DERIVED["epsilon"], value, above=0.0)
+    check_number(DERIVED["inverse_epsilon"], 1 / value)
+    return value
 
 
 def eta_pi(bha: BottomHoleAssembly, bit: BitRock, active_weight_on_bit: float) -> float:

@@ -217,7 +217,8 @@ class NativeDrilling:
         options: Options = Options(),  # noqa: B008 - frozen
     ) -> None:
         structure = bha.structure
-        given = values_of("bha", bha) | values_of("bit", bit) | {"relative_tolerance": options.relative_tolerance}
+        given = values_of("bha", bha) | {"relative_tolerance": options.relative_tolerance}
+        self.bit = bit
         self._names = scalar_names(OUTPUTS, structure)
         self._problem = ProblemInC()
         self._library = library()
@@ -228,7 +229,12 @@ class NativeDrilling:
             len(survey.measured_depth),
             numbers(survey.measured_depth),
             numbers(survey.inclination),
-            Inputs(rss_force=rss_force, active_weight_on_bit=active_weight_on_bit, weight_on_bit=weight_on_bit),
+            Inputs(
+                rss_force=rss_force,
+                active_weight_on_bit=active_weight_on_bit,
+                weight_on_bit=weight_on_bit,
+                **values_of("bit", bit),
+            ),
             self._problem,
         )
         self._check(self._run)
@@ -263,9 +269,17 @@ class NativeDrilling:
         rss_force_slope: float = 0.0,
         active_weight_on_bit_slope: float = 0.0,
         weight_on_bit: float = 0.0,
+        bit: BitRock | None = None,
     ) -> None:
         """Drill on under inputs from here, constant or linear in the drilled length, as `Drilling.advance`."""
-        inputs = [[rss_force, rss_force_slope, active_weight_on_bit, active_weight_on_bit_slope, weight_on_bit]]
+        acting = {
+            "rss_force": rss_force,
+            "rss_force_slope": rss_force_slope,
+            "active_weight_on_bit": active_weight_on_bit,
+            "active_weight_on_bit_slope": active_weight_on_bit_slope,
+            "weight_on_bit": weight_on_bit,
+        } | values_of("bit", bit or self.bit)
+        inputs = [[acting[name] for name in ACTING]]
         self.follow([drilled_length], inputs, [-1], np.empty((0, len(self._names))))
 
     def follow(

@@ -15,10 +15,11 @@ static inline double inclination_at(const Drilling *d, int i) {
 /* Change of an output, or of the one with this index, per metre drilled; NaN if it may jump or bend on the way. */
 static inline double output_slope(const Drilling *d, const Present *at, Output which, int i) {
     const Scaled *scaled = &d->integrator.scaled;
+    double epsilon = d->integrator.now.inputs.epsilon;
     switch (which) {
         case OUT_DRILLED_LENGTH: return 1.0;
         case OUT_BIT_INCLINATION: /* εηΠ θ' = M */
-            return row_value(&at->mode->M, &at->loads) / (scaled->epsilon * at->eta_pi * at->l1);
+            return row_value(&at->mode->M, &at->loads) / (epsilon * at->eta_pi * at->l1);
         case OUT_AVERAGE_INCLINATION: /* λ_i ⟨Θ⟩_i' = Θ(ξ − s_{i−1}) − Θ(ξ − s_i) */
             return ((i ? inclination_at(d, i - 1) : at->Theta) - inclination_at(d, i)) / (lambda_(scaled, i) * at->l1);
         case OUT_DISPLACEMENT: return sin(at->Theta);
@@ -27,12 +28,16 @@ static inline double output_slope(const Drilling *d, const Present *at, Output w
     }
 }
 
-/* Change of an output, or of the one with this index, per change of an input, in the regime where the bit is. */
-static inline double output_gain(const Drilling *d, const Present *at, Output which, int i, Input input) {
-    double by_force = input == IN_RSS_FORCE ? 1 / at->F_star : 0.0;                      /* of F_RSS */
-    double by_weight = input == IN_ACTIVE_WEIGHT_ON_BIT ? eta_pi(&d->system, 1.0) : 0.0; /* of ηΠ */
-    double F_0 = at->mode->F_0.rss * by_force, psi = 0.0;                                /* changes */
-    if (fabs(at->F_0 / at->eta_pi) <= d->integrator.scaled.psi_star) psi = (F_0 - at->psi * by_weight) / at->eta_pi;
+/* Change of an output, or of the one with this index, per change of an input, in the regime where the bit is; `eta` is the
+   lateral steering resistance. */
+static inline double output_gain(const Drilling *d, const Present *at, Output which, int i, Input input, double eta) {
+    double by_force = input == IN_RSS_FORCE ? 1 / at->F_star : 0.0; /* of F_RSS */
+    double of_eta_pi = input == IN_ACTIVE_WEIGHT_ON_BIT          ? eta_pi(&d->system, eta, 1.0)
+                       : input == IN_LATERAL_STEERING_RESISTANCE ? at->eta_pi / eta
+                                                                 : 0.0;
+    double F_0 = at->mode->F_0.rss * by_force, psi = 0.0; /* changes */
+    if (fabs(at->F_0 / at->eta_pi) <= d->integrator.now.inputs.psi_star) psi = (F_0 - at->psi * of_eta_pi) / at->eta_pi;
+    else if (input == IN_BIT_TILT_LIMIT) psi = at->psi > 0 ? 1.0 : -1.0;
     switch (which) {
         case OUT_BOREHOLE_INCLINATION: return -psi;
         case OUT_BIT_TILT: return psi;
@@ -41,7 +46,7 @@ static inline double output_gain(const Drilling *d, const Present *at, Output wh
         case OUT_BIT_LATERAL_FORCE: return F_0 * at->F_star;
         case OUT_BIT_MOMENT: return -at->mode->M.rss * by_force * at->F_star * at->l1;
         case OUT_BOREHOLE_CURVATURE: return -psi / at->l1;
-        case OUT_ETA_PI: return by_weight;
+        case OUT_ETA_PI: return of_eta_pi;
         default: return 0.0; /* those that only drilling changes */
     }
 }

@@ -16,8 +16,18 @@ typedef struct {
     Integrator integrator;
 } Drilling;
 
+/* Whether bit and rock are in their ranges, and ε = χ/η and its inverse finite. */
+static inline int check_rock(Inputs inputs, Problem *problem) {
+    double eta = inputs.lateral_steering_resistance, chi = inputs.angular_steering_resistance;
+    return check_quantity(&INPUT_TABLE[IN_LATERAL_STEERING_RESISTANCE], 0, eta, problem) &&
+           check_quantity(&INPUT_TABLE[IN_ANGULAR_STEERING_RESISTANCE], 0, chi, problem) &&
+           check_quantity(&INPUT_TABLE[IN_BIT_TILT_LIMIT], 0, inputs.bit_tilt_limit, problem) &&
+           check_positive(Q_EPSILON, chi / eta, problem) &&
+           check_finite(Q_INVERSE_EPSILON, 0, 1 / (chi / eta), problem);
+}
+
 static inline int check_inputs(Inputs inputs, Problem *problem) {
-    return check_quantity(&INPUT_TABLE[IN_RSS_FORCE], 0, inputs.rss_force, problem) &&
+    return check_rock(inputs, problem) && check_quantity(&INPUT_TABLE[IN_RSS_FORCE], 0, inputs.rss_force, problem) &&
            check_finite(Q_RSS_FORCE_SLOPE, 0, inputs.rss_force_slope, problem) &&
            check_quantity(&INPUT_TABLE[IN_ACTIVE_WEIGHT_ON_BIT], 0, inputs.active_weight_on_bit, problem) &&
            check_finite(Q_ACTIVE_WEIGHT_ON_BIT_SLOPE, 0, inputs.active_weight_on_bit_slope, problem);
@@ -46,12 +56,15 @@ static inline int check_weight(const Drilling *d, Inputs inputs, Problem *proble
 /* Make the inputs dimensionless; 0, and the problem, if these numbers, or the inputs, are out of range. */
 static inline int take_given(Drilling *d, Inputs inputs, Problem *problem) {
     const System *system = &d->system;
-    double F_star = force_scale(system);
+    double F_star = force_scale(system), eta = inputs.lateral_steering_resistance;
     if (!memcmp(&inputs, &d->given, sizeof inputs)) return 1;
     ScaledInputs scaled = {
-        inputs.rss_force / F_star, inputs.rss_force_slope * length_scale(system) / F_star,
-        eta_pi(system, inputs.active_weight_on_bit),
-        eta_pi(system, inputs.active_weight_on_bit_slope) * length_scale(system),
+        inputs.rss_force / F_star,
+        inputs.rss_force_slope * length_scale(system) / F_star,
+        eta_pi(system, eta, inputs.active_weight_on_bit),
+        eta_pi(system, eta, inputs.active_weight_on_bit_slope) * length_scale(system),
+        inputs.angular_steering_resistance / eta,
+        inputs.bit_tilt_limit,
         system->structure.axial ? whole_weight(inputs) / F_star : 0.0
     };
     if (!check_inputs(inputs, problem) || (system->structure.axial && !check_weight(d, inputs, problem)) ||
@@ -93,8 +106,7 @@ static inline Status drilling_prepare(
     if (!check_positive(Q_FORCE_SCALE, force_scale(system), problem)) return FAILED;
     Scaled scaled = scale(system);
     if (!check_finite(Q_SCALED_REACH, 0, scaled.s[scaled.n - 1], problem) ||
-        !check_finite(Q_SCALED_WEIGHT, 0, scaled.w, problem) || !check_positive(Q_EPSILON, scaled.epsilon, problem) ||
-        !check_finite(Q_INVERSE_EPSILON, 0, 1 / scaled.epsilon, problem))
+        !check_finite(Q_SCALED_WEIGHT, 0, scaled.w, problem))
         return FAILED;
     d->system = *system;
     d->drilled_length = 0.0;
@@ -171,7 +183,7 @@ static inline Present present(Drilling *d) {
     at.F_0 = row_value(&at.mode->F_0, &at.loads);
     contact_forces(at.mode, &at.loads, at.F);
     at.eta_pi = inputs_here(now).eta_pi;
-    at.psi = bit_tilt(at.F_0, at.eta_pi, p->scaled.psi_star);
+    at.psi = bit_tilt(at.F_0, at.eta_pi, now->inputs.psi_star);
     at.Theta = at.theta - at.psi;
     position(now, &at.x, &at.z);
     find_body(d, &at);
@@ -181,6 +193,7 @@ static inline Present present(Drilling *d) {
 /* One output, the value with this index if it has several. If an output of the table were missing, it would not compile. */
 static inline double output(const Drilling *d, const Present *at, Output which, int i) {
     const Scaled *scaled = &d->integrator.scaled;
+    const ScaledInputs *inputs = &d->integrator.now.inputs;
     const Loads *loads = &at->loads;
     double l1 = at->l1, F_star = at->F_star;
     switch (which) {
@@ -194,7 +207,7 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_STABILIZER_FORCE: return at->F[i] * F_star;
         case OUT_STABILIZER_CONTACT: return wall(at->F[i]);
         case OUT_BIT_TILT_SATURATION:
-            return side_beyond(at->F_0 / at->eta_pi, -scaled->psi_star, scaled->psi_star, ROUNDING);
+            return side_beyond(at->F_0 / at->eta_pi, -inputs->psi_star, inputs->psi_star, ROUNDING);
         case OUT_BIT_LATERAL_FORCE: return at->F_0 * F_star;
         case OUT_BIT_MOMENT: return -row_value(&at->mode->M, loads) * F_star * l1;
         case OUT_BOREHOLE_CURVATURE: return (at->Theta - at->earlier) / l1;

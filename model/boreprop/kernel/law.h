@@ -97,11 +97,11 @@ static inline void make_law(
     law->saturated = regime.saturation != 0;
     law->growth = inputs.eta_pi_slope / inputs.eta_pi;
     law->longest = law->growth == 0 ? INFINITY : LONGEST_RAMP / fabs(law->growth);
-    make_linear(&law->theta_rate, &mode->M, places, inputs, 1 / (scaled->epsilon * inputs.eta_pi));
+    make_linear(&law->theta_rate, &mode->M, places, inputs, 1 / (inputs.epsilon * inputs.eta_pi));
     of_tilt->part = n - 1;
     make_linear(&of_tilt->value, &mode->F_0, places, inputs, 1 / inputs.eta_pi);
-    saturation_bounds(regime.saturation, scaled->psi_star, &of_tilt->lower, &of_tilt->upper);
-    if (regime.saturation) less_limit(&law->Theta, regime.saturation * scaled->psi_star, count);
+    saturation_bounds(regime.saturation, inputs.psi_star, &of_tilt->lower, &of_tilt->upper);
+    if (regime.saturation) less_limit(&law->Theta, regime.saturation * inputs.psi_star, count);
     else less_tilt(&law->Theta, &of_tilt->value, count);
     law->relaxation = 1 / fabs(law->theta_rate.theta + law->Theta.Y);
     for (int i = 0; i < count; i++) {

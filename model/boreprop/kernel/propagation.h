@@ -15,9 +15,9 @@ static inline Loads present_loads(const Integrator *p) {
 }
 
 /* Θ under given loads, eq. (16): algebraic, so it jumps with the inputs. */
-static inline double inclination_under(Integrator *p, double theta, const Loads *loads, double eta_pi) {
+static inline double inclination_under(Integrator *p, double theta, const Loads *loads, ScaledInputs inputs) {
     const Mode *mode = settle(&p->modes, loads, p->now.regime.contact);
-    return theta - bit_tilt(row_value(&mode->F_0, loads), eta_pi, p->scaled.psi_star);
+    return theta - bit_tilt(row_value(&mode->F_0, loads), inputs.eta_pi, inputs.psi_star);
 }
 
 /* Θ as it was when the bit was at `xi`, at most LOOK_BACK behind; where Θ jumped, its value after the jump. */
@@ -33,7 +33,7 @@ static inline double earlier_inclination(Integrator *p, double xi) {
     ScaledInputs inputs = inputs_ahead(at->inputs, ahead);
     Loads loads = loads_at(p, at->start + ahead, x, inputs.F_rss);
     bear(p, inputs.W);
-    double Theta = inclination_under(p, x[ANGLE], &loads, inputs.eta_pi);
+    double Theta = inclination_under(p, x[ANGLE], &loads, inputs);
     bear(p, p->now.inputs.W);
     return Theta;
 }
@@ -58,7 +58,7 @@ static inline Status restart(
     if (p->scaled.points && touch_down(p, now->xi, x, problem) != DONE) return FAILED;
     Loads loads = loads_at(p, now->xi, x, inputs.F_rss);
     const Mode *mode = settle(&p->modes, &loads, now->regime.contact);
-    double F_0 = row_value(&mode->F_0, &loads), psi_star = p->scaled.psi_star;
+    double F_0 = row_value(&mode->F_0, &loads), psi_star = inputs.psi_star;
     double jump = fabs(x[ANGLE] - bit_tilt(F_0, inputs.eta_pi, psi_star) - Theta);
     if (!isfinite(jump) || !isfinite(F_0)) return failed(p, NOT_FINITE, now->xi, problem);
     Regime regime = {mode->contact, side_beyond(F_0 / inputs.eta_pi, -psi_star, psi_star, ROUNDING)};
@@ -71,7 +71,8 @@ static inline Status restart(
     return DONE;
 }
 
-/* Take over inputs on the way: the path up to the bit, and the jump of curvature where a slope changes, count too. */
+/* Take over inputs on the way: the path up to the bit, and the jump of curvature where a slope
+   or ε changes, count too. */
 static inline Status steer(Integrator *p, ScaledInputs inputs, Problem *problem) {
     State *now = &p->now;
     ScaledInputs before = inputs_here(now);
@@ -79,14 +80,23 @@ static inline Status steer(Integrator *p, ScaledInputs inputs, Problem *problem)
     double x[COMPONENTS];
     Loads loads = present_loads(p);
     step_state(&now->step, now->xi, x);
-    double Theta = inclination_under(p, x[ANGLE], &loads, before.eta_pi);
+    double Theta = inclination_under(p, x[ANGLE], &loads, before);
     move_path(now, now->xi);
     Status status = restart(p, inputs, x, Theta, problem);
-    if (status != DONE || (bend == 0 && turn == 0) || now->regime.saturation) return status;
+    int on_ramp = (bend != 0 || turn != 0) && !now->regime.saturation, turns_anew = inputs.epsilon != before.epsilon;
+    if (status != DONE || !(on_ramp || turns_anew)) return status;
     loads = loads_at(p, now->xi, x, inputs.F_rss);
-    const Mode *mode = mode_of(&p->modes, now->regime.contact); /* (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ */
-    double psi = row_value(&mode->F_0, &loads) / inputs.eta_pi;
-    add_kink(&now->kinks, p->scaled.n, now->xi, 2, fabs((bend * mode->F_0.rss - turn * psi) / inputs.eta_pi));
+    const Mode *mode = mode_of(&p->modes, now->regime.contact);
+    double bent = 0.0; /* jump of Θ' = θ' − ψ' */
+    if (turns_anew) {  /* θ' = M/(εηΠ) */
+        double rate = row_value(&mode->M, &loads) / inputs.eta_pi * (1 / inputs.epsilon - 1 / before.epsilon);
+        bent = present_law(p)->Theta.theta * rate;
+    }
+    if (on_ramp) { /* (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ */
+        double psi = row_value(&mode->F_0, &loads) / inputs.eta_pi;
+        bent -= (bend * mode->F_0.rss - turn * psi) / inputs.eta_pi;
+    }
+    if (bent != 0) add_kink(&now->kinks, p->scaled.n, now->xi, 2, fabs(bent));
     return DONE;
 }
 
@@ -96,6 +106,7 @@ static inline Status drill(Integrator *p, double xi, ScaledInputs inputs, Proble
     int changed = inputs.F_rss != now->inputs.F_rss || inputs.eta_pi != now->inputs.eta_pi;
     if (are_ramps(&inputs) || are_ramps(&now->inputs))
         changed = !same_ramps(inputs_here(now), inputs, xi > now->xi ? xi - now->xi : 1.0);
+    changed |= inputs.epsilon != now->inputs.epsilon || inputs.psi_star != now->inputs.psi_star;
     changed |= inputs.W != now->inputs.W;
     if (changed || xi > now->step.end) {
         if (!set_out(p)) return FULL;

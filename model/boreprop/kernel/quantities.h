@@ -8,14 +8,14 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "148e4c1ea9bf7620" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "4608dca38b1ec705" /* of this file, but for this line, and of problems.h */
 #define MOST_DRILLED 100000.0 /* m in a communication step */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: forces between closer ones are rounding errors */
 #define POINTS_ALONG_BHA 36 /* at which its distance from the hole is looked at */
 #define OFTEN 0.125 /* of its length, at most, from look to look */
 
 enum { MAX_STABILIZERS = 6, MAX_SECTIONS = 24, MAX_POINTS = 128 };
-enum { PARAMETER_COUNT = 15, INPUT_COUNT = 4, OUTPUT_COUNT = 18 };
+enum { PARAMETER_COUNT = 12, INPUT_COUNT = 7, OUTPUT_COUNT = 18 };
 
 /* How a drilling system is made up, which says how many values each quantity has. */
 typedef struct {
@@ -38,9 +38,6 @@ typedef struct {
     double body_point_position[MAX_POINTS]; /* m: where the body between the stabilizers may touch the wall, from the bit */
     double body_point_clearance[MAX_POINTS]; /* m: clearance between the body there and the wall on each side */
     double end_deflection; /* m: offset of the BHA from the borehole axis at the last stabilizer, positive to the high side */
-    double lateral_steering_resistance; /* lateral over axial drilling resistance */
-    double angular_steering_resistance; /* angular over axial drilling resistance */
-    double bit_tilt_limit; /* rad: tilt at which the bit gauge meets the wall */
     double relative_tolerance; /* local error allowed in one step of the integrator, relative to 1 rad and ℓ₁ */
 } System;
 
@@ -50,6 +47,9 @@ typedef struct {
     double rss_force_slope; /* N/m: its change per metre drilled */
     double active_weight_on_bit; /* N: weight on bit that goes into drilling */
     double active_weight_on_bit_slope; /* N/m: its change per metre drilled */
+    double lateral_steering_resistance; /* lateral over axial drilling resistance */
+    double angular_steering_resistance; /* angular over axial drilling resistance */
+    double bit_tilt_limit; /* rad: tilt at which the bit gauge meets the wall */
     double weight_on_bit; /* N: all of the weight on bit, which presses the BHA along its axis; 0: the active weight */
 } Inputs;
 
@@ -76,17 +76,17 @@ static const Quantity PARAMETER_TABLE[PARAMETER_COUNT] = {
     {Q_BODY_POINT_POSITION, EACH_POINT, offsetof(System, body_point_position), 0.0, -INFINITY, INFINITY},
     {Q_BODY_POINT_CLEARANCE, EACH_POINT, offsetof(System, body_point_clearance), 0.0, -INFINITY, INFINITY},
     {Q_END_DEFLECTION, IF_STEPPED, offsetof(System, end_deflection), -INFINITY, -INFINITY, INFINITY},
-    {Q_LATERAL_STEERING_RESISTANCE, ONE, offsetof(System, lateral_steering_resistance), 0.0, -INFINITY, INFINITY},
-    {Q_ANGULAR_STEERING_RESISTANCE, ONE, offsetof(System, angular_steering_resistance), 0.0, -INFINITY, INFINITY},
-    {Q_BIT_TILT_LIMIT, ONE, offsetof(System, bit_tilt_limit), 0.0, -INFINITY, 1.5707963267948966},
     {Q_RELATIVE_TOLERANCE, ONE, offsetof(System, relative_tolerance), -INFINITY, 1e-12, 0.01},
 };
 
-typedef enum { IN_RSS_FORCE, IN_ACTIVE_WEIGHT_ON_BIT, IN_RATE_OF_PENETRATION, IN_WEIGHT_ON_BIT } Input;
+typedef enum { IN_RSS_FORCE, IN_ACTIVE_WEIGHT_ON_BIT, IN_RATE_OF_PENETRATION, IN_LATERAL_STEERING_RESISTANCE, IN_ANGULAR_STEERING_RESISTANCE, IN_BIT_TILT_LIMIT, IN_WEIGHT_ON_BIT } Input;
 static const Quantity INPUT_TABLE[INPUT_COUNT] = {
     {Q_RSS_FORCE, ONE, 0, -INFINITY, -INFINITY, INFINITY},
     {Q_ACTIVE_WEIGHT_ON_BIT, ONE, 0, 0.0, -INFINITY, INFINITY},
     {Q_RATE_OF_PENETRATION, ONE, 0, -INFINITY, 0.0, INFINITY},
+    {Q_LATERAL_STEERING_RESISTANCE, ONE, 0, 0.0, -INFINITY, INFINITY},
+    {Q_ANGULAR_STEERING_RESISTANCE, ONE, 0, 0.0, -INFINITY, INFINITY},
+    {Q_BIT_TILT_LIMIT, ONE, 0, 0.0, -INFINITY, 1.5707963267948966},
     {Q_WEIGHT_ON_BIT, IF_AXIAL, 0, -INFINITY, 0.0, INFINITY},
 };
 
@@ -152,7 +152,7 @@ static const Name OUTPUT_NAME[OUTPUT_COUNT] = {
     Q_ETA_PI,
 };
 static const int OUTPUT_IS_WHOLE[OUTPUT_COUNT] = { 0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0 };
-enum { MOST_PARAMETERS = 347, MOST_OUTPUTS = 35 }; /* values, of the largest assembly */
+enum { MOST_PARAMETERS = 344, MOST_OUTPUTS = 35 }; /* values, of the largest assembly */
 
 /* How the integrator takes its steps: core/options.py says what each is. */
 typedef struct {

@@ -86,6 +86,8 @@ static inline void pass_snapshot(Tape *tape, const Scaled *scaled, Snapshot *sna
     pass(tape, 1, &now->inputs.F_rss_slope);
     pass(tape, 1, &now->inputs.eta_pi);
     pass(tape, 1, &now->inputs.eta_pi_slope);
+    pass(tape, 1, &now->inputs.epsilon);
+    pass(tape, 1, &now->inputs.psi_star);
     pass(tape, 1, &now->inputs.W);
     pass(tape, 1, &now->cosine);
     pass(tape, 1, &now->inputs_xi);
@@ -144,6 +146,7 @@ static inline int is_consistent(const Drilling *d, const Snapshot *snapshot) {
     double xi = now->xi, eta_pi = inputs_here(now).eta_pi;
     if (!(fabs(snapshot->drilled_length / length_scale(&d->system) - xi) <= ROUNDING_OF_XI * xi)) return 0;
     if (!(eta_pi > 0) || !isfinite(1 / eta_pi) || now->inputs_xi > xi) return 0;
+    if (!(now->inputs.epsilon > 0) || !isfinite(1 / now->inputs.epsilon) || !(now->inputs.psi_star > 0)) return 0;
     if (d->system.structure.axial ? !(now->inputs.W > 0) || !(fabs(now->cosine) <= 1)
                                   : now->inputs.W != 0 || now->cosine != 0)
         return 0;

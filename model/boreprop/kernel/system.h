@@ -32,8 +32,6 @@ typedef struct {
     double section_w[MAX_SECTIONS];    /* its w̃ */
     double end_deflection;             /* δ_n */
     int stepped, axial;                /* whether the beam has sections or bears an axial load; whether it bears one */
-    double epsilon;                    /* ε = χ/η */
-    double psi_star;                   /* ψ*, rad */
 } Scaled;
 
 /* How many values a quantity has. */
@@ -146,10 +144,10 @@ static inline double force_scale(const System *system) {
     return 3.0 * system->flexural_stiffness / (length_scale(system) * length_scale(system));
 }
 
-/* The inputs where they were taken over: F_RSS and ηΠ, their changes per ξ, and the weight on the bit W, which is zero if
-   the axial load does not count. */
+/* The inputs where they were taken over: F_RSS and ηΠ, their changes per ξ, the ε = χ/η and ψ* of bit and rock, and the
+   weight on the bit W, which is zero if the axial load does not count. */
 typedef struct {
-    double F_rss, F_rss_slope, eta_pi, eta_pi_slope, W;
+    double F_rss, F_rss_slope, eta_pi, eta_pi_slope, epsilon, psi_star, W;
 } ScaledInputs;
 
 /* The inputs a length `ahead` of where they were taken over. */
@@ -210,15 +208,13 @@ static inline Scaled scale(const System *system) {
     for (int i = 0; i < scaled.n - 1; i++) scaled.y_star[i] = system->stabilizer_clearance[i] / l1;
     scaled.Delta = system->rss_position / l1;
     scaled.w = system->distributed_weight * l1 / force_scale(system);
-    scaled.epsilon = system->angular_steering_resistance / system->lateral_steering_resistance;
-    scaled.psi_star = system->bit_tilt_limit;
     scale_sections(system, &scaled);
     return scaled;
 }
 
 /* ηΠ, the active weight on bit (N) over F*, times the lateral steering resistance. */
-static inline double eta_pi(const System *system, double active_weight_on_bit) {
-    return system->lateral_steering_resistance * active_weight_on_bit / force_scale(system);
+static inline double eta_pi(const System *system, double lateral_steering_resistance, double active_weight_on_bit) {
+    return lateral_steering_resistance * active_weight_on_bit / force_scale(system);
 }
 
 #endif

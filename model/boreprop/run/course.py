@@ -49,6 +49,11 @@ class Course:
             slopes[:, i] = slope[entry]
         return cls(tuple(profiles), starts, values, slopes)
 
+    def changes(self, name: str) -> bool:
+        """Whether an input is not the same on all pieces."""
+        values = self.values[:, self.names.index(name)]
+        return bool((values != values[0]).any())
+
     def at(self, length: Floats, piece: NDArray[np.intc]) -> Floats:
         """The inputs at drilled lengths, m, each on the piece of that number; shape (lengths, inputs)."""
         values: Floats = np.take(self.values, piece, axis=0)

@@ -11,7 +11,8 @@ from ..case.case import Case
 from ..core.drilling import Drilling
 from ..core.errors import ParameterError
 from ..core.options import Options, Statistics
-from ..core.quantities import ACTING
+from ..core.quantities import ACTING, values_of
+from ..core.system import BitRock
 from ..kernel.binding import NativeDrilling, available, why_not
 
 
@@ -21,6 +22,8 @@ class Engine(Protocol):
     Bad inputs raise `ParameterError`, an obstacle on the way `CannotContinue`; nothing has changed then. The same
     problem has the same code, quantity, index, value, place and sentence with every engine.
     """
+
+    bit: BitRock
 
     @property
     def drilled_length(self) -> float:
@@ -39,6 +42,7 @@ class Engine(Protocol):
         rss_force_slope: float = 0.0,
         active_weight_on_bit_slope: float = 0.0,
         weight_on_bit: float = 0.0,
+        bit: BitRock | None = None,
     ) -> None:
         """Drill on under inputs from here, constant or linear in the drilled length."""
 
@@ -62,10 +66,12 @@ DRILLING: dict[str, Callable[..., Engine]] = {"native": NativeDrilling, "python"
 ENGINES = ("auto", *DRILLING)
 
 
-def held(legs: int, rss_force: float | Floats, weight: float) -> Floats:
+def held(legs: int, rss_force: float | Floats, weight: float, bit: BitRock) -> Floats:
     """Inputs, N, that are constant along each leg, as `Engine.follow` takes them, (legs, inputs)."""
     inputs = np.zeros((legs, len(ACTING)))
-    inputs[:, ACTING.index("rss_force")], inputs[:, ACTING.index("active_weight_on_bit")] = rss_force, weight
+    acting = {"rss_force": rss_force, "active_weight_on_bit": weight, **values_of("bit", bit)}
+    for name, value in acting.items():
+        inputs[:, ACTING.index(name)] = value
     return inputs
 
 

@@ -10,7 +10,7 @@ from ..case.case import Case
 from ..core.checks import check_number
 from ..core.errors import CannotContinue
 from ..core.options import RELATIVE_TOLERANCE, Options
-from ..core.quantities import OUTPUTS, scalar_names
+from ..core.quantities import OUTPUTS, ROCK, scalar_names
 from .course import Course, acting, course_of
 from .engines import chosen, start
 from .trajectory import Stopped, Trajectory
@@ -55,8 +55,8 @@ def simulate(
     Returns
     -------
     Trajectory
-        Columns `rss_force`, `active_weight_on_bit` and whatever else the case schedules, and one for every output of
-        the table of quantities, shape (rows,), SI units.
+        Columns `rss_force`, `active_weight_on_bit` and whatever else the case schedules, of bit and rock what changes,
+        and one for every output of the table of quantities, shape (rows,), SI units.
 
     Raises
     ------
@@ -97,7 +97,11 @@ def simulate(
     outputs = np.ascontiguousarray(table[:drilled].T)  # a run is read column by column
     on_rows = rows >= 0
     given = course.at(lengths[on_rows], pieces[on_rows])[:drilled].T.copy()
-    columns = dict(zip(course.names, given, strict=True))
+    columns = {
+        name: values
+        for name, values in zip(course.names, given, strict=True)
+        if name not in ROCK or course.changes(name)
+    }
     stopped = f"after {drilling.drilled_length:g} m of {length:g} m: {failure}" if failure else None
     trajectory = Trajectory(columns | dict(zip(names, outputs, strict=True)), case, stopped, engine)
     if stopped:
