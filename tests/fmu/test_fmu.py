@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from boreprop.case.case import Case, Schedule
-from boreprop.core.quantities import OUTPUTS, quantity_of, scalar_names
+from boreprop.core.quantities import OUTPUTS, ROCK, quantity_of, scalar_names
 from boreprop.core.survey import Survey
 from boreprop.core.system import BottomHoleAssembly
 from boreprop.run.results import read_trajectory
@@ -155,6 +155,7 @@ def test_the_command_runs_the_packed_schedule_exactly_whatever_the_step(
         "rss_force",
         "active_weight_on_bit",
         "rate_of_penetration",
+        *ROCK,
         *scalar_names(OUTPUTS, 2),
     ]
     np.testing.assert_allclose(run["time"], 1.5 * np.arange(14), rtol=0, atol=0)

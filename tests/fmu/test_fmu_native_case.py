@@ -75,7 +75,7 @@ def test_a_folder_that_is_none_is_refused(start: Start, folder: Path) -> None:
         (
             "stabilizers 2",
             "stabilizers 1",
-            "case.txt:11: must be 'rss_position' and a value, got 'stabilizer_position[2",
+            "case.txt:14: must be 'rss_position' and a value, got 'stabilizer_position[2",
         ),
         ("stabilizers 2", "stabilizers 1.5", "case.txt:3: stabilizers: must be 1 to 6, got 1.5"),
         ("sections 0", "sections 25", "case.txt:4: sections: must be 0 to 24, got 25.0"),

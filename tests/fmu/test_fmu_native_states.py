@@ -9,7 +9,7 @@ import pytest
 from fmpy.fmi2 import fmi2FMUstate
 from test_fmu_c_host import COMPILER
 
-from boreprop.core.quantities import VARIABLES, scalar_names
+from boreprop.core.quantities import INPUTS, VARIABLES, scalar_names
 from fmu_host import Instance
 from native_fmu import ramp, refused
 
@@ -34,9 +34,9 @@ def test_a_state_that_is_not_whole_and_its_own_is_refused_and_changes_nothing(on
     one.initialize(rss_force=1e3)
     one.steps(5, 0.9)
     state = one.state()
-    assert state.startswith(b"boreprop-native-fmu-state-4 " + one.description.guid.encode())
+    assert state.startswith(b"boreprop-native-fmu-state-5 " + one.description.guid.encode())
     for content in spoilt(state).values():
-        with refused(one, "state: must be one of this FMU, boreprop-native-fmu-state-4 "):
+        with refused(one, "state: must be one of this FMU, boreprop-native-fmu-state-5 "):
             one.set_state(content)
         assert one.state() == state
 
@@ -46,8 +46,17 @@ def test_what_no_run_can_have_saved_is_refused_though_its_checksum_is_right(one:
     one.steps(5, 0.9)
     state = one.state()
     head, body = state.split(b"\n", 1)
-    run = 12 + len(scalar_names(VARIABLES, 2))  # where the numbers of the run begin
-    for at, number in ((0, 3.0), (9, nan), (11, 1e300), (11, nan), (run, nan), (run + 1, -1.0), (run + 19, inf)):
+    run = 9 + len(INPUTS) + len(scalar_names(VARIABLES, 2))  # where the numbers of the run begin
+    for at, number in (
+        (0, 3.0),
+        (6, nan),
+        (8, 1e300),
+        (8, nan),
+        (run, nan),
+        (run + 1, -1.0),
+        (run + 17, -1.0),
+        (run + 21, inf),
+    ):
         spoilt_body = body[: 8 * at] + np.array([number], "<f8").tobytes() + body[8 * at + 8 :]
         checksum = 0xCBF29CE484222325
         for byte in spoilt_body:

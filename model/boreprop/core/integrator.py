@@ -183,6 +183,8 @@ class Integrator:
         if (bend or turn) and not self.regime.saturation:  # (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ
             psi = mode.F_0(loads) / inputs.eta_pi
             bent -= (bend * mode.F_0.rss - turn * psi) / inputs.eta_pi
+        if not isfinite(bent):
+            raise self._failure("not finite", self.xi)
         if bent:
             self.kinks.add_images(self.xi, 2, abs(bent))
 

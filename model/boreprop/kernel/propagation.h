@@ -96,6 +96,7 @@ static inline Status steer(Integrator *p, ScaledInputs inputs, Problem *problem)
         double psi = row_value(&mode->F_0, &loads) / inputs.eta_pi;
         bent -= (bend * mode->F_0.rss - turn * psi) / inputs.eta_pi;
     }
+    if (!isfinite(bent)) return failed(p, NOT_FINITE, now->xi, problem);
     if (bent != 0) add_kink(&now->kinks, p->scaled.n, now->xi, 2, fabs(bent));
     return DONE;
 }

@@ -5,6 +5,6 @@ from .drilling_before import Drilling as DrillingBefore
 
 
 class Drilling(DrillingBefore):
-    def advance(self, drilled_length, rss_force, *others):
+    def advance(self, drilled_length, rss_force, *others, **more):
         1 / (rss_force - 13.0)
-        return super().advance(drilled_length, rss_force, *others)
+        return super().advance(drilled_length, rss_force, *others, **more)
