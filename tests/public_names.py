@@ -25,6 +25,7 @@ OTHERS = (
     "BorepropError",
     "BottomHoleAssembly",
     "Case",
+    "Formation",
     "InputSchedule",
     "Schedule",
     "Stopped",

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from .case.case import InputSchedule as InputSchedule
     from .case.case import Schedule as Schedule
     from .case.file import load_case as load_case
+    from .case.formations import Formation as Formation
     from .case.paper import paper_case as paper_case
     from .core.errors import BorepropError as BorepropError
     from .core.survey import Survey as Survey
@@ -48,6 +49,7 @@ _HOMES = {  # public name → module
     "BorepropError": "core.errors",
     "BottomHoleAssembly": "core.system",
     "Case": "case.case",
+    "Formation": "case.formations",
     "InputSchedule": "case.case",
     "Schedule": "case.case",
     "Stopped": "run.trajectory",

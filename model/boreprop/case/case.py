@@ -12,6 +12,7 @@ from ..core.errors import ParameterError
 from ..core.quantities import BY_NAME, INPUTS
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly, eta_pi
+from .formations import Formation
 
 CLOSE = 0.005  # m: depths are given to the centimetre, so a first entry this little beyond the bit is at it
 
@@ -228,11 +229,14 @@ class Case:
         the properties of `bit`, which are then those at the start.
     weight_on_bit
         All of the weight on bit, N, which presses a BHA with `axial_load`; 0: it is the active weight on bit.
+    formations
+        Bit and rock from increasing measured depths on, in place of `bit`, which is then the one at the start.
 
     Raises
     ------
     ParameterError
-        If the diameter, the weight or the length is not finite and positive, or the diameter is beyond 1.5 m.
+        If the diameter, the weight or the length is not finite and positive, the diameter is beyond 1.5 m, the depths
+        of formations do not increase, or they give what `inputs` gives.
 
     Examples
     --------
@@ -251,8 +255,10 @@ class Case:
     schedule: Schedule = Schedule()
     inputs: InputSchedule | None = None
     weight_on_bit: float = 0.0
+    formations: tuple[Formation, ...] = ()
 
     def __post_init__(self) -> None:
+        check_increasing("measured_depth", tuple(formation.measured_depth for formation in self.formations))
         self._take_first_inputs()
         check_part("", self)
         if self.weight_on_bit:
@@ -260,15 +266,33 @@ class Case:
 
     def _take_first_inputs(self) -> None:
         """Let weights and bit be those at the start where they are scheduled."""
-        bit = {}
-        for name, values in self.inputs.inputs if self.inputs else ():
+        scheduled, bit = dict(self.inputs.inputs) if self.inputs else {}, {}
+        for name, values in scheduled.items():
             quantity = BY_NAME[name]
             if quantity.part == "bit":
                 bit[quantity.attribute] = values[0]
             elif quantity.field and not quantity.part:
                 object.__setattr__(self, quantity.attribute, values[0])
+        for formation in self.formations:
+            for name, value in formation.values.items():
+                if name in scheduled:
+                    raise ParameterError(name, "must be given by formations or a schedule, not by both", value)
+                if formation.measured_depth <= self.survey.measured_depth[-1] + CLOSE:
+                    bit[BY_NAME[name].attribute] = value
         if bit:
             object.__setattr__(self, "bit", replace(self.bit, **bit))
+
+    def _in_formations(self) -> dict[str, Profile]:
+        """What bit and rock are like over the drilled length, by name, as far as formations say it."""
+        found: dict[str, Profile] = {}
+        for name in {name: 0 for formation in self.formations for name in formation.values}:
+            entries = {0.0: float(attrgetter(BY_NAME[name].field)(self))}
+            for formation in self.formations:
+                ahead = formation.measured_depth - self.survey.measured_depth[-1]
+                if ahead > CLOSE and name in formation.values:
+                    entries[ahead] = formation.values[name]
+            found[name] = Profile(tuple(entries), tuple(entries.values()))
+        return found
 
     def profiles(self) -> dict[str, Profile]:
         """Each input that the case gives over the drilled length, by name."""
@@ -278,7 +302,7 @@ class Case:
             if quantity.field and quantity.part != "schedule" and quantity.count(self.bha.structure)
         }
         scheduled = self.inputs.profiles() if self.inputs else {}
-        return {"rss_force": self.schedule.profile()} | constant | scheduled
+        return {"rss_force": self.schedule.profile()} | constant | self._in_formations() | scheduled
 
     @property
     def length_scale(self) -> float:

@@ -4,7 +4,6 @@ A file has angles in degrees, a `Case` in radians. The table of quantities says 
 the case.
 """
 
-from math import degrees, radians
 from operator import attrgetter
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ from ..core.columns import regular
 from ..core.quantities import QUANTITIES
 from ..errors import InputError
 from .case import Case
+from .formations import file_degrees, formations_in_file
 from .schema import OF_FILES, TABLES, Read, parse, read_toml
 from .sections import sections_in_file
 
@@ -134,7 +134,7 @@ def dump_case(case: Case, **run: str | None) -> str:
         Facts about a run of the case, written to the table [run]: ``engine``, and ``stopped``, the reason why the run
         ended early. None is not written. `read_run` gives them back.
     """
-    document: dict[str, dict[str, Any]] = {table: {} for table in TABLES if table != "run"}
+    document: dict[str, Any] = {table: {} for table in TABLES if table != "run"}
     for quantity in QUANTITIES:
         there = quantity.size == "n-1" or quantity.count(case.bha.structure)  # no clearances are an empty list
         if quantity.key and quantity.field and there:
@@ -143,7 +143,7 @@ def dump_case(case: Case, **run: str | None) -> str:
             if value == quantity.start:
                 continue
             written = (
-                _file_degrees if key.endswith("_deg") else {"String": str, "Boolean": bool}.get(quantity.kind, float)
+                file_degrees if key.endswith("_deg") else {"String": str, "Boolean": bool}.get(quantity.kind, float)
             )
             columns = document.setdefault(table, {})
             columns[key] = list(map(written, value)) if isinstance(value, tuple) else written(value)
@@ -154,13 +154,9 @@ def dump_case(case: Case, **run: str | None) -> str:
         document["drilling"]["schedule"] = {name: list(map(float, values)) for name, values in entries.items()}
         if case.inputs.interpolation != "held":
             document["drilling"]["interpolation"] = case.inputs.interpolation
+    if case.formations:
+        document["formation"] = formations_in_file(case.formations)
     facts = {key: text for key, text in run.items() if text is not None}
     if facts:
         document["run"] = facts
     return tomli_w.dumps(document)
-
-
-def _file_degrees(angle: float) -> float:
-    """`angle`, rad, in degrees: a number of ten decimals or fewer if that reads back as the same angle."""
-    short = round(degrees(angle), 10)
-    return short if radians(short) == angle else degrees(angle)

@@ -52,7 +52,8 @@ def with_parameters(case: Case, values: Mapping[str, float]) -> Case:
     }
     if "schedule" in changed:
         parts["schedule"] = Schedule((0.0,), (wanted["rss_force"],))
-    inputs = case.inputs
+    inputs, formations = case.inputs, case.formations
     for name in values:
         inputs = inputs and inputs.without(name)
-    return replace(case, **parts, inputs=inputs, **fields_of("", wanted, structure))
+        formations = tuple(left for formation in formations if (left := formation.without(name)))
+    return replace(case, **parts, inputs=inputs, formations=formations, **fields_of("", wanted, structure))

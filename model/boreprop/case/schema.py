@@ -24,6 +24,7 @@ from ..core.survey import Survey
 from ..errors import InputError, shown
 from .body import place_points
 from .case import CLOSE, INTERPOLATIONS, Case, Schedule
+from .formations import lift_formations
 from .schedules import LENGTHS, NAMES_OF_INPUTS, force_schedule, input_schedule
 from .sections import lift_sections
 from .tables import BY_KEY, read_inputs, read_schedule, read_survey
@@ -69,6 +70,7 @@ class Read(NamedTuple):
 def parse(text: str, source: Path) -> Read:
     """See `boreprop.case.file.parse_case`."""
     document = read_toml(text, source)
+    formations = lift_formations(document, source)
     lift_sections(document, source)
     place_points(document, source)
     check_keys(document, source)
@@ -83,7 +85,10 @@ def parse(text: str, source: Path) -> Read:
         case = replace(case, schedule=_force(document, bit, source))
     if "schedule" in document["drilling"]:
         case = _with_inputs(case, document, bit, source)
-    return Read(case, notes)
+    try:
+        return Read(replace(case, formations=formations), notes)
+    except ParameterError as error:
+        raise InputError(f"{source}: formation: {error}") from error
 
 
 def _force(document: Document, bit_depth: float, source: Path) -> Schedule:

@@ -184,7 +184,7 @@ class Drilling:
         loads = p.loads()
         mode = p.settled(loads)
         F, delta, F_0 = [row(loads) for row in mode.F], [row(loads) for row in mode.delta], mode.F_0(loads)
-        psi = bit_tilt(F_0, p.eta_pi, p.psi_star)
+        psi = bit_tilt(F_0, p.eta_pi, p.inputs.psi_star)
         Theta = theta - psi
         # λ_i (⟨Θ⟩_i − θ) = e_i − e_{i−1}
         offsets = [0.0, *loads.e]
@@ -201,7 +201,7 @@ class Drilling:
         values |= {f"stabilizer_force[{i}]": f * F_star for i, f in enumerate(F, 1)}
         values |= {f"stabilizer_contact[{i}]": wall(f) for i, f in enumerate(F, 1)}
         return values | {
-            "bit_tilt_saturation": saturation(F_0, p.eta_pi, p.psi_star),
+            "bit_tilt_saturation": saturation(F_0, p.eta_pi, p.inputs.psi_star),
             "bit_lateral_force": F_0 * F_star,
             "bit_moment": -mode.M(loads) * F_star * l1,
             "borehole_curvature": (Theta - p.earlier_inclination(p.xi - 1.0)) / l1,

@@ -18,7 +18,7 @@ from .events import Event, first_event
 from .hole import Drilled, Hole
 from .inputs import Inputs
 from .kinks import MERGE, SMOOTHEST_KINK, Kinks
-from .law import Law, Laws
+from .law import Law, Laws, bend
 from .modes import ROUNDING, Loads, Mode, Modes, Regime, bit_tilt, saturation
 from .options import Options, Statistics
 from .problems import Problem
@@ -175,14 +175,7 @@ class Integrator:
         self.present = Step.standstill(self.xi, theta, Y)
         loads = loads._replace(F_rss=inputs.F_rss)
         self._restart(loads, inputs, Theta)
-        bend, turn = inputs.F_rss_slope - before.F_rss_slope, inputs.eta_pi_slope - before.eta_pi_slope
-        mode, bent = self.modes[self.regime.contact], 0.0  # jump of Θ' = θ' − ψ'
-        if inputs.epsilon != before.epsilon:  # θ' = M/(εηΠ)
-            rate = mode.M(loads) / inputs.eta_pi * (1 / inputs.epsilon - 1 / before.epsilon)
-            bent = self._law.Theta.theta * rate
-        if (bend or turn) and not self.regime.saturation:  # (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ
-            psi = mode.F_0(loads) / inputs.eta_pi
-            bent -= (bend * mode.F_0.rss - turn * psi) / inputs.eta_pi
+        bent = bend(self._law, self.modes[self.regime.contact], loads, before, inputs)
         if not isfinite(bent):
             raise self._failure("not finite", self.xi)
         if bent:
@@ -202,11 +195,6 @@ class Integrator:
     def eta_pi(self) -> float:
         """ηΠ where the bit is."""
         return self._inputs_here().eta_pi
-
-    @property
-    def psi_star(self) -> float:
-        """ψ* where the bit is."""
-        return self.inputs.psi_star
 
     def state(self) -> tuple[float, float]:
         """θ and Y (counted from the start of the run) at the bit."""

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from .inputs import Inputs
 from .linear import dot, ratio, total
-from .modes import Modes, Regime, Row
+from .modes import Loads, Mode, Modes, Regime, Row
 from .radau import Jacobian
 
 LONGEST_RAMP = 0.1  # by which share ηΠ changes within a step, at most: it then takes about six iterations
@@ -203,3 +203,15 @@ class Laws:
         if regime not in self._made:
             self._made[regime] = Law(self._modes, regime, self._inputs, self._xi)
         return self._made[regime]
+
+
+def bend(law: Law, mode: Mode, loads: Loads, before: Inputs, inputs: Inputs) -> float:
+    """The jump of Θ' = θ' − ψ' where a slope of the inputs, or ε, changes; `law` is that beyond it."""
+    jump = 0.0
+    if inputs.epsilon != before.epsilon:  # θ' = M/(εηΠ)
+        jump = law.Theta.theta * mode.M(loads) / inputs.eta_pi * (1 / inputs.epsilon - 1 / before.epsilon)
+    force, stiffness = inputs.F_rss_slope - before.F_rss_slope, inputs.eta_pi_slope - before.eta_pi_slope
+    if (force or stiffness) and not law.saturated:  # (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ
+        psi = mode.F_0(loads) / inputs.eta_pi
+        jump -= (force * mode.F_0.rss - stiffness * psi) / inputs.eta_pi
+    return jump

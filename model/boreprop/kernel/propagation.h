@@ -89,8 +89,8 @@ static inline Status steer(Integrator *p, ScaledInputs inputs, Problem *problem)
     const Mode *mode = mode_of(&p->modes, now->regime.contact);
     double bent = 0.0; /* jump of Θ' = θ' − ψ' */
     if (turns_anew) {  /* θ' = M/(εηΠ) */
-        double rate = row_value(&mode->M, &loads) / inputs.eta_pi * (1 / inputs.epsilon - 1 / before.epsilon);
-        bent = present_law(p)->Theta.theta * rate;
+        double moment = row_value(&mode->M, &loads);
+        bent = present_law(p)->Theta.theta * moment / inputs.eta_pi * (1 / inputs.epsilon - 1 / before.epsilon);
     }
     if (on_ramp) { /* (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ */
         double psi = row_value(&mode->F_0, &loads) / inputs.eta_pi;
