@@ -118,7 +118,7 @@ def legs(case: Case, ends: np.ndarray) -> Iterator[tuple[float, dict[str, float]
     begins = np.append(0.0, stops[:-1])
     pieces = (np.searchsorted(course.starts, begins, side="right") - 1).astype(np.intc)
     for end, values in zip(stops.tolist(), acting(course, begins, pieces).tolist(), strict=True):
-        force, force_slope, weight, weight_slope = values
+        force, force_slope, weight, weight_slope, _ = values
         slopes = {"rss_force_slope": force_slope, "active_weight_on_bit_slope": weight_slope}
         yield end, {"rss_force": force, "active_weight_on_bit": weight, **slopes}
 
