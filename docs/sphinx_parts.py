@@ -1,0 +1,46 @@
+"""What Sphinx lacks for this documentation: equations as MathML, tables made from the code, cells of commands."""
+
+import re
+from typing import Any
+
+import tables_of_code
+from docutils import nodes
+from docutils.utils.math.latex2mathml import tex2mathml
+from sphinx.application import Sphinx
+
+MADE = re.compile(r"^<!-- made: (\w+) ?(\w*) -->$", re.MULTILINE)
+COMMAND_CELL = re.compile(r"\A%%bash.*\n")
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register the parts."""
+    app.add_html_math_renderer("mathml", (inline_math, None), (block_math, None))
+    app.connect("source-read", put_tables)
+    app.connect("doctree-read", mark_commands)
+    return {"parallel_read_safe": True}
+
+
+def inline_math(writer: Any, node: nodes.math) -> None:
+    """An equation in a line, as MathML: browsers draw it themselves, without a script or a font."""
+    writer.body.append(tex2mathml(node.astext(), as_block=False))
+    raise nodes.SkipNode
+
+
+def block_math(writer: Any, node: nodes.math_block) -> None:
+    """An equation on a line of its own."""
+    number = f'<span class="eqno">({node["number"]})</span>' if node["number"] else ""
+    writer.body.append(f'<div class="math">{number}{tex2mathml(node.astext(), as_block=True)}</div>')
+    raise nodes.SkipNode
+
+
+def put_tables(_app: Sphinx, _page: str, source: list[str]) -> None:
+    """Replace ``<!-- made: commands boreprop -->`` by what that function of `tables_of_code` returns."""
+    source[0] = MADE.sub(lambda mark: getattr(tables_of_code, mark[1])(*filter(None, [mark[2]])), source[0])
+
+
+def mark_commands(_app: Sphinx, page: nodes.document) -> None:
+    """Show cells of commands as what a reader types into a terminal."""
+    for block in page.findall(nodes.literal_block):
+        if COMMAND_CELL.match(block.rawsource or block.astext()):
+            text = COMMAND_CELL.sub("", block.astext())
+            block.replace_self(nodes.literal_block(text, text, language="bash", classes=["commands"]))

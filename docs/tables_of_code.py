@@ -1,0 +1,74 @@
+"""The parts of the pages that are made from the code, as Markdown: tables of quantities, and the commands.
+
+A page has a line ``<!-- made: variables output -->`` where the text belongs; see `sphinx_parts`.
+"""
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from math import degrees
+from typing import Any
+
+import typer
+from typer.cli import get_docs_for_click
+
+import boreprop.cli.app
+import boreprop_fmu.cli
+import boreprop_viz.cli
+from boreprop.cli.lazy import load_command
+from boreprop.core.quantities import QUANTITIES, Quantity
+
+PROGRAMS: dict[str, Any] = {
+    "boreprop": boreprop.cli.app,
+    "boreprop-fmu": boreprop_fmu.cli,
+    "boreprop-view": boreprop_viz.cli,
+}
+SIZES = {"n": "[1…n]", "n-1": "[1…n−1]"}
+
+
+def variables(role: str) -> str:
+    """The table of all quantities with a role: "input", "output" or "parameter"."""
+    head = ["name", "unit", "symbol", "equation", "what it is", "type", "accepted"]
+    return _table(
+        head,
+        (
+            [f"`{q.name}{SIZES.get(q.size, '')}`", q.unit, q.symbol, q.equation, q.meaning, q.kind, q.range]
+            for q in QUANTITIES
+            if q.role == role
+        ),
+    )
+
+
+def case_keys() -> str:
+    """The table of all keys of a case file, with the units that they have there."""
+    head = ["key", "unit", "symbol", "what it is", "accepted"]
+    return _table(
+        head, ([f"`{q.key}`", q.unit, q.symbol, q.meaning, q.range] for q in map(_as_in_files, QUANTITIES) if q.key)
+    )
+
+
+def commands(program: str) -> str:
+    """A section for each command of a program, as its own help has it."""
+    return "\n".join(_sections(program))
+
+
+def _sections(program: str) -> Iterator[str]:
+    module = PROGRAMS[program]
+    for name in getattr(module, "COMMANDS", [""]):  # boreprop-view has no commands below it
+        command = load_command(name, module.COMMANDS) if name else typer.main.get_command(module.app)
+        call = f"{program} {name}".rstrip()
+        text = get_docs_for_click(obj=command, ctx=command.context_class(command, info_name=call), name=call)
+        yield re.sub(r"^# `(.+)`$", r"### \1", text, count=1, flags=re.MULTILINE)
+
+
+def _as_in_files(quantity: Quantity) -> Quantity:
+    """A quantity as case files have it: angles are in degrees there."""
+    if not quantity.key.endswith("_deg"):
+        return quantity
+    bounds = {name: degrees(getattr(quantity, name)) for name in ("above", "at_least", "at_most")}
+    return replace(quantity, unit="°", **bounds)
+
+
+def _table(head: list[str], lines: Iterable[list[str]]) -> str:
+    text = [head, ["---"] * len(head), *lines]
+    return "\n".join("| " + " | ".join(cell.replace("|", r"\|").replace("*", r"\*") for cell in line) + " |" for line in text)
