@@ -13,12 +13,12 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE))
 # What tutorials run: the commands of this environment, the notebook kernel of this interpreter, tables of one width.
 os.environ["PATH"] = os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"]))
-os.environ["COLUMNS"] = "96"
+os.environ["COLUMNS"] = "88"
 os.environ["NO_COLOR"] = "1"
 
 project = "boreprop"
 author = "The boreprop authors"
-copyright = author  # noqa: A001, Sphinx's own name
+copyright = author
 version = release = boreprop.__version__
 
 extensions = ["myst_nb", "sphinx.ext.autodoc", "numpydoc", "sphinx_parts"]
@@ -27,6 +27,7 @@ nitpicky = True
 nitpick_ignore_regex = [  # types of other projects, whose documentation is not fetched
     ("py:.*", r"(python:|pathlib|collections\.abc|concurrent|numpy|rerun|Dataset|DataArray).*"),
 ]
+nitpick_ignore = [("py:class", "boreprop.analysis.stability.characteristic.Characteristic")]  # not for scripts
 default_role = "code"
 suppress_warnings = ["mystnb.unknown_mime_type"]
 
@@ -37,7 +38,6 @@ nb_execution_mode = "force"
 nb_execution_in_temp = True  # a tutorial finds an empty folder, and leaves nothing behind
 nb_execution_raise_on_error = True
 nb_execution_timeout = 120
-nb_merge_streams = True
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"

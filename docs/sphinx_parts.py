@@ -3,10 +3,11 @@
 import re
 from typing import Any
 
-import tables_of_code
 from docutils import nodes
 from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.application import Sphinx
+
+import tables_of_code
 
 MADE = re.compile(r"^<!-- made: (\w+) ?(\w*) -->$", re.MULTILINE)
 COMMAND_CELL = re.compile(r"\A%%bash.*\n")
@@ -17,6 +18,7 @@ def setup(app: Sphinx) -> dict[str, Any]:
     app.add_html_math_renderer("mathml", (inline_math, None), (block_math, None))
     app.connect("source-read", put_tables)
     app.connect("doctree-read", mark_commands)
+    app.connect("doctree-read", join_prints)
     return {"parallel_read_safe": True}
 
 
@@ -44,3 +46,15 @@ def mark_commands(_app: Sphinx, page: nodes.document) -> None:
         if COMMAND_CELL.match(block.rawsource or block.astext()):
             text = COMMAND_CELL.sub("", block.astext())
             block.replace_self(nodes.literal_block(text, text, language="bash", classes=["commands"]))
+
+
+def join_prints(_app: Sphinx, page: nodes.document) -> None:
+    """Make one block of what a cell printed in pieces, which may be cut within a line."""
+    for block in page.findall(nodes.literal_block):
+        while "stream" in block["classes"] and (more := block.next_node(descend=False, siblings=True)) is not None:
+            if not isinstance(more, nodes.literal_block) or more["classes"] != block["classes"]:
+                break
+            text = block.astext() + more.astext()
+            block.rawsource, block.children = text, []
+            block += nodes.Text(text)
+            more.parent.remove(more)

@@ -57,7 +57,7 @@ def _sections(program: str) -> Iterator[str]:
     for name in getattr(module, "COMMANDS", [""]):  # boreprop-view has no commands below it
         command = load_command(name, module.COMMANDS) if name else typer.main.get_command(module.app)
         call = f"{program} {name}".rstrip()
-        text = get_docs_for_click(obj=command, ctx=command.context_class(command, info_name=call), name=call)
+        text = get_docs_for_click(obj=command, ctx=typer.Context(command, info_name=call), name=call)
         yield re.sub(r"^# `(.+)`$", r"### \1", text, count=1, flags=re.MULTILINE)
 
 
@@ -65,10 +65,11 @@ def _as_in_files(quantity: Quantity) -> Quantity:
     """A quantity as case files have it: angles are in degrees there."""
     if not quantity.key.endswith("_deg"):
         return quantity
-    bounds = {name: degrees(getattr(quantity, name)) for name in ("above", "at_least", "at_most")}
-    return replace(quantity, unit="°", **bounds)
+    above, at_least, at_most = map(degrees, (quantity.above, quantity.at_least, quantity.at_most))
+    return replace(quantity, unit="°", above=above, at_least=at_least, at_most=at_most)
 
 
 def _table(head: list[str], lines: Iterable[list[str]]) -> str:
-    text = [head, ["---"] * len(head), *lines]
-    return "\n".join("| " + " | ".join(cell.replace("|", r"\|").replace("*", r"\*") for cell in line) + " |" for line in text)
+    cells = [[cell.replace("|", r"\|").replace("*", r"\*") for cell in line] for line in (head, *lines)]
+    cells.insert(1, ["---"] * len(head))
+    return "\n".join(f"| {' | '.join(line)} |" for line in cells)
