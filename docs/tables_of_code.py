@@ -15,6 +15,7 @@ from typer.cli import get_docs_for_click
 import boreprop.cli.app
 import boreprop_fmu.cli
 import boreprop_viz.cli
+from boreprop.case.schema import TABLES
 from boreprop.cli.lazy import load_command
 from boreprop.core.quantities import QUANTITIES, Quantity
 
@@ -32,7 +33,7 @@ def variables(role: str) -> str:
     return _table(
         head,
         (
-            [f"`{q.name}{SIZES.get(q.size, '')}`", q.unit, q.symbol, q.equation, q.meaning, q.kind, q.range]
+            [f"`{q.name}{SIZES.get(q.size, '')}`", _unit(q), q.symbol, q.equation, q.meaning, q.kind, q.range]
             for q in QUANTITIES
             if q.role == role
         ),
@@ -42,9 +43,8 @@ def variables(role: str) -> str:
 def case_keys() -> str:
     """The table of all keys of a case file, with the units that they have there."""
     head = ["key", "unit", "symbol", "what it is", "accepted"]
-    return _table(
-        head, ([f"`{q.key}`", q.unit, q.symbol, q.meaning, q.range] for q in map(_as_in_files, QUANTITIES) if q.key)
-    )
+    keys = sorted((q for q in map(_as_in_files, QUANTITIES) if q.key), key=lambda q: TABLES.index(q.key.split(".")[0]))
+    return _table(head, ([f"`{q.key}`", _unit(q), q.symbol, q.meaning, q.range] for q in keys))
 
 
 def commands(program: str) -> str:
@@ -59,6 +59,11 @@ def _sections(program: str) -> Iterator[str]:
         call = f"{program} {name}".rstrip()
         text = get_docs_for_click(obj=command, ctx=typer.Context(command, info_name=call), name=call)
         yield re.sub(r"^# `(.+)`$", r"### \1", text, count=1, flags=re.MULTILINE)
+
+
+def _unit(quantity: Quantity) -> str:
+    """Its unit as people write it: FMI writes N.m2 for N·m²."""
+    return quantity.unit.replace(".", "·").replace("m2", "m²")
 
 
 def _as_in_files(quantity: Quantity) -> Quantity:

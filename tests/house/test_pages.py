@@ -38,7 +38,7 @@ def test_every_variable_is_in_a_table_with_its_unit_and_meaning() -> None:
     lines = {line.split("`")[1].partition("[")[0]: line for line in made("variables").splitlines() if "`" in line}
     assert list(lines) == [quantity.name for quantity in VARIABLES]
     for quantity in VARIABLES:
-        assert f"| {quantity.unit} |" in lines[quantity.name]
+        assert f"| {quantity.unit.replace('N.m2', 'N·m²').replace('N.m', 'N·m')} |" in lines[quantity.name]
         assert quantity.meaning.replace("*", r"\*") in lines[quantity.name]
 
 
