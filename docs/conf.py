@@ -4,8 +4,11 @@ Nothing is fetched when it is built, and a page needs no network to be read.
 """
 
 import os
+import re
 import sys
 from pathlib import Path
+
+from numpydoc import xref
 
 import boreprop
 
@@ -47,7 +50,14 @@ python_maximum_signature_line_length = 80
 numpydoc_show_class_members = False
 numpydoc_xref_param_type = True
 numpydoc_xref_ignore = "all"
-numpydoc_xref_aliases = {name: f"boreprop.{name}" for name in boreprop.__all__ if name != "__version__"}
+numpydoc_xref_aliases = {
+    name: f"{module}{name}"
+    for module, name in [
+        *(("boreprop.", name) for name in boreprop.__all__ if name != "__version__"),
+        *re.findall(r"^\.\. autoclass:: (boreprop\.\S+\.)(\w+)$", (HERE / "api.md").read_text("utf-8"), re.MULTILINE),
+    ]
+}
+xref.DEFAULT_LINKS.clear()  # to the documentation of Python and numpy, which is not fetched
 
 html_theme = "furo"
 html_title = f"boreprop {release}"
