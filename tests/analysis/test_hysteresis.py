@@ -52,6 +52,16 @@ def rippling(waves: tuple[Rippling | None, ...]) -> list[bool]:
     return [wave is not None and wave.ripples for wave in waves]
 
 
+def test_a_hole_that_drops_does_not_take_the_ripple_to_where_it_dies_for_another_reason() -> None:
+    # in each run the hole drops by 8°, and where it has dropped to the ripple would die at any weight
+    bha = replace(
+        paper_case().bha, stabilizer_positions=(4.0, 11.0), stabilizer_clearances=(0.02,), flexural_stiffness=1.2e7
+    )
+    inclined = replace(paper_case(tilt_limit=radians(1.0)), bha=bha, survey=Survey((0.0,), (radians(20.0),)))
+    found = hysteresis(inclined, "eta_pi", [0.005, 0.01, 0.02], radians(6.0))
+    assert rippling(found.up) == [True, True, True]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("values", [[0.005, 0.055, 0.15], np.linspace(0.02, 0.14, 7), np.linspace(0.03, 0.13, 13)])
 def test_the_ends_of_the_loop_are_the_cases_not_the_grids(values: list[float]) -> None:

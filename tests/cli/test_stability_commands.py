@@ -33,6 +33,22 @@ def test_roots_takes_eta_pi_and_the_inclination_from_the_case_and_no_contact(
     assert printed["mode"] == {"contact": [], "saturated": True}
 
 
+def test_a_root_at_zero_is_not_said_to_grow(command_here: Command, paper_case: Path) -> None:
+    # without contact nothing turns a horizontal hole back, so a change of its inclination stays
+    result = command_here("boreprop", "roots", paper_case, "--inclination-deg", "90", "--contact", "")
+    [line] = [line for line in result.stdout.splitlines() if "0.000000" in line]
+    assert "stays" in line
+
+
+def test_what_not_met_means_is_said_where_it_stands(command_here: Command, tmp_path: Path, paper_text: str) -> None:
+    file = tmp_path / "case.toml"
+    file.write_text(paper_text.replace("[3.66e-3]", "[0.1]"), encoding="utf-8")
+    result = command_here("boreprop", "roots", file)
+    assert result.stdout.count("not met") == 3  # two modes and the caption
+    file.write_text(paper_text, encoding="utf-8")
+    assert "not met" not in command_here("boreprop", "roots", file).stdout
+
+
 def test_roots_prints_a_line_for_each_mode(command: Command, paper_case: Path) -> None:
     result = command("boreprop", "roots", paper_case)
     lines = [line for line in result.stdout.splitlines() if "saturated" in line]
@@ -40,7 +56,7 @@ def test_roots_prints_a_line_for_each_mode(command: Command, paper_case: Path) -
     for line, texts in zip(
         lines,
         [
-            ("1 ", "not saturated", "oscillatory", "doubles in 8.1 m", "1.27 m", "drills so"),
+            ("1 ", "not saturated", "oscillatory", "doubles in 8.1 m", "1.27 m", "would drill so"),
             ("1 ", "saturated", "drift", "doubles in 4160 m"),
             ("none", "not saturated", "stable", "halves in 11.5 m"),
             ("none", "saturated", "drift", "doubles in 1040 m"),

@@ -6,10 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.image import imread
+from matplotlib.lines import Line2D
 
 from boreprop.case.paper import LENGTH_SCALE
-from boreprop.report.figures.paper import draw, figure_7_cases, figure_8_cases, make_figures
+from boreprop.report.figures.paper import COLUMNS, draw, figure_7_cases, figure_8_cases, make_figures, setting
 from boreprop.run.simulate import simulate
+from boreprop.run.trajectory import Trajectory
 
 
 def test_figure_7_varies_the_tilt_limit_and_figure_8_the_clearance() -> None:
@@ -18,16 +20,44 @@ def test_figure_7_varies_the_tilt_limit_and_figure_8_the_clearance() -> None:
     assert clearances == pytest.approx([1e-3, 1.5e-3, 2e-3])
 
 
-def test_curves_are_those_of_the_runs_in_degrees_and_kilonewtons() -> None:
-    runs = {name: simulate(case, sample_interval=0.5, length=20.0) for name, case in figure_8_cases().items()}
-    panels = draw(runs, "title").axes[:3]
-    for run, lines in zip(runs.values(), zip(*(panel.lines for panel in panels), strict=True), strict=True):
-        for line, name, factor in zip(
-            lines, ("borehole_inclination", "bit_inclination", "stabilizer_force[1]"), (180 / np.pi, 180 / np.pi, 1e-3),
-            strict=True,
-        ):  # fmt: skip
-            assert line.get_ydata() == pytest.approx(factor * run[name])
-            assert line.get_xdata() == pytest.approx(run["drilled_length"] / LENGTH_SCALE)
+IN_PEOPLE_S_UNITS = {
+    "borehole_inclination": 180 / np.pi,
+    "bit_inclination": 180 / np.pi,
+    "bit_tilt": 180 / np.pi,
+    "stabilizer_force[1]": 1e-3,
+}
+
+
+@pytest.fixture(scope="module")
+def runs() -> dict[str, Trajectory]:
+    """The beginnings of the runs of figure 8."""
+    return {name: simulate(case, sample_interval=0.5, length=20.0) for name, case in figure_8_cases().items()}
+
+
+def assert_curve(line: Line2D, run: Trajectory, column: str) -> None:
+    assert line.get_ydata() == pytest.approx(IN_PEOPLE_S_UNITS[column] * run[column])
+    assert line.get_xdata() == pytest.approx(run["drilled_length"] / LENGTH_SCALE)
+
+
+def test_curves_are_those_of_the_runs_in_degrees_and_kilonewtons(runs: dict[str, Trajectory]) -> None:
+    panels = draw(runs, "title", [*COLUMNS]).axes
+    for panel, column in zip(panels, COLUMNS, strict=True):
+        for run, line in zip(runs.values(), panel.lines, strict=True):
+            assert_curve(line, run, column)
+
+
+def test_runs_that_are_drawn_apart_hide_none_of_each_other(runs: dict[str, Trajectory]) -> None:
+    panels = np.array(draw(runs, "title", [*COLUMNS], apart=True).axes, dtype=object).reshape(-1, len(runs))
+    for row, column in zip(panels, COLUMNS, strict=True):
+        for panel, run in zip(row, runs.values(), strict=True):
+            [line] = panel.lines
+            assert_curve(line, run, column)
+            assert panel.get_ylim() == row[0].get_ylim()  # so that they can be compared
+
+
+def test_the_figures_say_which_part_of_their_setting_is_not_the_paper_s() -> None:
+    assert "does not print ε and the existing hole; chosen here: ε = 0.1" in setting()
+    assert "turns to 0.5° over the last ℓ₁" in setting()
 
 
 def test_the_files_are_pictures_with_something_on_them(tmp_path: Path) -> None:

@@ -9,16 +9,17 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from boreprop.analysis.steering import (
-    build_rate_curve,
-    reversal,
-)
+from boreprop.analysis.rippling import find_rippling
+from boreprop.analysis.steering import build_rate_curve, reversal, steady_response
+from boreprop.analysis.summary import summarize as summary_of
 from boreprop.case.case import Case, Schedule
+from boreprop.case.paper import paper_case
 from boreprop.core.modes import Modes
 from boreprop.core.survey import Survey
 from boreprop.core.system import scale
 from boreprop.report.figures.steering import draw
 from boreprop.report.tables.steering import lines, piece_lines, summarize, warnings
+from boreprop.run.simulate import simulate
 from conftest import Command
 from places import EXAMPLES
 from steering_cases import DEGREES_PER_30_M, saturating
@@ -120,3 +121,16 @@ def test_the_command_refuses_a_wrong_argument(
     for name in named:
         assert name in result.stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_forces_under_which_waves_grow_are_warned_of_and_the_hole_then_turns_more_slowly() -> None:
+    summary = summarize(replace(paper_case(), survey=Survey((0.0,), (radians(3.5),))))
+    assert [text for what, text in lines(summary) if what == "warning"] == [
+        f"{forces} kN: waves grow there, and a hole that ripples turns at another rate, usually a lower one"
+        for forces in ("-30.00 to +0.23", "+0.30 to +30.00")
+    ]
+    pushed = replace(paper_case(), survey=Survey((0.0,), (radians(3.5),)), schedule=Schedule((0.0,), (5e3,)))
+    run = simulate(pushed)
+    assert find_rippling(run).ripples
+    steady = steady_response(pushed, 5e3, radians(3.5)).build_rate
+    assert 0.75 * steady < summary_of(run).build_rate < 0.85 * steady

@@ -1,5 +1,6 @@
 """Critical doglegs and hysteresis in words."""
 
+from dataclasses import replace
 from math import inf, nan, radians
 
 import numpy as np
@@ -11,6 +12,7 @@ from boreprop.analysis.tipping import (
     DoglegMap,
 )
 from boreprop.case.paper import LENGTH_SCALE, paper_case
+from boreprop.core.survey import Survey
 from boreprop.report.tables.hysteresis import loop
 from boreprop.report.tables.tipping import left_out, lines
 from tipping_cases import NO, YES
@@ -29,6 +31,22 @@ def test_the_critical_dogleg_in_words() -> None:
     assert [amount for _, amount in lines(paper_case(), found, radians(10.0))] == [
         "any: it ripples from a straight hole", "2.00° over 3.66 m (16.4 °/30 m), but not every larger one"
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("inclination_deg", "clearance", "where_and_why"),
+    [
+        (3.5, 1e-3, " at 3.5°, since it drops with stabilizer 1 in contact, which oscillates"),
+        (0.0, 0.0, ", since it drills on with stabilizer 1 in contact, which oscillates"),
+        (0.0, 1e-3, ""),  # stable without contact: should it ripple, that is not why
+    ],
+)
+def test_where_and_why_a_straight_hole_ripples_by_itself_in_words(
+    inclination_deg: float, clearance: float, where_and_why: str
+) -> None:
+    case = replace(paper_case(clearance=clearance), survey=Survey((0.0,), (radians(inclination_deg),)))
+    [(_, amount)] = lines(case, {1: critical(0.0)}, radians(10.0))
+    assert amount == f"any: it ripples from a straight hole{where_and_why}"
 
 
 def test_a_stopped_run_in_words() -> None:

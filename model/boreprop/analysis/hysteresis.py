@@ -63,10 +63,11 @@ def hysteresis(
     """Find how a system ripples while a parameter goes slowly up and down again.
 
     The way up starts from a ripple, in a hole with a dogleg that makes the case with the first value ripple, if there
-    is such a dogleg. Each case then drills on, until it is steady, in the hole that the case before it drilled. If that
-    one did not ripple, the hole is straight at the inclination of the case, with the given dogleg before the bit: a
-    perfectly straight hole would stay straight for ever, but in the field the next survey, connection or formation
-    makes it turn. On the way down all cases start in such a hole until one ripples.
+    is such a dogleg. Each case then drills on, until it is steady, in the hole that the case before it drilled, turned
+    back to the inclination of the case. If that one did not ripple, the hole is straight at that inclination, with the
+    given dogleg before the bit: a perfectly straight vertical hole would stay straight for ever, but in the field the
+    next survey, connection or formation makes it turn. On the way down all cases start in such a hole until one
+    ripples. In an inclined hole a dogleg also changes the inclination, on which it depends whether a ripple lasts.
 
     Parameters
     ----------
@@ -160,7 +161,7 @@ class _Ramp:
             run, wave = drill_until_steady(case, relative_tolerance=self.relative_tolerance)
         except Stopped:
             return _End(None, None)
-        return _End(wave, _drilled_hole(run, case) if wave.ripples else None)
+        return _End(wave, self._drilled_hole(run, wave) if wave.ripples else None)
 
     def rippling_hole(self, value: float) -> Survey | None:
         """The hole with the smallest dogleg tried that makes the system ripple at a value; None if none does."""
@@ -195,17 +196,19 @@ class _Ramp:
             low, high = (middle, high) if self.drill(middle, None).hole else (low, middle)
         return low, high
 
+    def _drilled_hole(self, run: Trajectory, wave: Rippling) -> Survey:
+        """The end of the drilled hole as a survey of the chords between its rows, as far up as the next BHA reaches.
 
-def _drilled_hole(run: Trajectory, case: Case) -> Survey:
-    """The end of the drilled hole as a survey of the chords between its rows, as far up as the next run's BHA reaches.
-
-    It ends where the bit tilt was smallest, since a run starts with the bit aligned with the hole.
-    """
-    length, half = run["drilled_length"], case.bha.half_length
-    recent = length >= length[-1] - 2 * half
-    end = int(np.flatnonzero(recent)[np.argmin(np.abs(run["bit_tilt"][recent]))])
-    first = int(np.searchsorted(length, length[end] - 3 * half))
-    kept = slice(max(first, 0), end + 1)
-    along = np.diff(run["displacement"][kept]), np.diff(run["true_vertical_depth"][kept])
-    middles = (length[kept][1:] + length[kept][:-1]) / 2
-    return Survey(tuple(middles.tolist()), tuple(np.arctan2(*along).tolist()))
+        It ends where the bit tilt was smallest, since a run starts with the bit aligned with the hole. It is turned as
+        a whole to swing about the inclination of the case: otherwise it would drop from run to run.
+        """
+        length, half = run["drilled_length"], self.case.bha.half_length
+        swings_about = run["borehole_inclination"][length > length[-1] - wave.wavelength].mean()
+        back = with_dogleg(self.case, 0.0).survey.inclination[-1] - swings_about
+        recent = length >= length[-1] - 2 * half
+        end = int(np.flatnonzero(recent)[np.argmin(np.abs(run["bit_tilt"][recent]))])
+        first = int(np.searchsorted(length, length[end] - 3 * half))
+        kept = slice(max(first, 0), end + 1)
+        along = np.diff(run["displacement"][kept]), np.diff(run["true_vertical_depth"][kept])
+        middles = (length[kept][1:] + length[kept][:-1]) / 2
+        return Survey(tuple(middles.tolist()), tuple((np.arctan2(*along) + back).tolist()))

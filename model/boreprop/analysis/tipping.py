@@ -183,8 +183,11 @@ def critical_dogleg(
 
     Tried first are the straight hole and turns of `limit`, of half of it, … down to 1/32 of it; if the straight hole
     ripples by itself, down to 1/1024. The interval below the smallest turn that starts rippling is then bisected, at
-    its geometric mean. In an inclined hole gravity disturbs even a straight hole, and the inclination changes as the
-    hole is drilled; the answer is for the inclination at the start.
+    its geometric mean.
+
+    A straight inclined hole may need no dogleg: under its weight the BHA drops, perhaps with a stabilizer on the wall,
+    and if that mode oscillates, waves grow until the hole is nearly vertical. The inclination changes as the hole is
+    drilled; the answer is for that at the start.
 
     Parameters
     ----------

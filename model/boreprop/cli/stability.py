@@ -80,11 +80,12 @@ def _print_modes(case: Case, modes: list[Roots], eta_pi: float, inclination: flo
     weight, forces = _weight(case, eta_pi), case.schedule.rss_force
     here = steady_mode(replace(case, active_weight_on_bit=weight), forces[0], inclination)
     met = contacts_met(case.bha, case.bit, inclination, forces)
+    lines = [tables.mode_line(mode, case.length_scale, here, met) for mode in modes]
     print_table(
-        [tables.mode_line(mode, case.length_scale, here, met) for mode in modes],
+        lines,
         tables.MODE_HEADINGS,
         title=tables.modes_title(eta_pi, weight, inclination),
-        caption=tables.not_met(),
+        caption=tables.not_met(lines),
         width=WIDE,
     )
 

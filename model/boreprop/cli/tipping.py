@@ -40,8 +40,9 @@ def dogleg_command(
 ) -> None:
     """Print the smallest kink in the existing hole that starts rippling, and map it.
 
-    The hole is straight, then turns over half the length of the BHA before the bit. The map is over weight, as ηΠ, and
-    clearance. Without --eta-pi or --clearance-mm, the values include those of the case.
+    The hole is straight, then turns over half the length of the BHA before the bit. A straight inclined hole may ripple
+    by itself, if the BHA drops with a stabilizer on the wall. The map is over weight, as ηΠ, and clearance. Without
+    --eta-pi or --clearance-mm, the values include those of the case.
     """
     if output is not None:
         console.check_output(output, (".png",), reads=files_read(case_file))

@@ -1,13 +1,16 @@
 """The stability chart and its picture: the verdicts of the roots, point by point."""
 
+from collections.abc import Callable
 from dataclasses import replace
-from math import log, radians
+from itertools import product
+from math import inf, log, pi, radians, sin
 
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from matplotlib.colors import to_rgb
+from scipy.optimize import linprog
 
 from boreprop.analysis.stability.characteristic import Characteristic
 from boreprop.analysis.stability.chart import (
@@ -21,8 +24,10 @@ from boreprop.analysis.stability.chart import (
 )
 from boreprop.analysis.stability.contacts import all_contacts, can_touch, charted, contacts_met, steady_mode
 from boreprop.analysis.stability.roots import Verdict, find_roots, rightmost_roots
+from boreprop.analysis.steering import offsets
 from boreprop.case.case import Case
 from boreprop.core.errors import ParameterError
+from boreprop.core.modes import Loads, Mode, Modes
 from boreprop.core.system import BitRock, BottomHoleAssembly, Scaled, scale
 from boreprop.report.figures.stability import SHADES, boundaries, draw
 from stability import BIT, PAPER, VERTICAL, drilling
@@ -129,6 +134,46 @@ def test_a_blade_that_cannot_touch_adds_no_mode_to_a_chart(at: float, inclinatio
     assert charted(idle, BIT, inclination, [force]) == tuple(map(renumbered, shown))
 
 
+NEAR_BIT = BottomHoleAssembly((0.9, 5.5, 15.0), (0.8e-3, 3e-3), 0.5, 1400.0, 1.6e7)
+
+
+@pytest.mark.parametrize("bha", [THREE, NEAR_BIT, PAPER.bha])
+@pytest.mark.parametrize("inclination", [0.0, 0.3, pi / 2])
+def test_contacts_that_a_hole_has_are_among_those_met_and_those_met_are_had_by_a_hole(
+    bha: BottomHoleAssembly, inclination: float
+) -> None:
+    scaled, random = scale(bha, BIT), np.random.default_rng(1)
+    modes, largest = Modes(scaled), np.array([radians(10.0) / 30.0 * bha.length_scale, BIT.tilt_limit])
+
+    def loads(kappa: float, psi: float) -> Loads:
+        return Loads(offsets(scaled.s, float(kappa), float(psi)), 0.0, sin(inclination))
+
+    def contact(at: np.ndarray) -> tuple[int, ...]:
+        walls = modes.settle(loads(*at), (0,) * len(scaled.y_star)).contact
+        return tuple(i for i, wall in enumerate(walls, 1) if wall)
+
+    had = {contact(at) for at in random.uniform(-1.0, 1.0, (4000, 2)) * largest}
+    found = contacts_met(bha, BIT, inclination)
+    assert had <= found
+    for missed in found - had:  # random holes may miss what few holes have
+        walls = product(*((1, -1) if i in missed else (0,) for i in range(1, len(bha.stabilizer_positions))))
+        assert missed in [contact(hole_with(modes[on], loads, largest)) for on in walls]
+
+
+def hole_with(mode: Mode, loads: Callable[[float, float], Loads], largest: np.ndarray) -> np.ndarray:
+    """A curvature and a tilt at which a mode holds, by linear programming; zeros if there are none."""
+    A, b = [], []
+    for bound in mode.bounds:
+        rest, *steps = (bound.scale * bound.row(loads(*at)) for at in ((0, 0), (1, 0), (0, 1)))
+        slopes = np.array(steps) - rest
+        for side, limit in ((1, bound.upper), (-1, -bound.lower)):
+            if limit < inf:
+                A.append([*(side * slopes), 1e-3 * np.abs(slopes).max()])  # as far from every bound as can be
+                b.append(limit - side * rest)
+    found = linprog([0.0, 0.0, -1.0], A, b, bounds=[*((-most, most) for most in largest), (0.0, 1.0)])
+    return np.zeros(2) if found.x is None else found.x[:2]
+
+
 def test_stabilizers_without_clearance_are_in_every_contact() -> None:
     assert all_contacts(replace(THREE, stabilizer_clearances=(0.0, 1e-3))) == ((1, 2), (1,))
 
@@ -155,6 +200,16 @@ def test_the_chart_s_picture_marks_the_case(chart: Chart) -> None:
     assert len(figure.axes) == 4
     for axes in figure.axes:
         assert axes.lines[-1].get_xydata() == pytest.approx(np.array([[0.01, 1.0]]), rel=1e-4)
+
+
+def test_the_chart_s_picture_says_in_which_mode_the_case_drills_and_whether_waves_grow_there(chart: Chart) -> None:
+    def told(chart: Chart) -> list[str]:
+        titles = [panel.get_title().partition("\n") for panel in draw(chart, VERTICAL).axes]
+        return [f"{mode}: {so}" for mode, _, so in titles if so]
+
+    assert told(chart) == ["no contact, bit tilt not saturated: (the case drills in this mode)"]
+    drops = "stabilizer 1 in contact, bit tilt not saturated: (the case would drill in this mode, but waves grow)"
+    assert told(replace(chart, inclination=radians(3.5))) == [drops]
 
 
 def test_the_chart_s_picture_has_kilonewtons_and_metres_and_no_specks(chart: Chart) -> None:

@@ -3,20 +3,21 @@
 Stability is a property of a mode. A stabilizer that touches the wall in no hole takes part in none.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import partial
 from itertools import chain, combinations, product
 from math import radians, sin
 
 import numpy as np
 
 from ...case.case import Case
-from ...core.modes import Loads, Modes
+from ...core.modes import Bound, Loads, Modes, Row
 from ...core.system import BitRock, BottomHoleAssembly, scale
 from ..steering import offsets, steady_response
 from .roots import critical_of
 
 SHARPEST_TURN = radians(10.0) / 30.0  # rad/m: steerable systems hardly turn a hole faster
-TILTS = 21  # bit tilts that are tried, from one limit to the other; fewer might miss a contact of a short range
+FORCES = 7  # steering forces that are tried, from the smallest to the largest; more would take too long for a command
 MOST_SETS = 4  # sets of contacts in a chart, each with the tilt saturated and not: eight panels
 
 Contact = tuple[int, ...]
@@ -37,32 +38,62 @@ def all_contacts(bha: BottomHoleAssembly, among: Iterable[int] | None = None) ->
 def contacts_met(
     bha: BottomHoleAssembly, bit: BitRock, inclination: float, rss_forces: Iterable[float] = ()
 ) -> frozenset[Contact]:
-    """The contacts that occur in a hole that is straight, or turns by 10° over 30 m to either side.
+    """The contacts that occur in holes of constant curvature that turn by up to 10° over 30 m to either side.
+
+    Contacts on given walls hold where forces and deflections are within their bounds, (7). Under a given force these
+    are linear in curvature and tilt, so that is a convex polygon, which may be empty.
 
     Parameters
     ----------
     bha, bit
-        The drilling system. Bit tilts up to the limit to both sides are tried.
+        The drilling system. The bit tilt is anywhere between its limits.
     inclination
         Inclination of the hole, rad.
     rss_forces
-        Steering forces, N. No force is always tried.
+        Steering forces, N. They stand for all from the smallest to the largest, and for no force, of which some are
+        tried.
 
     Returns
     -------
     frozenset of Contact
-        The contacts that occur in any of these holes at any of these tilts under any of these forces.
+        The contacts that occur in any of these holes at any of these tilts under any of the forces tried.
     """
     scaled = scale(bha, bit)
-    modes = Modes(scaled)
-    turn = SHARPEST_TURN * bha.length_scale
-    contact, met = (0,) * len(scaled.y_star), set()
-    tilts = np.linspace(-bit.tilt_limit, bit.tilt_limit, TILTS).tolist()
-    for force, kappa, psi in product({0.0, *rss_forces}, (-turn, 0.0, turn), tilts):
-        loads = Loads(offsets(scaled.s, kappa, psi), force / bha.force_scale, sin(inclination))
-        contact = modes.settle(loads, contact).contact
-        met.add(tuple(i for i, touches in enumerate(contact, 1) if touches))
+    modes, sine = Modes(scaled), sin(inclination)
+    turn, tilt = SHARPEST_TURN * bha.length_scale, bit.tilt_limit
+    everywhere = [complex(kappa, psi) for kappa, psi in ((-turn, -tilt), (turn, -tilt), (turn, tilt), (-turn, tilt))]
+    wanted = {0.0, *rss_forces}
+    forces = {0.0, *np.linspace(min(wanted), max(wanted), FORCES).tolist()}
+    met: set[Contact] = set()
+    for walls in product(*((0, 1, -1) if clearance else (1,) for clearance in scaled.y_star)):
+        contact = tuple(i for i, touches in enumerate(walls, 1) if touches)
+        for force in forces if contact not in met else ():
+            where = everywhere
+            for bound in modes[walls].bounds:
+                where = _clipped(where, partial(_value, bound.row, scaled.s, force / bha.force_scale, sine), bound)
+            if where:
+                met.add(contact)
     return frozenset(met)
+
+
+def _value(row: Row, s: tuple[float, ...], F_rss: float, sine: float, at: complex) -> float:
+    """The value of a row in a hole of curvature Re `at` at a bit tilt of Im `at`."""
+    return row(Loads(offsets(s, at.real, at.imag), F_rss, sine))
+
+
+def _clipped(corners: list[complex], value: Callable[[complex], float], bound: Bound) -> list[complex]:
+    """The corners of that part of a convex polygon in which a linear value is within a bound (Sutherland–Hodgman)."""
+    for side, limit in ((1, bound.lower), (-1, -bound.upper)):
+        inside = [side * bound.scale * value(corner) - limit for corner in corners]
+        kept = []
+        for k, corner in enumerate(corners):
+            before, here = inside[k - 1], inside[k]
+            if (before >= 0) != (here >= 0):
+                kept.append(corners[k - 1] + (corner - corners[k - 1]) * before / (before - here))
+            if here >= 0:
+                kept.append(corner)
+        corners = kept
+    return corners
 
 
 def can_touch(bha: BottomHoleAssembly, bit: BitRock, inclination: float, rss_forces: Iterable[float] = ()) -> Contact:
@@ -77,7 +108,7 @@ def first_that_touches(case: Case) -> int:
 
 
 def steady_mode(case: Case, rss_force: float, inclination: float) -> tuple[Contact, bool]:
-    """The mode of the steady response to a force: that in which a case drills once transients have died out.
+    """The mode of the steady response to a force: that in which a case drills once transients die out.
 
     Parameters
     ----------

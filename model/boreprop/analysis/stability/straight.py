@@ -40,14 +40,17 @@ def straight_drilling(case: Case) -> StraightDrilling:
     """How a case drills on in a straight hole. Roots are counted, not found, so it takes milliseconds."""
     force, inclination = case.schedule.rss_force[0], case.survey.inclination[-1]
     contact, saturated = steady_mode(case, force, inclination)
-    touching = touching_stabilizers(case.bha, contact)
-    verdict = None
-    if case.eta_pi >= SMALLEST_ETA_PI:
-        verdict = verdict_at(
-            Characteristic.of(scale(case.bha, case.bit), touching, saturated, inclination), case.eta_pi
-        )
+    verdict = mode_verdict(case, contact, saturated, inclination)
     critical = critical_eta_pi(case, contact=contact, saturated=saturated)
     return StraightDrilling(steady_response(case, force, inclination), contact, saturated, verdict, critical)
+
+
+def mode_verdict(case: Case, contact: Contact, saturated: bool, inclination: float) -> Verdict | None:
+    """What becomes of a small disturbance in a mode; None where ηΠ is below 1e-4, with too many roots to tell."""
+    if case.eta_pi < SMALLEST_ETA_PI:
+        return None
+    touching = touching_stabilizers(case.bha, contact)
+    return verdict_at(Characteristic.of(scale(case.bha, case.bit), touching, saturated, inclination), case.eta_pi)
 
 
 def verdict_at(characteristic: Characteristic, eta_pi: float) -> Verdict:

@@ -13,6 +13,8 @@ from matplotlib.patches import Patch
 
 from ...analysis.stability.chart import DRIFT, OSCILLATORY, STABLE, Band, Chart, Integers, Panel, lambda_2
 from ...analysis.stability.contacts import steady_mode
+from ...analysis.stability.roots import Verdict
+from ...analysis.stability.straight import mode_verdict
 from ...arrays import Floats
 from ...case.case import Case
 from ..tables.stability import contact_text
@@ -58,7 +60,9 @@ def draw(chart: Chart, case: Case) -> Figure:
     for axes, panel in zip(panels.flat, chart.panels, strict=True):
         draw_panel(axes, chart, panel, point)
         if (panel.contact, panel.saturated) == here:
-            axes.set_title(f"{axes.get_title()}\n(the case drills in this mode)", fontweight="bold")
+            grow = mode_verdict(case, *here, chart.inclination) is Verdict.OSCILLATORY
+            so = "the case would drill in this mode, but waves grow" if grow else "the case drills in this mode"
+            axes.set_title(f"{axes.get_title()}\n({so})", fontweight="bold")
     for axes in panels[-1]:
         axes.set_xlabel("ηΠ")
     for axes in panels[0]:

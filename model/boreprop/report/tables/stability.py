@@ -1,14 +1,15 @@
 """The roots of modes in tables and titles."""
 
-from collections.abc import Container, Mapping
+from collections.abc import Container, Iterable, Mapping
 from math import degrees, log, pi
 
 from ...analysis.stability.chart import VERDICTS, Chart
-from ...analysis.stability.roots import CriticalEtaPi, Roots, Verdict
+from ...analysis.stability.roots import NEUTRAL, CriticalEtaPi, Roots, Verdict
 from ...units import BUILD_LENGTH, UNITS
 
 HEADINGS = ("growth, per ℓ₁", "frequency, per ℓ₁", "what it does", "wavelength")
 MODE_HEADINGS = ("in contact", "bit tilt", "verdict", "what it does", "wavelength", "the case")
+NOT_MET = "not met"
 MOST_LINES = 20  # roots in a table: they fit on a screen
 
 
@@ -59,11 +60,14 @@ def mode_line(
 ) -> tuple[str, ...]:
     """The line of a mode, under `MODE_HEADINGS`: its verdict and the root that decides it.
 
-    `here` is the mode in which the case drills steadily; `met` are the contacts that occur.
+    `here` is the mode in which the case drills steadily, or would if no waves grew; `met` are the contacts that occur.
     """
     pairs = [root for root in found.roots if root.imag]
     root = pairs[0] if found.verdict is Verdict.OSCILLATORY else found.roots[0]
-    place = "drills so" if (found.contact, found.saturated) == here else "" if found.contact in met else "not met"
+    if (found.contact, found.saturated) == here:
+        place = "would drill so" if found.verdict is Verdict.OSCILLATORY else "drills so"
+    else:
+        place = "" if found.contact in met else NOT_MET
     return (
         ", ".join(map(str, found.contact)) or "none",
         "saturated" if found.saturated else "not saturated",
@@ -74,10 +78,12 @@ def mode_line(
     )
 
 
-def not_met() -> str:
-    """What "not met" means under `MODE_HEADINGS`."""
+def not_met(lines: Iterable[tuple[str, ...]]) -> str | None:
+    """What "not met" means under `MODE_HEADINGS`; None if no line has it."""
+    if not any(line[-1] == NOT_MET for line in lines):
+        return None
     over = UNITS["m"].text(BUILD_LENGTH, ".3g")
-    return f"not met: no hole that turns by up to 10° over {over} brings these stabilizers into contact"
+    return f"{NOT_MET}: these contacts do not occur in holes that turn by up to 10° over {over}"
 
 
 def contact_text(contact: tuple[int, ...]) -> str:
@@ -96,7 +102,7 @@ def lines(found: Roots, length_scale: float) -> list[tuple[str, str, str, str]]:
 
 def change(root: complex, length_scale: float) -> str:
     """The drilled length over which a disturbance doubles or halves, in words."""
-    if not root.real:
+    if abs(root.real) < NEUTRAL:
         return "stays"
     return f"{'doubles' if root.real > 0 else 'halves'} in {metres(log(2) / abs(root.real) * length_scale)}"
 

@@ -5,6 +5,8 @@ from itertools import groupby
 from math import isfinite
 
 from ...analysis.sag import Sag, steady_sag
+from ...analysis.stability.roots import Verdict
+from ...analysis.stability.straight import mode_verdict
 from ...analysis.steering import (
     Piece,
     SteadyResponse,
@@ -37,6 +39,8 @@ class SteeringSummary:
         ηΠ.
     curve, without_gravity
         The response to every force up to the limit, with and without gravity, see `build_rate_curve`.
+    oscillating
+        For each piece of the curve with gravity, whether small waves grow in its mode.
     free, highest, lowest
         The response without force, and those with the highest and the lowest build rate.
     holding
@@ -51,6 +55,7 @@ class SteeringSummary:
     eta_pi: float
     curve: tuple[Piece, ...]
     without_gravity: tuple[Piece, ...]
+    oscillating: tuple[bool, ...]
     free: SteadyResponse
     highest: SteadyResponse
     lowest: SteadyResponse
@@ -92,6 +97,7 @@ def summarize(case: Case, inclination: float | None = None, force_limit: float |
         eta_pi=case.eta_pi,
         curve=curve,
         without_gravity=build_rate_curve(case, inclination, force_limit, gravity=False),
+        oscillating=tuple(_oscillates(case, piece.start, inclination) for piece in curve),
         free=free,
         highest=highest,
         lowest=lowest,
@@ -122,6 +128,7 @@ def lines(summary: SteeringSummary) -> list[tuple[str, str]]:
         ("lowest build rate", at_force(summary.lowest)),
         ("left out: gravity changes along the arc", f"{left_out} {UNITS['rad/m'].shown}"),
         *(("warning", text) for text in warnings(summary.curve, summary.eta_pi)),
+        *(("warning", text) for text in wave_warnings(summary.curve, summary.oscillating)),
         *(("warning", f"{force_text(force, '+')}: {text}") for text in [outside_the_hole(sag)] if text),
     ]
 
@@ -169,6 +176,24 @@ def warnings(curve: tuple[Piece, ...], eta_pi: float) -> list[str]:
     return [
         f"{forces(pieces[0].start, pieces[-1].end)} {UNITS['N'].shown}: {text}" for text, pieces in stretches if text
     ]
+
+
+def wave_warnings(curve: tuple[Piece, ...], oscillating: tuple[bool, ...]) -> list[str]:
+    """Warnings of forces under which the hole may ripple instead of turning steadily."""
+    stretches = groupby(zip(curve, oscillating, strict=True), lambda part: part[1])
+    return [
+        f"{forces(parts[0].start, parts[-1].end)} {UNITS['N'].shown}: waves grow there, and a hole that ripples turns "
+        "at another rate, usually a lower one"
+        for grow, parts in ((grow, [piece for piece, _ in group]) for grow, group in stretches)
+        if grow
+    ]
+
+
+def _oscillates(case: Case, response: SteadyResponse, inclination: float) -> bool:
+    """Whether small waves grow in the mode of a response."""
+    contact = tuple(i for i, wall in enumerate(response.stabilizer_contact, 1) if wall)
+    saturated = bool(response.bit_tilt_saturation)
+    return mode_verdict(case, contact, saturated, inclination) is Verdict.OSCILLATORY
 
 
 def _warning(piece: Piece, eta_pi: float) -> str:
