@@ -7,29 +7,40 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
 
-ENDINGS = ("SIGTERM", "SIGHUP")  # signals that ask a process to end: by another one, by a terminal that is closed
+from .leftovers import remove_leftovers
+
+ENDINGS = ("SIGINT", "SIGTERM", "SIGHUP")  # signals that ask for the end: Ctrl-C, another process, a closed terminal
+UNTOUCHED = (signal.SIG_DFL, signal.default_int_handler)  # what they do unless somebody has another wish, as nohup has
 
 
 @contextmanager
 def endings_like_interrupt() -> Iterator[None]:
-    """Let a signal that asks for the end raise KeyboardInterrupt, which removes drafts, and then end the process."""
+    """Let the first signal that asks for the end raise KeyboardInterrupt, which removes drafts; ignore all others.
+
+    At the end drafts and temporary folders are removed, and a process that was asked by another signal than Ctrl-C ends
+    by that signal, so that its exit status says why.
+    """
     received: list[int] = []
 
     def interrupt(number: int, _: FrameType | None) -> None:
-        if not received:  # another one must not disturb the end
+        if not received:  # another one, of somebody who cannot wait, must not disturb the end
             received.append(number)
             raise KeyboardInterrupt
 
-    numbers = [getattr(signal, name) for name in ENDINGS if hasattr(signal, name)]
-    ours = [number for number in numbers if signal.getsignal(number) is signal.SIG_DFL]  # nohup ignores one of them
+    handlers = {
+        getattr(signal, name): signal.getsignal(getattr(signal, name)) for name in ENDINGS if hasattr(signal, name)
+    }
+    ours = {number: handler for number, handler in handlers.items() if handler in UNTOUCHED}
     for number in ours:
         signal.signal(number, interrupt)
     try:
         yield
     finally:
-        for number in ours:
-            signal.signal(number, signal.SIG_DFL)
-        if received:
+        for number, handler in ours.items():
+            signal.signal(number, signal.SIG_IGN if received else handler)
+        remove_leftovers()
+        if received and received[0] != signal.SIGINT:
             with suppress(OSError):  # the terminal may be gone
                 sys.stdout.flush()
-            os.kill(os.getpid(), received[0])  # so that the exit status says why
+            signal.signal(received[0], signal.SIG_DFL)
+            os.kill(os.getpid(), received[0])

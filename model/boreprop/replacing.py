@@ -6,6 +6,8 @@ from contextlib import contextmanager
 from errno import ENOENT
 from pathlib import Path
 
+from .leftovers import removed_afterwards
+
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
@@ -17,12 +19,17 @@ def replacing(path: Path) -> Iterator[Path]:
     ------
     FileNotFoundError
         If the folder does not exist.
+    OSError
+        If it cannot be written; it names the file.
     """
     if not path.parent.is_dir():
         raise FileNotFoundError(ENOENT, "the folder does not exist", str(path))
     draft = path.with_name(f".{os.urandom(4).hex()}.{path.name}")  # no process number: two containers may have the same
-    try:
-        yield draft
-        os.replace(draft, path)
-    finally:
-        draft.unlink(missing_ok=True)
+    with removed_afterwards(draft):
+        try:
+            yield draft
+            os.replace(draft, path)
+        except OSError as error:
+            if error.filename is None:  # of a write, as to a full disk
+                error.filename = str(path)
+            raise

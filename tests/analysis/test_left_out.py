@@ -1,4 +1,4 @@
-"""The table in docs/model.md of how much what is not well known matters."""
+"""The tables of how much it matters what is not well known, or what the model leaves out: in docs/limits.md and FMUs."""
 
 import re
 from collections.abc import Callable
@@ -10,9 +10,11 @@ import pytest
 from boreprop.analysis.steering import steady_response
 from boreprop.case.case import Case
 from boreprop.case.file import load_case
+from boreprop_fmu.pack.documentation import LEFT_OUT, page
+from built_beam import Built
 from places import EXAMPLES, ROOT
 
-PAGE = (ROOT / "docs" / "model.md").read_text()
+PAGE = (ROOT / "docs" / "limits.md").read_text()
 FORCE = 20e3
 CHANGES: dict[str, Callable[[Case], Case]] = {
     "active weight on bit 30 kN": lambda case: replace(case, active_weight_on_bit=30e3),
@@ -39,20 +41,55 @@ CHANGES: dict[str, Callable[[Case], Case]] = {
 }
 
 
+BUILT: dict[str, Callable[[Case], Built]] = {
+    "EI 60 % from 1 m to 4 m behind the bit, a flexible collar": lambda case: Built(
+        case, stiffness=lambda s: 0.6 if 1.0 < s < 4.0 else 1.0
+    ),
+    "weight on bit of 120 kN in the stiffness of the beam": lambda case: Built(case, weight_on_bit=120e3),
+    "last stabilizer 1.6 mm below the centre of the hole": lambda case: Built(case, drop=1.6e-3),
+}
+
+
+@pytest.fixture(scope="module")
+def section() -> Case:
+    return load_case(EXAMPLES / "build_section.toml")
+
+
 def build_rate(case: Case) -> float:
     """Build rate under the force, °/30 m."""
     return float(np.degrees(30.0 * steady_response(case, FORCE, case.survey.inclination[-1]).build_rate))
 
 
+def percent(change: str) -> tuple[float, float]:
+    """What the page says of a change, and half a unit of its last digit."""
+    [number] = re.findall(rf"^\| {re.escape(change)} \| (\S+) % \|$", PAGE, re.MULTILINE)
+    return float(number.replace("−", "-")), 0.5 / 10 ** len(number.partition(".")[2])
+
+
 @pytest.mark.parametrize("change", CHANGES)
-def test_the_page_says_what_the_product_computes(change: str) -> None:
-    case = load_case(EXAMPLES / "build_section.toml")
-    assert f"{build_rate(case):.2f} °/30 m" in PAGE
-    [percent] = re.findall(rf"^\| {re.escape(change)} \| (\S+) % \|$", PAGE, re.MULTILINE)
-    found = 100 * (build_rate(CHANGES[change](case)) / build_rate(case) - 1)
-    assert found == pytest.approx(float(percent.replace("−", "-")), abs=0.5)
+def test_the_page_says_what_the_product_computes(section: Case, change: str) -> None:
+    assert f"{build_rate(section):.2f} °/30 m" in PAGE
+    found = 100 * (build_rate(CHANGES[change](section)) / build_rate(section) - 1)
+    said, rounding = percent(change)
+    assert found == pytest.approx(said, abs=rounding)
+
+
+@pytest.mark.parametrize("change", BUILT)
+def test_and_of_the_rest_what_finite_elements_give(section: Case, change: str) -> None:
+    inclination = section.survey.inclination[-1]
+    assert Built(section).build_rate(FORCE, inclination) == pytest.approx(build_rate(section), rel=1e-9)
+    found = 100 * (BUILT[change](section).build_rate(FORCE, inclination) / build_rate(section) - 1)
+    said, rounding = percent(change)
+    assert found == pytest.approx(said, abs=rounding)
 
 
 def test_every_line_of_the_page_is_tested() -> None:
-    table = PAGE.partition("| instead of what the case says | build rate |")[2]
-    assert re.findall(r"^\| ([^|]+) \| \S+ % \|$", table, re.MULTILINE) == list(CHANGES)
+    tables = PAGE.partition("| instead of what the case says | build rate |")[2]
+    assert re.findall(r"^\| ([^|]+) \| \S+ % \|$", tables, re.MULTILINE) == [*CHANGES, *BUILT]
+
+
+def test_the_page_of_an_fmu_says_the_same(section: Case) -> None:
+    assert set(BUILT) < set(LEFT_OUT)
+    for change, said in LEFT_OUT.items():
+        assert f"| {change} | {said} |" in PAGE
+        assert f"<tr><td>{change}</td><td>{said}</td></tr>" in page(section, "Borehole", "native", {})

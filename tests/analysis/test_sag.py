@@ -1,7 +1,7 @@
 """How far the beam is from the axis of the hole, against a published assembly, a textbook and the model itself."""
 
 from dataclasses import replace
-from math import radians
+from math import degrees, radians
 from pathlib import Path
 from zipfile import ZipFile
 
@@ -21,8 +21,9 @@ from boreprop.report.tables.steering import summarize as summarize_steering
 from boreprop.report.tables.summary import lines
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
+from boreprop_fmu.pack.documentation import page
 from conftest import Command
-from places import EXAMPLES
+from places import EXAMPLES, ROOT
 
 # a published assembly that drops: 7 × 2¾ in collars, stabilizers of full gauge at 45, 75 and 165 ft, a hole of 9 in
 PENDULUM = Case(
@@ -97,10 +98,21 @@ def test_summary_and_steering_warn_with_place_and_amount() -> None:
     [warning] = [text for what, text in lines(summarize(simulate(PENDULUM, sample_interval=0.5))) if what == "warning"]
     assert warning.startswith("37.4 m behind the bit the axis of the BHA is 188 mm")
     assert "below that of the hole" in warning
-    assert "whose radius is 114 mm" in warning
+    assert "74.1 mm beyond its wall" in warning
     steering = replace(PENDULUM, bit=BitRock(0.001, 1e-5, radians(89.0)))
     warnings = [text for what, text in steering_lines(summarize_steering(steering)) if what == "warning"]
     assert any("behind the bit the axis of the BHA is" in text for text in warnings)
+
+
+def test_the_pages_say_how_fast_such_an_assembly_drops(case: Case) -> None:
+    """For −2.952 °/100 ft as published: the curvature at which the bit has no side force."""
+    unresisting = replace(PENDULUM, bit=BitRock(0.001, 1e-5, radians(89.0)))
+    rate = degrees(30.0 * steady_response(unresisting, 0.0, radians(20.0)).build_rate)
+    said = f"drops {-rate:.1f} °/30 m"
+    assert said == "drops 6.0 °/30 m"
+    assert 2.952 / 100 / 0.3048 * 30 == pytest.approx(2.9, abs=0.05)
+    assert f"{said}, where 2.9 °/30 m are published" in (ROOT / "docs" / "limits.md").read_text(encoding="utf-8")
+    assert f"{said} here for 2.9 °/30 m" in page(case, "Borehole", "native", {})
 
 
 def test_nothing_is_said_of_a_bha_inside_its_hole() -> None:

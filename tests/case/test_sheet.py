@@ -160,6 +160,8 @@ SURVEY = b"measured_depth,inclination_deg\n2500,26\n"
             ":3: inclination_deg: must be a finite number, got ''",
         ),
         (b"measured_depth,inclination_deg\n2510,26,5\n", ":2: must have 2 values like the header, got 3"),
+        (b"Well 15/9-F-12\n" + SURVEY, ": must have the names of its columns in its first row, got ['Well 15/9-F-12']"),
+        (SURVEY + b"9" * 5000 + b",26\n", ":3: measured_depth: must be a finite number, got '9999"),
     ],
 )
 def test_what_is_no_survey_is_refused_by_file_line_and_value(tmp_path: Path, content: bytes, message: str) -> None:
@@ -169,6 +171,7 @@ def test_what_is_no_survey_is_refused_by_file_line_and_value(tmp_path: Path, con
         read_survey(file)
     assert str(caught.value).startswith(f"{file}{message}")
     assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 300 + len(str(file))
 
 
 @given(

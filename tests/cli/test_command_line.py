@@ -52,6 +52,8 @@ EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["p
             "[0.0, 3.66, 7.32]", "[0, 5, 4]", ("hole.measured_depth", "increase", "4.0"), id="survey not monotonic"
         ),
         pytest.param("= 1080.0", "= nan", ("bha.distributed_weight", "finite", "nan"), id="NaN"),
+        pytest.param("= 7.2e6", "= 1e308", ("3 flexural_stiffness / stabilizer_position[1]^2", "inf"), id="no F*"),
+        pytest.param("= 7.2e6", "= 1e-307", ("distributed_weight stabilizer", "finite", "inf"), id="no scaled weight"),
         pytest.param("[bit]", "[bit", ("TOML", "line"), id="no TOML"),
     ],
 )

@@ -73,3 +73,68 @@ def test_a_library_that_is_being_compiled(
     code = "import runpy; runpy.run_module('boreprop.kernel', run_name='__main__')"
     assert end(tmp_path, name, (tmp_path / "begun").exists, code) == status
     assert set(FOLDER.iterdir()) == before
+
+
+TWICE = """
+import os, signal, sys
+from boreprop.endings import endings_like_interrupt
+
+first, second = (getattr(signal, name) for name in sys.argv[1:])
+with endings_like_interrupt():
+    try:
+        os.kill(os.getpid(), first)
+    finally:
+        os.kill(os.getpid(), second)
+        print("what cleans up comes to its end")
+"""
+
+
+@pytest.mark.parametrize("first", ["SIGINT", "SIGTERM"])
+@pytest.mark.parametrize("second", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_a_second_signal_does_not_disturb_the_end_after_the_first(first: str, second: str) -> None:
+    done = subprocess.run([sys.executable, "-c", TWICE, first, second], capture_output=True, text=True, timeout=60)
+    assert done.stdout == "what cleans up comes to its end\n"
+    assert done.returncode == -signal.Signals[first]
+
+
+AT_RANDOM = """
+import os, random, signal, sys, time
+from pathlib import Path
+from boreprop.endings import endings_like_interrupt
+from boreprop.leftovers import temporary_folder
+from boreprop.replacing import replacing
+
+def write(folder):
+    print(end="x", flush=True)
+    while True:
+        with temporary_folder("tmp-", folder) as place, replacing(folder / "run.csv") as draft:
+            (place / "library").write_text("")
+            draft.write_text("whole")
+
+folder, chance = Path(sys.argv[1]), random.Random(1)
+for _ in range(int(sys.argv[2])):
+    begun, told = os.pipe()
+    child = os.fork()
+    if not child:
+        os.dup2(told, 1)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+        try:
+            with endings_like_interrupt():
+                write(folder)
+        finally:
+            os._exit(0)
+    os.close(told)
+    os.read(begun, 1)
+    os.close(begun)
+    for number in chance.choices([signal.SIGINT, signal.SIGTERM, signal.SIGHUP], k=3):
+        time.sleep(chance.expovariate(1 / 3e-4))
+        os.kill(child, number)
+    os.waitpid(child, 0)
+"""
+
+
+def test_signals_at_any_moment_leave_neither_drafts_nor_folders(tmp_path: Path) -> None:
+    command = [sys.executable, "-c", AT_RANDOM, str(tmp_path), "300"]
+    subprocess.run(command, check=True, timeout=120)
+    assert [path.name for path in tmp_path.iterdir()] in ([], ["run.csv"])
+    assert all(path.read_text() == "whole" for path in tmp_path.iterdir())

@@ -15,7 +15,7 @@ from boreprop.case.case import Case
 from boreprop.case.packed import CASE_FILE, read_packed_case
 from boreprop.core.quantities import BY_NAME, VARIABLES, scalar_names
 from boreprop.core.system import BottomHoleAssembly
-from boreprop.errors import InputError
+from boreprop.errors import InputError, ParameterError
 from boreprop_fmu.host.drive import FmuRun
 from flavours import Flavour, both_flavours, build_to_read
 
@@ -162,3 +162,12 @@ def test_an_fmu_without_our_names_is_refused(fmu: Path, tmp_path: Path) -> None:
         other.writestr("modelDescription.xml", archive.read("modelDescription.xml").replace(b"rss_force", b"pad_force"))
     with pytest.raises(InputError, match=r"other.fmu: must have a variable 'rss_force', got pad_force, "):
         FmuRun(tmp_path / "other.fmu")
+
+
+@pytest.mark.parametrize(("step", "stop"), [(None, 1e300), (1e-300, None)])
+def test_more_steps_than_there_are_times_are_refused(
+    case: Case, tmp_path: Path, flavour: Flavour, step: float | None, stop: float | None
+) -> None:
+    fmu = build_to_read(case, tmp_path / "Borehole.fmu", flavour)
+    with pytest.raises(ParameterError, match="step: must be >= "):
+        FmuRun(fmu, step=step, stop=stop)

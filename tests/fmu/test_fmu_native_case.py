@@ -83,6 +83,7 @@ def test_a_folder_that_is_none_is_refused(start: Start, folder: Path) -> None:
         ("rss_force 0.0", "rss_force 0,0", "case.txt:4: rss_force: must be a finite number, got '0,0'"),
         ("rss_force 0.0", "rss_force 1e999", "case.txt:4: rss_force: must be a finite number, got '1e999'"),
         ("rss_force 0.0\n", "", "case.txt:4: must be 'rss_force' and a value, got 'active_weight_on_bit "),
+        ("bit_diameter ", "bit_diameter -", ": bit_diameter: must be > 0, got -0.2159"),
         ("stations ", "stations 99999999", ": stations: must be 1 to "),
         ("stations ", "stations 0*", ": stations: must be a finite number, got '0*"),
         ("measured_depth[2] ", "measured_depth[2] -", "measured_depth: must increase, got ("),

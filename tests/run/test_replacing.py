@@ -1,6 +1,7 @@
 """What several writers of the same file, and one that is interrupted, leave behind."""
 
 import os
+from errno import ENOSPC
 from pathlib import Path
 
 import pytest
@@ -36,3 +37,11 @@ def test_a_draft_that_is_not_finished_is_removed(tmp_path: Path, error: type[Bas
         write()
     assert path.read_text() == "old"
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_write_that_fails_names_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "run.csv"
+    with pytest.raises(OSError, match="No space") as caught, replacing(path):
+        raise OSError(ENOSPC, "No space left on device")
+    assert caught.value.filename == str(path)
+    assert not list(tmp_path.iterdir())

@@ -9,7 +9,6 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from threading import Thread
 from urllib.parse import quote
 
@@ -17,6 +16,7 @@ import rerun as rr
 
 from boreprop.cli.console import warn
 from boreprop.errors import InputError
+from boreprop.leftovers import temporary_folder
 from boreprop.replacing import replacing
 
 from .feeder import Feeder, NewViewer, RunningViewer, check_that_one_listens
@@ -91,8 +91,8 @@ def open_recording(
 @contextmanager
 def scratch_file() -> Iterator[Path]:
     """Yield the name of a file that is removed at the end."""
-    with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-        yield Path(folder) / f"{APPLICATION}.rrd"
+    with temporary_folder("boreprop-view-") as folder:
+        yield folder / f"{APPLICATION}.rrd"
 
 
 @contextmanager

@@ -43,7 +43,11 @@ def run_command(
     check_run_output(output, files_read(fmu, schedule))
     forces = None if schedule is None else read_schedule(schedule)
     fmu_run = FmuRun(fmu, forces, step=step, stop=stop, relative_tolerance=tolerance)
-    with keeping_rows(output), console.progress("drilling", fmu_run.stop) as done:
-        trajectory = fmu_run.trajectory(done)
+    try:
+        with keeping_rows(output), console.progress("drilling", fmu_run.stop) as done:
+            trajectory = fmu_run.trajectory(done)
+    finally:
+        if fmu_run.warning:
+            console.warn(f"{fmu}: {fmu_run.warning}")
     write_trajectory(trajectory, output)
     print(f"{output}: {trajectory.row_count} rows over {trajectory['drilled_length'][-1]:g} m")

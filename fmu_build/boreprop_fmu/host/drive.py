@@ -19,6 +19,7 @@ from boreprop.run.trajectory import Stopped, Trajectory
 from .instance import interruptions, open_instance, read_description, uninterrupted
 
 MAX_ROWS = 10_000_000  # more would need gigabytes of memory
+MAX_POINTS = 2**53  # more are no different times
 CLOSE = 1e-9  # of a step: times closer than this are taken as equal, for they differ by rounding
 
 
@@ -46,6 +47,8 @@ class FmuRun:
         The case packed in the FMU, with the schedule of this run; None if there is none.
     start, step, stop
         First communication point, communication step and last communication point, s.
+    warning
+        The first warning that the FMU has logged so far; empty without one.
 
     Raises
     ------
@@ -75,8 +78,10 @@ class FmuRun:
         self.stop = self._choose("stop", stop, getattr(experiment, "stopTime", None))
         check_number("step", self.step, above=0.0)
         check_number("stop", self.stop, at_least=self.start)
+        check_number("step", self.step, at_least=(self.stop - self.start) / MAX_POINTS)
         self._variables = {variable.name: variable for variable in self._description.modelVariables}
         self._tolerance = relative_tolerance
+        self.warning = ""
         for name in ("rss_force", "drilled_length") + ("relative_tolerance",) * (relative_tolerance is not None):
             if name not in self._variables:
                 raise InputError(f"{fmu}: must have a variable {name!r}, got {', '.join(self._variables) or 'none'}")
@@ -91,7 +96,9 @@ class FmuRun:
         messages: deque[str] = deque(maxlen=1)
         time, handlers = self.start, interruptions()
         try:
-            with open_instance(self.fmu, self._description, messages, start=self.start, stop=self.stop) as slave:
+            with open_instance(
+                self.fmu, self._description, messages, start=self.start, stop=self.stop, warn=self._heed
+            ) as slave:
                 if self._tolerance is not None:
                     slave.setReal([self._variables["relative_tolerance"].valueReference], [self._tolerance])
                 changes = self._changes(slave)
@@ -133,6 +140,9 @@ class FmuRun:
         if stopped:
             raise Stopped(stopped, trajectory)
         return trajectory
+
+    def _heed(self, warning: str) -> None:
+        self.warning = self.warning or warning
 
     def _choose(self, name: str, given: float | None, default: str | float | None) -> float:
         if given is None and default is None:

@@ -1,21 +1,21 @@
 """Loads an FMU through fmpy: reads its description, and opens an instance of it safely in this process."""
 
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from signal import Signals, getsignal, raise_signal, signal
-from tempfile import TemporaryDirectory
 from threading import current_thread, main_thread
 from typing import Any
 
 import fmpy
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import FMU2Slave, defaultCallbacks, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2Fatal
+from fmpy.fmi2 import FMU2Slave, defaultCallbacks, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, fmi2Fatal, fmi2Warning
 
 from boreprop.case.archive import open_archive
 from boreprop.errors import InputError
 from boreprop.kernel.compiler import host_platform
+from boreprop.leftovers import temporary_folder
 
 KIND = "FMI 2.0 co-simulation FMU"
 
@@ -37,7 +37,14 @@ def read_description(fmu: Path) -> Any:
 
 @contextmanager
 def open_instance(
-    fmu: Path, description: Any, messages: deque[str], *, start: float, stop: float, platform: str | None = None
+    fmu: Path,
+    description: Any,
+    messages: deque[str],
+    *,
+    start: float,
+    stop: float,
+    platform: str | None = None,
+    warn: Callable[[str], None] = lambda _: None,
 ) -> Iterator[Any]:
     """Yield an instance of an FMU in initialization mode; terminate and free it at the end. This runs the FMU's code.
 
@@ -46,11 +53,13 @@ def open_instance(
     fmu, description
         The FMU, and its description from `read_description`.
     messages
-        The lines of the instance's log are appended to it.
+        The lines of the instance's log but warnings are appended to it.
     start, stop
         Start and end of the experiment, s.
     platform
         The folder in binaries/ from which the library is taken, named as in FMI 2.0.4. None: that of this machine.
+    warn
+        Called with each warning in the instance's log.
 
     Raises
     ------
@@ -59,9 +68,10 @@ def open_instance(
     FMICallException
         If a call fails.
     """
-    callbacks = _log_to(messages)
+    callbacks = _log_to(messages, warn)
     identifier = description.coSimulation.modelIdentifier
-    with TemporaryDirectory(prefix="boreprop-fmu-") as directory:
+    with temporary_folder("boreprop-fmu-") as folder:
+        directory = str(folder)
         with open_archive(fmu) as archive:
             archive.extractall(directory)
         if Path(directory, "resources", "slavemodule.txt").exists():
@@ -93,11 +103,15 @@ def open_instance(
                 slave.freeLibrary()
 
 
-def _log_to(messages: deque[str]) -> fmi2CallbackFunctions:
-    """Callbacks for an instance that logs to `messages`; they must be kept as long as the instance."""
+def _log_to(messages: deque[str], warn: Callable[[str], None]) -> fmi2CallbackFunctions:
+    """Callbacks for an instance that logs to `messages`, or warns; they must be kept as long as the instance."""
 
     def log(*arguments: Any) -> None:  # environment, instance, status, category, message
-        messages.append(arguments[4].decode(errors="replace").replace("%%", "%").replace("##", "#"))
+        line = arguments[4].decode(errors="replace").replace("%%", "%").replace("##", "#")
+        if arguments[2] == fmi2Warning:
+            warn(line)
+        else:
+            messages.append(line)
 
     return fmi2CallbackFunctions(
         logger=fmi2CallbackLoggerTYPE(log),

@@ -7,11 +7,11 @@ import re
 import struct
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from boreprop.errors import InputError
 from boreprop.kernel import compiler
 from boreprop.kernel.compiler import CompilerError, NoCompilerError, compile_library, host_platform, sources_digest
+from boreprop.leftovers import temporary_folder
 from boreprop.replacing import replacing
 
 NATIVE = Path(__file__).resolve().parent
@@ -89,8 +89,8 @@ def build_binary(platform: str, folder: Path = BINARIES) -> Path:
     output = binary_path(platform, folder)
     if platform not in UNIVERSAL:
         return compile_binary(output, platform)
-    with TemporaryDirectory(prefix="boreprop-fmu-") as drafts:
-        slices = [compile_binary(binary_path(name, Path(drafts)), name).read_bytes() for name in UNIVERSAL[platform]]
+    with temporary_folder("boreprop-fmu-") as drafts:
+        slices = [compile_binary(binary_path(name, drafts), name).read_bytes() for name in UNIVERSAL[platform]]
     output.parent.mkdir(parents=True, exist_ok=True)
     with replacing(output) as draft:
         draft.write_bytes(join(slices))

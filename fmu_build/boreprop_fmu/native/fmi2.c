@@ -2,7 +2,7 @@
 
    A call that cannot do what it was asked logs one line and gives one of two statuses. The instance goes on after both.
    An error is logged whether the host wants debug logging or not, a discard only if it does; else the first goes to
-   stderr.
+   stderr. That the BHA has left the hole, where the model ends, is logged like an error, as a warning, once.
    - fmi2Discard, from fmi2DoStep: an input or the step is bad, or the integrator fails. Nothing has moved, and the next
      step with good values works.
    - fmi2Error: the call itself is wrong; the parameters make no drilling system (then every step gives this, until

@@ -32,6 +32,7 @@ typedef struct {
     double weight;                  /* on the bit, the last that drilled; at the start that of the case */
     int run_has_inputs;             /* the run has taken over the present inputs */
     int discarded;                  /* the last step was discarded */
+    double next_look;               /* from which drilled length on: whether the axis of the BHA leaves the hole */
     Run *run;                       /* made when it is first needed */
 } Component;
 
@@ -89,6 +90,7 @@ static int start_over(Component *c) {
     c->run = NULL, c->survey_file = none;
     c->phase = INSTANTIATED, c->outputs = STALE, c->run_has_inputs = c->discarded = 0;
     c->has_warned = c->has_tolerance = 0;
+    c->next_look = 0.0;
     c->time = c->since = c->from = 0.0, c->rate = -1.0, c->stop = INFINITY;
     c->weight = c->packed.start[IN_ACTIVE_WEIGHT_ON_BIT];
     memset(c->derivative, 0, sizeof c->derivative);

@@ -17,6 +17,7 @@ enum { GUID_LENGTH = 36 };
 typedef struct {
     char guid[GUID_LENGTH + 1];
     Variables variables;
+    double hole_radius;           /* m */
     double start[MOST_VARIABLES]; /* by value reference; 0 for outputs */
     Survey survey;
     double *stations; /* the numbers of the survey; to be freed */
@@ -73,6 +74,17 @@ static int read_identity(CaseFile *file, PackedCase *packed, char why[LINE]) {
     return explain(why, "%s: quantities: must be %s (%s), got %s", file->path, QUANTITIES_DIGEST, BINARY, shown);
 }
 
+static int read_radius(CaseFile *file, PackedCase *packed, char why[LINE]) {
+    char fault[LINE];
+    double diameter;
+    Problem problem;
+    if (!read_number(file, NAME[Q_BIT_DIAMETER], &diameter, why)) return 0;
+    packed->hole_radius = diameter / 2;
+    if (check_positive(Q_BIT_DIAMETER, diameter, &problem)) return 1;
+    tell(&problem, fault);
+    return explain(why, "%s:%ld: %s", file->path, file->line, fault);
+}
+
 /* The survey, column by column; there cannot be more stations than there is text. */
 static int read_stations(CaseFile *file, PackedCase *packed, char why[LINE]) {
     static const Name COLUMNS_OF_SURVEY[] = {Q_MEASURED_DEPTH, Q_INCLINATION};
@@ -104,6 +116,7 @@ static int read_lines(CaseFile *file, PackedCase *packed, char why[LINE]) {
         if (all->at[i].role != OUTPUT && all->at[i].kind == REAL &&
             !read_number(file, all->at[i].name, &packed->start[i], why))
             return 0;
+    if (!read_radius(file, packed, why)) return 0;
     if (!read_stations(file, packed, why)) return 0;
     if (!*file->at) return 1;
     file->at[strcspn(file->at, "\r\n")] = '\0';

@@ -78,6 +78,7 @@ static int restore(Component *c, const Saved *saved, char why[LINE]) {
     memcpy(c->derivative, fixed + 6, sizeof c->derivative);
     c->weight = fixed[9], c->has_tolerance = fixed[10] != 0.0;
     memcpy(c->value, value, sizeof value);
+    if (isfinite(c->next_look)) c->next_look = 0.0; /* it may be another hole */
     return 1;
 }
 

@@ -64,6 +64,20 @@ static fmi2Status check_step(
     return fmi2Discard;
 }
 
+/* Say, once, where the axis of the BHA has left the hole. The farther it is from the wall, the more of the hole is
+   drilled until it is looked at again. States know nothing of that: a host that goes back and forth hears it once. */
+static void look_at_body(Component *c) {
+    Drilling *drilling = &c->run->drilling;
+    double length = drilling_length(drilling), reach = drilling->system.stabilizer_position[drilling->system.n - 1];
+    double radius = c->packed.hole_radius;
+    char line[MESSAGE];
+    Sag sag = run_sag(c->run);
+    c->next_look = length + reach * larger(1 - fabs(sag.offset) / radius, OFTEN);
+    if (!(fabs(sag.offset) > radius)) return;
+    c->next_look = INFINITY;
+    log_line(&c->callbacks, c->name, fmi2Warning, say_outside(sag, radius, length, line));
+}
+
 /* One communication step. The length counts from an anchor, so that rounding does not add up from step to step. */
 static fmi2Status step(Component *c, double time, double size, char why[LINE]) {
     double end[INPUT_COUNT], *value = c->value, start_rate = value[IN_RATE_OF_PENETRATION];
@@ -96,6 +110,7 @@ static fmi2Status step(Component *c, double time, double size, char why[LINE]) {
     if (!stands || memcmp(value, end, sizeof end)) c->outputs = STALE;
     memcpy(value, end, sizeof end);
     memset(c->derivative, 0, sizeof c->derivative);
+    if (drilling_length(&c->run->drilling) >= c->next_look) look_at_body(c);
     return fmi2OK;
 }
 

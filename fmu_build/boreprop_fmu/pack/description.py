@@ -15,7 +15,7 @@ from boreprop.units import UNITS
 from .licenses import copyright_line
 
 LOG_CATEGORIES = {
-    "logStatusWarning": "What was not taken over, though nothing fails.",
+    "logStatusWarning": "What was not taken over, and where the BHA leaves the hole, though nothing fails.",
     "logStatusDiscard": "Why a step was discarded.",
     "logStatusError": "Bad parameters, outputs that cannot be computed, and calls that must not be made.",
 }

@@ -57,6 +57,7 @@ def case_text(case: Case, guid: str) -> bytes:
     lines: dict[str, object] = {"guid": guid, "quantities": quantities_digest(), "stabilizers": n}
     names = scalar_names(INPUTS + PARAMETERS, n)
     lines |= {name: float(start[name]) for name in names if not isinstance(start[name], str)}
+    lines["bit_diameter"] = float(case.bit_diameter)
     lines["stations"] = len(survey.measured_depth)
     for column, values in (("measured_depth", survey.measured_depth), ("inclination", survey.inclination)):
         lines |= {f"{column}[{k}]": float(value) for k, value in enumerate(values, start=1)}

@@ -52,6 +52,7 @@ def pack_python(case: Case, identifier: str) -> dict[str, bytes]:
             "log_switch": log_switch(),
             "stabilizers": n,
             "start": start_values(case),
+            "bit_diameter": case.bit_diameter,
             "survey": asdict(case.survey),
         }
         return {**describe(case, identifier, guid), "resources/fmu.json": json.dumps(packed, indent=1).encode()}

@@ -25,6 +25,7 @@ from boreprop.core.drilling import Drilling
 from boreprop.core.errors import BorepropError, ParameterError, TableError
 from boreprop.core.options import Options
 from boreprop.core.quantities import MOST_DRILLED, VARIABLES, Quantity, columns_of, fields_of
+from boreprop.core.sag import Watch
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop_fmu.python.process import forget, give_ctrl_c_back, open_log, write_to_user
@@ -69,6 +70,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         self._refused = ""  # what was wrong with a call since the last step
         self._line = self._told = ""  # the last lines that went to the log and to stderr
         self._time, self._stop = 0.0, inf  # where the last step ended, and where none may end beyond
+        self._watch = Watch(packed["bit_diameter"] / 2)
         self._anchor = (0.0, 0.0, nan)  # since this time, from this drilled length, at this rate of penetration
 
     # What a master calls
@@ -240,6 +242,9 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
             drilling.advance(drilled_length, given["rss_force"], weight)
             self._weight, self._stale = weight if drills else self._weight, True
         self._time, self._anchor = current_time + step_size, anchor
+        if warning := self._watch.look(drilling):
+            self._log(warning, Fmi2Status.warning)
+            open_log(self._log_switch)  # else few would hear of it: hosts leave logging off
 
     def _refresh(self) -> None:
         """Outputs of the present hole under the present inputs.
@@ -329,6 +334,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         self._outputs, self._stale = self._nothing(), True
         self._time, self._anchor = state["time"], tuple(state["anchor"])
         self._drilling = None
+        self._watch.look_soon()
         if state["drilling"]:
             self._drilling = self._build(self._survey)  # any: the hole is in the state
             self._drilling.restore(state["drilling"])

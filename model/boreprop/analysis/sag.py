@@ -5,7 +5,6 @@ comes out of the hole, the wall would carry it in truth, and neither forces nor 
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from math import sin
 
 import numpy as np
@@ -13,41 +12,15 @@ import numpy as np
 from ..arrays import Floats
 from ..case.case import Case
 from ..core.beam import Beam
+from ..core.sag import POINTS, Body, places
+from ..core.sag import Sag as Sag
 from ..core.system import scale
 from ..run.completion import case_of
 from ..run.trajectory import Trajectory
 from .hole import HoleAxis, bit_positions, hole_of
 from .steering import SteadyResponse
 
-POINTS = 36  # along the BHA: between two, its axis bends by far less than it sags
 BATCH = 10_000  # rows at once, which limits memory
-
-
-@dataclass(frozen=True)
-class Sag:
-    """Where the axis of a BHA is farthest from that of the hole.
-
-    Parameters
-    ----------
-    offset
-        Distance of the axis of the BHA from that of the hole, m, positive to the high side.
-    position
-        Distance from the bit, m.
-    hole_radius
-        Radius of the hole, m.
-    drilled_length
-        Drilled length of the bit there, m; nan if it is the same at all lengths.
-    """
-
-    offset: float
-    position: float
-    hole_radius: float
-    drilled_length: float
-
-    @property
-    def outside(self) -> bool:
-        """Whether the axis of the BHA leaves the hole."""
-        return abs(self.offset) > self.hole_radius
 
 
 class BeamInHole:
@@ -69,14 +42,12 @@ class BeamInHole:
     def __init__(self, case: Case, points: int = POINTS) -> None:
         bha = case.bha
         self.stabilizer: Floats = np.array(bha.stabilizer_positions)
-        even = np.linspace(0.0, self.stabilizer[-1], points)
-        self.s: Floats = np.unique(np.append(even, [*self.stabilizer, bha.rss_position]))
         # The shape is linear in the loads e_n, F_1 … F_{n−1}, F_RSS, sin⟨Θ⟩_1; these are the shapes under unit loads.
-        beam = Beam(scale(bha, case.bit))
-        units = np.eye(self.stabilizer.size + 2).tolist()
-        shapes = [[beam.shape(s, e_n, F, rss, g) for s in self.s / bha.length_scale] for e_n, *F, rss, g in units]
+        even = places(self.stabilizer[-1], points)
+        self.s: Floats = np.unique(np.append(even, [*self.stabilizer, bha.rss_position]))
+        body = Body(Beam(scale(bha, case.bit)), (self.s / bha.length_scale).tolist())
         load_scales = np.array([bha.length_scale] + [bha.force_scale] * self.stabilizer.size + [1.0])
-        self._shape_per_load = bha.length_scale * np.array(shapes) / load_scales[:, None]
+        self._shape_per_load = bha.length_scale * np.array(body.shapes).T / load_scales[:, None]
 
     def bent(self, e_n: Floats, forces: Floats, rss_force: Floats, sin_inclination: Floats) -> Floats:
         """Deflection of the axis of the BHA from that of the bit, eq. (5) less e(s), m, (m, k).

@@ -139,7 +139,7 @@ class Sheet:
             for heading, column, numbers in zip(headings, cells, style_columns, strict=True):
                 if not isfinite(numbers[row]):
                     constraint = f"{heading}: must be a finite number"
-                    raise InputError(f"{self.path}:{line}: {constraint}, got {column[row]!r}")
+                    raise InputError(f"{self.path}:{line}: {constraint}, got {shown(column[row])}")
 
     def missing(self, *wanted: str) -> InputError:
         """The error that says that none of these columns is there, each given with its unit."""
@@ -159,7 +159,8 @@ def read_sheet(path: str | Path, known: Callable[[str], bool]) -> Sheet:
     Raises
     ------
     InputError
-        If the file cannot be read, is no CSV file, or a row is shorter or longer than the header.
+        If the file cannot be read, is no CSV file, a row is shorter or longer than the header, or the first row, unlike
+        those below it, names no column that is looked for.
     """
     path = Path(path)
     text = _text(path)
@@ -173,6 +174,9 @@ def read_sheet(path: str | Path, known: Callable[[str], bool]) -> Sheet:
                 continue
             if len(row) != len(headings):
                 row = _trimmed(row, len(headings))
+                if not any(map(known, headings)):
+                    constraint = "must have the names of its columns in its first row"
+                    raise InputError(f"{path}: {constraint}, got {shown(headings)}")
                 if len(row) != len(headings):
                     count = f"must have {len(headings)} values like the header, got {len(row)}"
                     raise InputError(f"{path}:{line}: {count}")

@@ -8,7 +8,8 @@ import typer
 from ..case.case import Case
 from ..case.file import load_case
 from ..case.usual import unusual
-from ..errors import InputError
+from ..core.system import scale
+from ..errors import InputError, ParameterError
 from ..run.results import read_trajectory
 from ..run.trajectory import Trajectory
 from . import console
@@ -26,6 +27,10 @@ RunCase = Annotated[
 def open_case(path: Path) -> Case:
     """Read a case file; warn, once and in one line, of what in it is far from any bottom-hole assembly."""
     case = load_case(path)
+    try:
+        scale(case.bha, case.bit)
+    except ParameterError as error:  # of a number that no key has, so the case is not refused for a key
+        raise InputError(f"{path}: {error}") from error
     found = unusual(case)
     if found:
         console.warn(f"{path}: {'; '.join(found)}")

@@ -57,6 +57,13 @@ OBSTACLES = {
 }
 """What may stop an engine on its way, by code: what it is, and what helps."""
 
+OUTSIDE = (
+    "{position} behind the bit the axis of the BHA is {offset} {side} that of the hole{when}, "
+    "{beyond} beyond its wall: its body would lie on the wall, which the model leaves out, "
+    "so forces and build rates are not to be trusted"
+)
+"""Where the model ends: a warning. Lengths come with their units, in those of the reader."""
+
 SENTENCES = {code: f"{{name}}: {constraint}, got {got}" for code, (constraint, got) in CONSTRAINTS.items()} | {
     code: f"{met}: {helps}" for code, (met, helps) in OBSTACLES.items()
 }

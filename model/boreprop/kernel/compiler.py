@@ -17,9 +17,9 @@ from hashlib import sha256
 from importlib.util import find_spec
 from pathlib import Path
 from platform import libc_ver, machine
-from tempfile import TemporaryDirectory
 
 from ..core.errors import BorepropError
+from ..leftovers import temporary_folder
 
 FOLDER = Path(__file__).resolve().parent  # of the kernel's sources
 
@@ -137,9 +137,9 @@ def compile_library(
     sources, environment = [source.resolve(), *compiler.sources], compiler.environment
     output = output.resolve()
     # In a folder of its own, since linkers leave more than the library. They write its name, as it is given, into it.
-    with TemporaryDirectory(dir=output.parent, prefix=f".{output.name}.") as draft:
+    with temporary_folder(f".{output.name}.", output.parent) as draft:
         if not CACHES & set(environment):  # zig would not start
-            environment["ZIG_GLOBAL_CACHE_DIR"] = str(Path(draft, "cache"))
+            environment["ZIG_GLOBAL_CACHE_DIR"] = str(draft / "cache")
         compiles = [["-c", str(path), "-o", f"{path.stem}.o"] for path in sources]
         link = ["-shared", *(f"{path.stem}.o" for path in sources), "-o", output.name, *compiler.links]
         for task in (*compiles, link):
@@ -147,7 +147,7 @@ def compile_library(
             run = subprocess.run(command, cwd=draft, env=environment, capture_output=True, text=True, errors="replace")
             if run.returncode:
                 raise CompilerError(f"{source}: must compile with {Path(command[0]).name}, got: {_gist(run.stderr)}")
-        os.replace(Path(draft) / output.name, output)
+        os.replace(draft / output.name, output)
     return output
 
 

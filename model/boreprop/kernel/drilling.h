@@ -103,7 +103,7 @@ static inline void drilling_cancel(Drilling *d) { go_back(&d->integrator); }
 
 /* What the outputs are computed from: the state where the bit is. */
 typedef struct {
-    double l1, F_star, theta, Theta, psi, F_0, F[MAX_STABILIZERS], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
+    double l1, F_star, theta, Y, Theta, psi, F_0, F[MAX_STABILIZERS], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
     Loads loads;
     const Mode *mode;
 } Present;
@@ -116,7 +116,7 @@ static inline Present present(Drilling *d) {
     at.l1 = length_scale(&d->system), at.F_star = force_scale(&d->system);
     at.earlier = earlier_inclination(p, now->xi - 1.0);
     step_state(&now->step, now->xi, state);
-    at.theta = state[ANGLE];
+    at.theta = state[ANGLE], at.Y = state[LATERAL];
     at.loads = present_loads(p);
     at.mode = settle(&p->modes, &at.loads, now->regime.contact);
     at.F_0 = row_value(&at.mode->F_0, &at.loads, p->scaled.n);

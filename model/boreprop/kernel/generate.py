@@ -7,8 +7,9 @@ from hashlib import sha256
 
 from ..core import radau
 from ..core.options import Options
-from ..core.problems import DERIVED, SENTENCES
+from ..core.problems import DERIVED, OUTSIDE, SENTENCES
 from ..core.quantities import INPUTS, MAX_STABILIZERS, MOST_DRILLED, OUTPUTS, PARAMETERS, QUANTITIES, Quantity
+from ..core.sag import OFTEN, POINTS
 from ..core.system import LEAST_SPAN
 from ..replacing import replacing
 from .compiler import FOLDER
@@ -47,6 +48,8 @@ QUANTITIES_HEADER = """\
 #define QUANTITIES_DIGEST "{digest}" /* of this file, but for this line, and of problems.h */
 #define MOST_DRILLED {most_drilled!r} /* m in a communication step */
 #define LEAST_SPAN {least_span!r} /* m between stabilizers, at least: forces between closer ones are rounding errors */
+#define POINTS_ALONG_BHA {points} /* at which its distance from the hole is looked at */
+#define OFTEN {often!r} /* of its length, at most, from look to look */
 
 enum {{ MAX_STABILIZERS = {most}, PARAMETER_COUNT = {parameters}, INPUT_COUNT = {inputs}, OUTPUT_COUNT = {outputs} }};
 
@@ -130,6 +133,9 @@ typedef enum {{
     NAME_COUNT
 }} Name;
 
+/* A format for five texts. */
+#define OUTSIDE "{outside}"
+
 static const char *const SENTENCE[CODE_COUNT] = {{
     "",
 {sentences}
@@ -199,6 +205,8 @@ def quantities_header(system: Table = SYSTEM, inputs: Table = INPUTS, outputs: T
     numbers = {
         "least_span": LEAST_SPAN,
         "most_drilled": MOST_DRILLED,
+        "points": POINTS,
+        "often": OFTEN,
         "most": MAX_STABILIZERS,
         "parameters": len(system),
         "inputs": len(inputs),
@@ -227,6 +235,7 @@ def problems_header() -> str:
     return PROBLEMS_HEADER.format(
         codes=_lines(f"{code.upper().replace(' ', '_')}," for code in SENTENCES),
         names=_lines(f"Q_{name.upper()}," for name in NAMES),
+        outside=OUTSIDE.format(position="%s m", offset="%s mm", side="%s", when=" after %s m", beyond="%s mm"),
         sentences=_lines(f'"{sentence}",' for sentence in SENTENCES.values()),
         texts=_lines(f'"{text}",' for text in NAMES.values()),
     )

@@ -13,10 +13,10 @@ typedef long long Count; /* of stations, and of pieces of hole: 32 bits are not 
 static inline double larger(double a, double b) { return b > a ? b : a; }
 static inline double smaller(double a, double b) { return b < a ? b : a; }
 
-/* The number in the format %.*g, or %.*e, with a decimal point in every locale. */
-static inline const char *spell(double value, int exponential, int digits, char text[32]) {
+/* The number in the format %.*e, %.*f or %.*g, with a decimal point in every locale. */
+static inline const char *spell(double value, char form, int digits, char text[32]) {
     char *end = text;
-    snprintf(text, 32, exponential ? "%.*e" : "%.*g", digits, value);
+    snprintf(text, 32, form == 'e' ? "%.*e" : form == 'f' ? "%.*f" : "%.*g", digits, value);
     if (!isfinite(value)) return strcpy(text, isnan(value) ? "nan" : value > 0 ? "inf" : "-inf");
     for (const char *from = text; *from; from++)
         if (strchr("0123456789+-e", *from)) *end++ = *from;
@@ -26,7 +26,7 @@ static inline const char *spell(double value, int exponential, int digits, char 
 }
 
 /* The number with so many digits. */
-static inline const char *decimal(double value, int digits, char text[32]) { return spell(value, 0, digits, text); }
+static inline const char *decimal(double value, int digits, char text[32]) { return spell(value, 'g', digits, text); }
 
 /* The shortest decimal that reads back as the same number, as Python writes it. */
 static inline const char *represent(double value, char text[32]) {
@@ -34,7 +34,7 @@ static inline const char *represent(double value, char text[32]) {
     char local[32];
     do snprintf(local, sizeof local, "%.*g", digits, value);
     while (strtod(local, NULL) != value && ++digits < 17);
-    if (digits == 17 && fabs(value) >= 1e16) spell(value, 1, 16, text);
+    if (digits == 17 && fabs(value) >= 1e16) spell(value, 'e', 16, text);
     else decimal(value, digits, text);
     return isfinite(value) && !strpbrk(text, ".e") ? strcat(text, ".0") : text;
 }

@@ -87,6 +87,9 @@ typedef enum {
     NAME_COUNT
 } Name;
 
+/* A format for five texts. */
+#define OUTSIDE "%s m behind the bit the axis of the BHA is %s mm %s that of the hole after %s m, %s mm beyond its wall: its body would lie on the wall, which the model leaves out, so forces and build rates are not to be trusted"
+
 static const char *const SENTENCE[CODE_COUNT] = {
     "",
     "{name}: must be a finite number, got {value}",

@@ -8,9 +8,11 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "c8593d224b1addb7" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "e631805296e4024d" /* of this file, but for this line, and of problems.h */
 #define MOST_DRILLED 100000.0 /* m in a communication step */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: forces between closer ones are rounding errors */
+#define POINTS_ALONG_BHA 36 /* at which its distance from the hole is looked at */
+#define OFTEN 0.125 /* of its length, at most, from look to look */
 
 enum { MAX_STABILIZERS = 6, PARAMETER_COUNT = 9, INPUT_COUNT = 3, OUTPUT_COUNT = 15 };
 

@@ -5,6 +5,7 @@ from math import isnan
 from ...analysis.sag import Sag, steady_sag
 from ...analysis.steering import steady_response
 from ...case.case import Case
+from ...core.problems import OUTSIDE
 from ...units import UNITS, small_length
 
 
@@ -19,11 +20,11 @@ def outside_the_hole(sag: Sag) -> str:
     """A warning if the axis of the BHA leaves the hole: by how much and where; empty if it does not."""
     if not sag.outside:
         return ""
-    side = "below" if sag.offset < 0 else "above"
-    offset, radius = (small_length().text(length) for length in (abs(sag.offset), sag.hole_radius))
-    place = f"{UNITS['m'].text(sag.position)} behind the bit"
-    when = "" if isnan(sag.drilled_length) else f" after {UNITS['m'].text(sag.drilled_length)}"
-    return (
-        f"{place} the axis of the BHA is {offset} {side} that of the hole{when}, whose radius is {radius}: "
-        "its body would lie on the wall, which the model leaves out, so forces and build rates are not to be trusted"
+    small = small_length()
+    return OUTSIDE.format(
+        position=UNITS["m"].text(sag.position),
+        offset=small.text(abs(sag.offset)),
+        side=sag.side,
+        when="" if isnan(sag.drilled_length) else f" after {UNITS['m'].text(sag.drilled_length)}",
+        beyond=small.text(sag.beyond),
     )
