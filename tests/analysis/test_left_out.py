@@ -1,4 +1,4 @@
-"""The tables of how much it matters what is not well known, or what the model leaves out: in docs/limits.md and FMUs."""
+"""The tables of how much it matters what is not known, or what the model leaves out: in docs/limits.md and FMUs."""
 
 import re
 from collections.abc import Callable

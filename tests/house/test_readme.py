@@ -47,6 +47,6 @@ def test_what_it_shows_works_in_order(
     assert float(printed[1]) != 0.0
 
 
-@pytest.mark.parametrize("target", sorted(set(re.findall(r"(?:^    |`)make (\w+)", TEXT, re.MULTILINE))))
-def test_what_it_makes_can_be_made(target: str) -> None:
-    assert re.search(rf"^{target}: ", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE)
+@pytest.mark.parametrize("goal", sorted(set(re.findall(r"(?:^    |`)make (\w+)", TEXT, re.MULTILINE))))
+def test_what_it_makes_can_be_made(goal: str) -> None:
+    assert re.search(rf"^{goal}: ", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE)
