@@ -5,7 +5,7 @@ BIN = .venv/bin
 C = $(wildcard model/boreprop/kernel/*.[ch] fmu_build/boreprop_fmu/native/*.[ch] fmu_build/boreprop_fmu/native/*/*.h)
 
 .PRECIOUS: .venv/%.installed
-.PHONY: demo binaries test soak lint docs bench clean
+.PHONY: demo binaries wheels test soak lint docs bench clean
 
 demo: .venv/all.compiled  # the main job: case file, FMU, run, viewer recording, figures, summary; results in out/
 	mkdir -p out
@@ -27,18 +27,24 @@ demo: .venv/all.compiled  # the main job: case file, FMU, run, viewer recording,
 binaries: .venv/dev.installed  # what native FMUs are packed with, for all platforms
 	$(BIN)/python -m boreprop_fmu.native all
 
+wheels: .venv/dev.installed  # wheels for all platforms and the source distribution, in dist/; then all that is asked of them
+	rm -rf dist
+	$(BIN)/python build_wheels.py
+	$(BIN)/python -m pytest tests/wheels --wheels dist -n auto --dist loadfile -rap
+
 test: .venv/dev.compiled  # the whole suite
 	$(BIN)/python -m pytest -n auto
 
 soak: .venv/dev.compiled  # new examples of the property tests, then the fuzzers: make soak MINUTES=40 [SEED=…]
 	$(BIN)/python tests/soak.py --minutes $(MINUTES) $(if $(SEED),--seed $(SEED))
 
-lint: .venv/dev.installed  # style, types and the import contract; style and faults of the C
+lint: .venv/dev.installed  # style, types and the import contract; style and faults of the C; the workflows
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/python tests/lint_c.py
+	$(BIN)/python tests/lint_yaml.py
 
 docs: .venv/docs.compiled  # the documentation, with its tutorials executed: out/docs/index.html
 	rm -rf out/docs

@@ -1,6 +1,13 @@
-"""Compiles the kernel and the native FMU while the package is built, if it can; without a compiler all goes on."""
+"""Compiles the kernel and the native FMU while the package is built.
 
+An installation compiles them for its own machine if it can; without a compiler all goes on. With a platform in
+`BOREPROP_PLATFORM` (linux64, win64, …) ziglang compiles, or the build fails: a wheel for that platform, on whatever
+machine it is built, with the FMU's binaries for all platforms in it. `build_wheels.py` does that for each.
+"""
+
+import os
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -13,31 +20,52 @@ class CompilingHook(BuildHookInterface[Any]):
     """An editable installation has the libraries beside their sources, a wheel in itself."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Compile, and say so; what then has the library in it is a wheel for this platform only."""
+        """Compile, and say so; what then has the library in it is a wheel for one platform only."""
         sys.path[:0] = [str(Path(self.root, folder)) for folder in ("model", "fmu_build")]
-        from boreprop.kernel.compiler import CompilerError, build_library, library_path
-        from boreprop_fmu.native.binaries import BINARIES, build_binaries
+        from boreprop.errors import BorepropError
+        from boreprop.kernel.compiler import PLATFORMS
 
         self.folder = TemporaryDirectory()
         editable = version == "editable"
-        folder = Path(self.folder.name)
+        platform = None if editable else os.environ.get("BOREPROP_PLATFORM")
         made = {}
         try:
-            library = build_library(library_path() if editable else folder / library_path().name)
-            made[str(library)] = f"boreprop/kernel/{library.name}"
-            self.app.display_info(f"The kernel is compiled: {library.name}")
-            for binary in build_binaries(folder=BINARIES if editable else folder):
-                made[str(binary)] = f"boreprop_fmu/binaries/{binary.parent.name}/{binary.name}"
-                self.app.display_info(f"The native FMU is compiled: {binary.parent.name}")
-        except (CompilerError, OSError) as error:
+            for library, place in self.compile(platform, editable):
+                made[str(library)] = place
+                self.app.display_info(f"Compiled: {place}")
+        except (BorepropError, OSError) as error:
+            if platform:
+                raise
             what = "native FMU is not compiled, FMUs need Python" if made else "kernel is not compiled, Python does all"
             self.app.display_warning(f"The {what}: {error}")
         if made and not editable:
             build_data["force_include"] |= made
             build_data["pure_python"] = False
-            platform = next(tag for tag in platform_tags() if not tag.startswith(("manylinux", "musllinux")))
-            build_data["tag"] = f"py3-none-{platform}"
+            build_data["tag"] = f"py3-none-{PLATFORMS[platform].tag if platform else own_tag()}"
+
+    def compile(self, platform: str | None, editable: bool) -> Iterator[tuple[Path, str]]:
+        """Compile the kernel for a platform and the FMU for all, or both for this machine.
+
+        Yields
+        ------
+        Each library as soon as it is there, and where it is in a wheel.
+        """
+        from boreprop.kernel.compiler import build_library, library_path
+        from boreprop_fmu.native.binaries import BINARIES, PLATFORMS, build_binaries, check_platform
+
+        if platform:
+            check_platform(platform)
+        folder = Path(self.folder.name)
+        library = build_library(library_path() if editable else folder / library_path(platform).name, platform)
+        yield library, f"boreprop/kernel/{library.name}"
+        for binary in build_binaries(PLATFORMS if platform else (), BINARIES if editable else folder):
+            yield binary, f"boreprop_fmu/binaries/{binary.parent.name}/{binary.name}"
 
     def finalize(self, version: str, build_data: dict[str, Any], artifact_path: str) -> None:  # noqa: ARG002
         """Leave nothing behind."""
         self.folder.cleanup()
+
+
+def own_tag() -> str:
+    """The platform of a wheel with what is compiled for this machine by its own compiler."""
+    return next(tag for tag in platform_tags() if not tag.startswith(("manylinux", "musllinux")))

@@ -33,7 +33,7 @@ hypothesis.settings.register_profile("soak", SUITE, derandomize=False)
 hypothesis.settings.load_profile("suite")
 providers._get_local_constants = lambda: providers._local_constants
 
-pytest_plugins = ["studies", "steering_cases", "native_fmu", "numbered_runs"]  # their fixtures
+pytest_plugins = ["built_wheels", "studies", "steering_cases", "native_fmu", "numbered_runs"]  # their fixtures
 
 # what a terminal or a server that runs the suite sets would change what commands print
 for name in ("CI", "COLUMNS", "FORCE_COLOR", "GITHUB_ACTIONS", "LINES", "NO_COLOR", "PY_COLORS", "TTY_COMPATIBLE"):
@@ -46,6 +46,7 @@ Pack = Callable[[Case, Flavour], Path]
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--wheels", metavar="FOLDER", help="check what build_wheels.py has made there (tests/wheels)")
     parser.addoption("--own-compiler", action="store_true", help="native FMUs by this machine's compiler with $CFLAGS")
 
 

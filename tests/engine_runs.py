@@ -8,7 +8,7 @@ from boreprop.core.modes import Loads
 from boreprop.core.options import Options
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly, Scaled
-from boreprop.run.engines import DRILLING, Engine
+from boreprop.run.engines import DRILLING, Engine, held
 from reference_cases import CASES, reference, reference_system
 
 VERTICAL = Survey((0.0,), (0.0,))
@@ -38,7 +38,8 @@ def rows_along(
     """Drill leg after leg; the outputs at the ends that are rows, by column."""
     names = list(run.outputs())
     table = np.full((max(rows) + 1, len(names)), np.nan)
-    run.follow(np.array(ends), np.array(forces), eta_pi, np.array(rows, dtype=np.intc), table)
+    inputs = held(len(ends), np.array(forces), eta_pi)
+    run.follow(np.array(ends), inputs, np.array(rows, dtype=np.intc), table)
     return dict(zip(names, table.T, strict=True))
 
 

@@ -25,6 +25,7 @@ OTHERS = (
     "BorepropError",
     "BottomHoleAssembly",
     "Case",
+    "InputSchedule",
     "Schedule",
     "Stopped",
     "Survey",

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from .analysis.summary import summarize as summarize
     from .analysis.tipping import critical_dogleg as critical_dogleg
     from .case.case import Case as Case
+    from .case.case import InputSchedule as InputSchedule
     from .case.case import Schedule as Schedule
     from .case.file import load_case as load_case
     from .case.paper import paper_case as paper_case
@@ -47,6 +48,7 @@ _HOMES = {  # public name → module
     "BorepropError": "core.errors",
     "BottomHoleAssembly": "core.system",
     "Case": "case.case",
+    "InputSchedule": "case.case",
     "Schedule": "case.case",
     "Stopped": "run.trajectory",
     "Survey": "core.survey",

@@ -57,6 +57,7 @@ UNITS = {  # SI unit, as the table of quantities spells it
     "N": Unit({"kg": 1, "m": 1, "s": -2}, "kN", 1e-3, ".1f", ascii="kN"),
     "N/m": Unit({"kg": 1, "s": -2}, "N/m"),
     "N.m": Unit({"kg": 1, "m": 2, "s": -2}, "kN·m", 1e-3, ".1f", ascii="kN.m"),
+    "kg/m3": Unit({"kg": 1, "m": -3}, "kg/m³"),
     "N.m2": Unit({"kg": 1, "m": 3, "s": -2}, "kN·m²", 1e-3, ascii="kN.m2"),
     "m/s": Unit({"m": 1, "s": -1}, "m/h", 3600.0, ".1f", ascii="m/h"),
     "rad": Unit({"rad": 1}, "°", 180 / pi, ".2f", ascii="deg"),

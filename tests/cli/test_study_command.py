@@ -1,10 +1,11 @@
 """The command `boreprop study`."""
 
+import json
 from pathlib import Path
 
 import pytest
 
-from conftest import Command
+from conftest import Command, assert_refused
 
 parquet = pytest.importorskip("pyarrow.parquet")
 
@@ -56,3 +57,31 @@ def test_wrong_arguments_of_the_command(
     for name in named:
         assert name in result.stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_the_command_goes_on_from_a_csv_file(command_here: Command, tmp_path: Path, paper_text: str) -> None:
+    (tmp_path / "case.toml").write_text(paper_text.replace("= 219.6", "= 30.0"), encoding="utf-8")
+    arguments = ["study", "case.toml", "--output", "study.csv", "--workers", "1", "--vary"]
+    first = command_here("boreprop", *arguments, "rss_force=0,1000")
+    assert (first.returncode, first.stderr) == (0, "")
+    whole = (tmp_path / "study.csv").read_text(encoding="utf-8")
+    (tmp_path / "study.csv").write_text(
+        "".join(whole.splitlines(keepends=True)[:2]), encoding="utf-8"
+    )  # header, case 0
+    assert command_here("boreprop", *arguments, "rss_force=0,1000").stdout == first.stdout
+    assert (tmp_path / "study.csv").read_text(encoding="utf-8") == whole
+    refused = command_here("boreprop", *arguments, "rss_force=0,2000")
+    assert_refused(refused, "study.csv: rss_force of case 1: must be 1000.0", "got 2000.0")
+
+
+def test_a_study_as_json(command_here: Command, tmp_path: Path, paper_text: str) -> None:
+    (tmp_path / "case.toml").write_text(paper_text.replace("= 219.6", "= 5.0"), encoding="utf-8")
+    arguments = ["study", "case.toml", "--output", "study.csv", "--workers", "1", "--vary", "bit_tilt_limit_deg=1,2,95"]
+    document = json.loads(command_here("boreprop", *arguments, "--json").stdout)
+    assert (document["cases"], document["failed"], document["quantiles"]) == (3, 1, [0.0, 0.5, 1.0])
+    assert document["first_error"].startswith("bit_tilt_limit: must be <= ")
+    rows = [line.split(",") for line in (tmp_path / "study.csv").read_text(encoding="utf-8").splitlines()]
+    at = rows[0].index("build_rate")
+    low, high = sorted(float(row[at]) for row in rows[1:3])
+    assert document["figures"]["build_rate"] == pytest.approx([low, (low + high) / 2, high])
+    assert document["figures"]["wavelength"] == [None] * 3  # nothing ripples yet

@@ -14,7 +14,7 @@ from boreprop.core.errors import CannotContinue
 from boreprop.core.options import Options
 from boreprop.core.survey import Survey
 from boreprop.core.system import Scaled
-from boreprop.run.engines import DRILLING, Engine
+from boreprop.run.engines import DRILLING, Engine, held
 from engine_runs import begin, start, step_ends
 from systems import scaled_systems
 
@@ -83,7 +83,7 @@ def test_following_legs_is_advancing_along_each(engine: str) -> None:
     following, advancing = rippling(engine), rippling(engine)
     lengths, forces = np.array([0.5, 0.5, 1.3, 2.0]), np.array([0.0, 1e-3, 1e-3, -1e-3])
     table = np.full((3, len(following.outputs())), np.nan)
-    following.follow(lengths, forces, ETA_PI, np.array([1, -1, -1, 0], dtype=np.intc), table)
+    following.follow(lengths, held(4, forces, ETA_PI), np.array([1, -1, -1, 0], dtype=np.intc), table)
     found = {}
     for length, force in zip(lengths.tolist(), forces.tolist(), strict=True):
         advancing.advance(length, force, ETA_PI)
@@ -96,8 +96,9 @@ def test_following_legs_is_advancing_along_each(engine: str) -> None:
 def test_a_leg_that_fails_leaves_the_bit_at_the_end_of_the_one_before(engine: str) -> None:
     run = rippling(engine)
     table = np.full((3, len(run.outputs())), np.nan)
+    inputs = held(3, np.array([0.0, 1e3, 0.0]), ETA_PI)
     with pytest.raises(CannotContinue):
-        run.follow(np.arange(1.0, 4.0), np.array([0.0, 1e3, 0.0]), ETA_PI, np.arange(3, dtype=np.intc), table)
+        run.follow(np.arange(1.0, 4.0), inputs, np.arange(3, dtype=np.intc), table)
     assert run.drilled_length == 1.0
     assert np.isnan(table[:, 0]).tolist() == [False, True, True]
 

@@ -6,7 +6,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from itertools import product
-from math import degrees, inf
+from math import degrees, inf, radians
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ import pytest
 
 from boreprop.case.case import Case, Schedule
 from boreprop.core.quantities import OUTPUTS, quantity_of, scalar_names
+from boreprop.core.survey import Survey
 from boreprop.core.system import BottomHoleAssembly
 from boreprop.run.results import read_trajectory
 from boreprop.run.simulate import simulate
@@ -249,3 +250,21 @@ def test_a_survey_is_no_pipe_and_no_device(fmu: Path, tmp_path: Path) -> None:
         assert host("read_survey", fmu, path) == [
             f"{path}: must be a readable CSV file, got: a pipe or a device (survey_file)"
         ]
+
+
+@both_flavours
+def test_an_fmu_starts_at_the_depth_of_its_bit_and_its_schedule_counts_from_there(
+    case: Case, flavour: Flavour, pack: Pack, command: Command, tmp_path: Path
+) -> None:
+    survey = Survey((1000.0, 1040.0), (0.0, radians(4.0)))
+    packed = pack(replace(case, survey=survey.with_bit_at(1020.0), length=8.0), flavour)
+    (tmp_path / "schedule.csv").write_text("measured_depth,force\n900,1e3\n1002.5,2e3\n1022.5,-4e3\n")
+    done = command("boreprop-fmu", "run", packed, "--output", "run.csv", "--schedule", "schedule.csv", "--step", "1")
+    assert done.returncode == 0, done.stderr
+    run = read_trajectory(tmp_path / "run.csv")
+    cut = Survey((1000.0, 1020.0), (0.0, radians(2.0)))  # halfway
+    by_length = replace(case, survey=cut, length=8.0, schedule=Schedule((0.0, 2.5), (2e3, -4e3)))
+    assert run.case is not None
+    assert run.case.schedule == by_length.schedule
+    rows = [{name: run[name][k] for name in scalar_names(OUTPUTS, 2)} for k in range(run.row_count)]
+    assert_agrees(rows, simulate(by_length, sample_interval=1.0, length=8.0), 1e-9)

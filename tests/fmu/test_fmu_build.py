@@ -59,6 +59,7 @@ def test_every_variable_of_the_table_is_declared_with_its_role_unit_and_bounds(d
 def test_units_are_products_of_powers_of_si_base_units(description: Element) -> None:
     expected = {
         "N": "kg m s-2",
+        "kg/m3": "kg m-3",
         "N.m": "kg m2 s-2",
         "N.m2": "kg m3 s-2",
         "N/m": "kg s-2",

@@ -155,8 +155,8 @@ def test_it_says_who_made_it_under_which_license_and_carries_the_text(
     assert description.attrib["license"] == "MIT"
     assert description.attrib["copyright"] in text
     assert description.attrib["author"] in description.attrib["copyright"]
-    others = [text for name, text in archive.items() if "/licenses/" in name and not name.endswith("/license.txt")]
-    assert [b"NTNU" in text for text in others] == [True] * (flavour.runtime == "python")
+    (other,) = [text for name, text in archive.items() if "/licenses/" in name and not name.endswith("/license.txt")]
+    assert (b"NTNU" if flavour.runtime == "python" else b"Zig contributors") in other
 
 
 @both_flavours
@@ -262,9 +262,9 @@ def page(archive: dict[str, bytes]) -> Page:
 
 @both_flavours
 def test_the_documentation_lists_every_variable_with_its_symbol_meaning_and_start(page: Page, case: Case) -> None:
-    text = " ".join(page.cells)
-    assert all(variable.meaning in text for variable in VARIABLES)
-    assert all(variable.symbol in page.cells for variable in VARIABLES)
+    text, own = " ".join(page.cells), [variable for variable in VARIABLES if variable.count(2)]
+    assert all(variable.meaning in text for variable in own)
+    assert all(variable.symbol in page.cells for variable in own)
     assert str(case.bha.flexural_stiffness) in page.cells
     assert ", ".join(map(str, case.bha.stabilizer_positions)) in page.cells
     names = page.cells[page.cells.index(VARIABLES[0].name) :: 7]  # behind those of the table of what is left out

@@ -1,6 +1,6 @@
 """The native FMU under inputs that change along a step."""
 
-from math import nan
+from math import nan, radians
 
 import pytest
 from test_fmu_c_host import COMPILER
@@ -79,7 +79,7 @@ def test_a_ramp_to_a_bad_value_moves_nothing_and_half_of_it_is_good(one: Instanc
     assert (one.get("active_weight_on_bit"), one.get("rss_force")) == (500.0, 10.0)
 
 
-def test_a_step_that_fails_on_its_way_up_the_stairs_moves_nothing(one: Instance) -> None:
+def test_a_step_that_fails_on_its_way_up_a_ramp_moves_nothing(one: Instance) -> None:
     one.initialize()
     one.steps(3, 0.5)
     ramp(one, active_weight_on_bit=10.0, rss_force=1e9)  # turns the bit over, some metres on
@@ -87,6 +87,18 @@ def test_a_step_that_fails_on_its_way_up_the_stairs_moves_nothing(one: Instance)
     with refused(one, "the bit turns over", DISCARD):
         one.slave.doStep(1.5, 40.0)
     assert one.state() == before
+
+
+def test_a_weight_fades_with_the_rate_until_the_bit_is_off_bottom_and_comes_back(one: Instance) -> None:
+    one.initialize(rate_of_penetration=1.0, active_weight_on_bit=2000.0)
+    for sign, weight in ((-1.0, 0.0), (1.0, 2000.0)):
+        ramp(one, rate_of_penetration=sign / 4, active_weight_on_bit=sign * 500.0)
+        assert one.step(4.0) == "ok"
+        assert one.get("active_weight_on_bit") == weight
+        row = one.row()
+        assert row["eta_pi"] == pytest.approx(weight / 1612.469 * 0.01, rel=1e-6)
+        assert abs(row["bit_tilt"]) <= radians(2.0)
+    assert one.get("drilled_length") == pytest.approx(4.0, rel=1e-12)
 
 
 def test_derivatives_that_make_no_sense_are_refused(one: Instance) -> None:

@@ -215,7 +215,7 @@ def build(tree: Path, target: str, compiler: str | None = None) -> tuple[Path, s
 
 def test_a_wheel_has_the_library_and_the_tag_of_its_platform(tree: Path) -> None:
     wheel, said = build(tree, "wheel")
-    assert "The kernel is compiled" in said
+    assert f"Compiled: boreprop/kernel/{compiler.library_path().name}" in said
     assert re.search(r"-py3-none-(?!any)\w+\.whl$", wheel.name)
     names = zipfile.ZipFile(wheel).namelist()
     assert f"boreprop/kernel/{compiler.library_path().name}" in names
@@ -230,6 +230,14 @@ def test_a_wheel_without_a_compiler_is_for_any_platform(tree: Path) -> None:
     assert "The kernel is not compiled, Python does all: CC: must be" in said
     assert wheel.name.endswith("-py3-none-any.whl")
     assert not [name for name in zipfile.ZipFile(wheel).namelist() if "boreprop_kernel" in name]
+
+
+def test_a_wheel_for_a_platform_is_that_or_none(tree: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("BOREPROP_PLATFORM", "win32")
+    result = run(tree, "hatchling", "build", "--target", "wheel", "--directory", "dist")
+    assert result.returncode != 0
+    assert "platform: must be one of linux64, " in result.stderr
+    assert not list(tree.glob("dist/*.whl"))
 
 
 def test_an_editable_installation_has_the_library_beside_the_sources(tree: Path) -> None:

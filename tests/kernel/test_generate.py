@@ -5,6 +5,7 @@ from dataclasses import astuple, replace
 from math import inf, isfinite, nan
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from boreprop.case.case import Case
@@ -55,12 +56,12 @@ def started(
     case: Case, changed: dict[str, float], survey: tuple[list[float], list[float]] = ([0.0], [0.0])
 ) -> Problem | None:
     """The problem that C has with a case in which some parameters are others."""
-    given = parameters(case) | {"relative_tolerance": 1e-7} | changed
+    given, structure = parameters(case) | {"relative_tolerance": 1e-7} | changed, case.bha.structure
     problem, library = binding.ProblemInC(), binding.library()
     depths, inclinations = (binding.numbers(values) for values in survey)
     run = library.boreprop_start(
-        len(case.bha.stabilizer_positions),
-        binding.numbers([given[name] for name in scalar_names(SYSTEM, len(case.bha.stabilizer_positions))]),
+        binding.numbers(structure, np.intc),
+        binding.numbers([given[name] for name in scalar_names(SYSTEM, structure)]),
         binding.OptionsInC(*astuple(Options())),
         len(depths),
         depths,
@@ -72,12 +73,27 @@ def started(
     return None if run else problem.read()
 
 
+def as_built(case: Case) -> Case:
+    """A case with two sections of the same beam, and two points of the body."""
+    bha = replace(
+        case.bha,
+        section_lengths=(3.0, 5.0),
+        section_distributed_weights=(case.bha.distributed_weight,) * 2,
+        section_flexural_stiffnesses=(case.bha.flexural_stiffness,) * 2,
+        section_outer_diameters=(0.17, 0.17),
+        body_point_positions=(2.0, 5.0),
+        body_point_clearances=(0.02, 0.02),
+    )
+    return replace(case, bha=bha)
+
+
 @pytest.mark.usefixtures("kernel")
 @pytest.mark.parametrize("quantity", SYSTEM, ids=lambda quantity: quantity.name)
 def test_c_refuses_a_parameter_that_python_refuses_with_the_same_problem(case: Case, quantity: Quantity) -> None:
-    scalar, index = quantity.names(2)[-1], quantity.count(2) if quantity.size != "1" else 0
+    case = case if quantity.count(2) else as_built(case)
+    scalar, index = quantity.names(case.bha.structure)[-1], quantity.count(case.bha.structure) * quantity.is_list
     bounds = {"above": quantity.above, "at_least": quantity.at_least, "at_most": quantity.at_most}
-    outside = [quantity.above, quantity.at_least - 1e-9, quantity.at_most + 1e-9, -1e300]
+    outside = [quantity.above, quantity.at_least - 1e-9, quantity.at_most + 1e-9]
     for value in (inf, -inf, nan, *filter(isfinite, outside)):
         with pytest.raises(ParameterError) as refused:
             check_number(quantity.name, float(value), index=index, **bounds)

@@ -19,6 +19,7 @@ from boreprop.core.errors import CannotContinue, ParameterError
 from boreprop.core.quantities import OUTPUTS, scalar_names
 from boreprop.kernel.binding import NativeDrilling
 from boreprop.kernel.compiler import library_path
+from boreprop.run.engines import held
 from boreprop.run.results import read_trajectory
 from boreprop.run.simulate import simulate
 from conftest import Command
@@ -59,9 +60,10 @@ def test_arrays_that_do_not_fit_are_refused(case: Case, forces: int, rows: list[
     columns = len(scalar_names(OUTPUTS, 2))
     run = NativeDrilling(case.bha, case.bit, case.survey, active_weight_on_bit=case.active_weight_on_bit)
     with pytest.raises(
-        ValueError, match=rf"must (hold 2 values like lengths, and rows below 2|have {columns} columns), got "
+        ValueError,
+        match=rf"must (hold 2 times rss_force, .* like lengths, and rows below 2|have {columns} columns), got ",
     ):
-        run.follow(np.array([1.0, 2.0]), np.zeros(forces), 5e4, rows, np.empty((2, columns - lacking)))
+        run.follow(np.array([1.0, 2.0]), held(forces, 0.0, 5e4), rows, np.empty((2, columns - lacking)))
 
 
 # what happens where it is not

@@ -30,10 +30,10 @@ def test_each_number_of_a_state_counts(case: Case) -> None:
 
 @pytest.mark.parametrize("number", [-2.0, 0.5])
 def test_a_state_with_a_count_a_contact_or_a_part_that_cannot_be_is_refused(case: Case, number: float) -> None:
-    """After its first number a state has 17 whole ones, none of which is below −1."""
+    """After its first number a state has ten whole ones, none of which is below −1."""
     run = NativeDrilling(case.bha, case.bit, case.survey, active_weight_on_bit=case.active_weight_on_bit)
     run.advance(9.0, 300.0, 5e4)
-    for where in range(1, 18):
+    for where in range(1, 11):
         forged = run.save()
         forged[where] = number
         with pytest.raises(ParameterError, match=r"^state: must be a valid saved state"):

@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from boreprop.core.events import extremes
+from boreprop.core.inputs import Inputs
 from boreprop.core.law import Laws
 from boreprop.core.modes import Modes
 from boreprop.core.system import Scaled
@@ -34,10 +35,10 @@ void turned_by(double turn, double angle, double *sine_cosine) {
 int lowest_kink(int n, const double *s, int count, const double *places, const int *orders, double xi) {
     Kink ring[8];
     Kinks kinks = {ring, 8, 0, {0}};
-    Scaled scaled = {.n = n};
-    for (int i = 0; i < n; i++) scaled.s[i] = s[i];
+    Places behind = {.count = n};
+    for (int i = 0; i < n; i++) behind.s[i] = s[i];
     for (int k = 0; k < count; k++) add_kink(&kinks, n, places[k], orders[k], 0.1);
-    return kink_here(&kinks, &scaled, xi, MERGE);
+    return kink_here(&kinks, &behind, xi, MERGE);
 }
 
 int joined(double Y_at_the_end, double Y_of_the_next) {
@@ -51,11 +52,11 @@ void gains_of(int n, const double *s, const double *y_star, double w, double eps
     static Integrator p;
     Scaled scaled = {.n = n, .w = w, .epsilon = epsilon, .psi_star = 0.03};
     ScaledInputs inputs = {.eta_pi = eta_pi};
-    Regime free = {{{0}}, 0};
     memcpy(scaled.s, s, (size_t)n * sizeof *s), memcpy(scaled.y_star, y_star, (size_t)(n - 1) * sizeof *s);
     prepare(&p, &scaled, 1.0, USUAL_OPTIONS);
-    Law law = make_law(&p.scaled, &p.modes, free, inputs, 0.0);
-    memcpy(gains, law.gains, (size_t)n * sizeof *gains);
+    find_places(&p.now, &p.scaled, 0.0);
+    p.now.inputs = inputs;
+    memcpy(gains, present_law(&p)->gains, (size_t)n * sizeof *gains);
 }
 
 double origin_moved(double Y) {
@@ -91,7 +92,7 @@ def test_extremes_are_those_of_the_core(rooms: ctypes.CDLL, values: list[float])
 
 @pytest.mark.parametrize("matrix", [[[1.0, 2.0, 0.0], [-2.0, 1.0, 1.0], [1e-20, 3.0, 1.0]], [[0.0, 1.0], [1.0, 0.0]]])
 def test_an_inverse_pivots_on_the_largest_number_of_either_sign(rooms: ctypes.CDLL, matrix: list[list[float]]) -> None:
-    size, padded, result = len(matrix), np.zeros((6, 6)), np.empty((6, 6))
+    size, padded, result = len(matrix), np.zeros((64, 64)), np.empty((64, 64))
     padded[:size, :size] = matrix
     rooms.inverse_of(size, padded.ctypes, result.ctypes)
     assert result[:size, :size] @ matrix == pytest.approx(np.eye(size), abs=1e-14)
@@ -132,4 +133,4 @@ def test_a_jump_at_a_stabilizer_counts_as_much_as_in_the_core(rooms: ctypes.CDLL
     modes, gains = Modes(scaled), doubles([0.0] * 3)
     numbers = map(ctypes.c_double, (scaled.w, scaled.epsilon, 0.05))
     rooms.gains_of(3, doubles(scaled.s), doubles(scaled.y_star), *numbers, gains)
-    assert list(gains) == pytest.approx(Laws(modes, 0.0, 0.05)[modes.free()].gains, rel=1e-12)
+    assert list(gains) == pytest.approx(Laws(modes, Inputs(0.0, 0.05), 0.0)[modes.free()].gains, rel=1e-12)

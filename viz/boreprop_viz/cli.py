@@ -42,7 +42,8 @@ def view(
         Path | None, typer.Option(metavar="PLAN.csv", help="The planned hole: columns measured_depth, inclination_deg.")
     ] = None,
     schedule: Annotated[
-        Path | None, typer.Option(metavar="S.csv", help="Steering force over drilled length, for an FMU.")
+        Path | None,
+        typer.Option(metavar="S.csv", help="Inputs over drilled length or measured depth, for an FMU."),
     ] = None,
     step: Annotated[
         float | None, typer.Option(parser=positive, metavar="S", help="Communication step, s, for an FMU.")

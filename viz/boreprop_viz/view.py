@@ -7,8 +7,7 @@ from pathlib import Path
 from boreprop.analysis.plan import read_plan
 from boreprop.case.case import Case
 from boreprop.case.file import load_case
-from boreprop.case.packed import read_packed_case
-from boreprop.case.tables import read_schedule
+from boreprop.case.packed import read_packed_case, read_schedules_for
 from boreprop.cli import console
 from boreprop.cli.cases import open_case
 from boreprop.cli.fallback import warn_of_fallback
@@ -35,7 +34,7 @@ class Opener:
     plan
         The file with the planned hole.
     schedule
-        The force schedule for an FMU. None: the one packed in it.
+        Schedules of inputs for an FMU. None: those packed in it.
     step, stop
         Communication step and end, s, for an FMU. None: those of its default experiment.
     pace
@@ -56,8 +55,8 @@ class Opener:
         if path.suffix == ".fmu":
             from boreprop_fmu.host.drive import FmuRun  # imported here, since importing fmpy takes long
 
-            forces = None if self.schedule is None else read_schedule(self.schedule)
-            fmu_run = FmuRun(path, forces, step=self.step, stop=self.stop)
+            forces, inputs = (None, None) if self.schedule is None else read_schedules_for(path, self.schedule)
+            fmu_run = FmuRun(path, forces, inputs, step=self.step, stop=self.stop)
             return live(name, fmu_run, self.planned(fmu_run.case), pace=self.pace)
         try:
             run = self._run(path)

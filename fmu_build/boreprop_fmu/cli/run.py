@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from boreprop.case.tables import read_schedule
+from boreprop.case.packed import read_schedules_for
 from boreprop.cli import console
 from boreprop.cli.options import Tolerance, positive
 from boreprop.cli.outputs import check_run_output
@@ -21,7 +21,9 @@ def run_command(
     schedule: Annotated[
         Path | None,
         typer.Option(
-            metavar="S.csv", help="Steering force over drilled length. Default: the schedule packed in the FMU."
+            metavar="S.csv",
+            help="Inputs over drilled length or measured depth, each constant up to the next entry. "
+            "Default: those of the case packed in the FMU.",
         ),
     ] = None,
     step: Annotated[
@@ -41,8 +43,8 @@ def run_command(
     to there are written, and the exit status is 3.
     """
     check_run_output(output, files_read(fmu, schedule))
-    forces = None if schedule is None else read_schedule(schedule)
-    fmu_run = FmuRun(fmu, forces, step=step, stop=stop, relative_tolerance=tolerance)
+    forces, inputs = (None, None) if schedule is None else read_schedules_for(fmu, schedule)
+    fmu_run = FmuRun(fmu, forces, inputs, step=step, stop=stop, relative_tolerance=tolerance)
     try:
         with keeping_rows(output), console.progress("drilling", fmu_run.stop) as done:
             trajectory = fmu_run.trajectory(done)

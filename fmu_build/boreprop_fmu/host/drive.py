@@ -1,19 +1,21 @@
-"""Drives an FMU that has the names of the table of quantities, through fmpy, under a force schedule."""
+"""Drives an FMU that has the names of the table of quantities, through fmpy, under the inputs of a case."""
 
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from math import inf, isclose
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from fmpy.fmi1 import FMICallException
 
-from boreprop.case.case import Schedule
+from boreprop.case.case import RATE, InputSchedule, Schedule
 from boreprop.case.packed import read_packed_case
 from boreprop.core.checks import check_number
 from boreprop.core.quantities import INPUTS, OUTPUTS
 from boreprop.errors import InputError
+from boreprop.run.course import Course
 from boreprop.run.trajectory import Stopped, Trajectory
 
 from .instance import interruptions, open_instance, read_description, uninterrupted
@@ -21,6 +23,7 @@ from .instance import interruptions, open_instance, read_description, uninterrup
 MAX_ROWS = 10_000_000  # more would need gigabytes of memory
 MAX_POINTS = 2**53  # more are no different times
 CLOSE = 1e-9  # of a step: times closer than this are taken as equal, for they differ by rounding
+ROUNDING = 1e-12  # relative: inputs closer than this are taken as equal
 
 
 class FmuRun:
@@ -33,6 +36,8 @@ class FmuRun:
     schedule
         The force over the drilled length; a step in which it changes is split there. None: the schedule of the case
         that is packed in the FMU or, without one, the FMU's own start value.
+    inputs
+        Other inputs over the drilled length. None: those of the case that is packed in the FMU.
     step, stop
         Communication step and last communication point, s. None: those of the FMU's default experiment.
     relative_tolerance
@@ -60,6 +65,7 @@ class FmuRun:
         self,
         fmu: str | Path,
         schedule: Schedule | None = None,
+        inputs: InputSchedule | None = None,
         *,
         step: float | None = None,
         stop: float | None = None,
@@ -69,9 +75,14 @@ class FmuRun:
         self._description = read_description(self.fmu)
         self.case = read_packed_case(self.fmu)
         if self.case is not None:
-            self.case = replace(self.case, schedule=schedule or self.case.schedule)
-            schedule = self.case.schedule
-        self._schedule = schedule
+            weights = dict(inputs.inputs).get("active_weight_on_bit") if inputs else None
+            self.case = replace(
+                self.case,
+                schedule=schedule or self.case.schedule,
+                inputs=inputs or self.case.inputs,
+                active_weight_on_bit=weights[0] if weights else self.case.active_weight_on_bit,
+            )
+        self._course = self._course_of(schedule, inputs)
         experiment = self._description.defaultExperiment
         self.start = float(getattr(experiment, "startTime", None) or 0.0)
         self.step = self._choose("step", step, getattr(experiment, "stepSize", None))
@@ -101,14 +112,14 @@ class FmuRun:
             ) as slave:
                 if self._tolerance is not None:
                     slave.setReal([self._variables["relative_tolerance"].valueReference], [self._tolerance])
-                changes = self._changes(slave)
+                inputs = GivenInputs(slave, self._variables, self._course, self.start)
                 read = self._reader(slave)
-                self._advance(slave, time, time, changes)
+                self._advance(time, time, inputs)
                 slave.exitInitializationMode()
                 for k in range(len(self)):
                     point = self.start + k * self.step
                     with uninterrupted(handlers):
-                        self._advance(slave, time, point, changes)
+                        self._advance(time, point, inputs)
                         time = point
                         row = [time, *read()]
                     yield row
@@ -149,33 +160,35 @@ class FmuRun:
             raise InputError(f"{self.fmu}: {name}: must be given (--{name}), since the FMU has no default, got nothing")
         return float(default if given is None else given)  # type: ignore[arg-type]
 
-    def _changes(self, slave: Any) -> deque[tuple[float, float]]:
-        """The times at which the force changes, and its new values.
+    def _course_of(self, schedule: Schedule | None, inputs: InputSchedule | None) -> Course | None:
+        """The inputs of the run; `InputError` if the FMU cannot follow them."""
+        if self.case is not None:
+            profiles = self.case.profiles()
+        else:
+            profiles = {} if schedule is None else {"rss_force": schedule.profile()}
+            profiles |= {} if inputs is None else inputs.profiles()
+        if not profiles:
+            return None
+        course = Course.of(profiles)
+        if course.slopes.any() and not self._description.coSimulation.canInterpolateInputs:
+            remedy = "build it with --runtime native, or take held schedules"
+            raise InputError(
+                f"{self.fmu}: must interpolate inputs for a linear schedule, got one that does not: {remedy}"
+            )
+        return course
 
-        The rate of penetration is that with which the FMU starts; it does not change in this run.
-        """
-        if self._schedule is None:
-            return deque()
-        rate = 1.0
-        if "rate_of_penetration" in self._variables:
-            [rate] = slave.getReal([self._variables["rate_of_penetration"].valueReference])
-        first, *later = zip(self._schedule.drilled_length, self._schedule.rss_force, strict=True)
-        return deque(
-            [(self.start, first[1])] + [(self.start + length / rate, force) for length, force in later if rate > 0]
-        )
-
-    def _advance(self, slave: Any, time: float, point: float, changes: deque[tuple[float, float]]) -> None:
-        """Step from `time` to `point`; the force changes on the way and at the end, as in `changes`."""
+    def _advance(self, time: float, point: float, inputs: "GivenInputs") -> None:
+        """Step from `time` to `point`; the inputs change on the way and at the end."""
         close = CLOSE * self.step
-        while changes and changes[0][0] <= point + close:
-            change, force = changes.popleft()
+        while inputs.next_change <= point + close:
+            change = inputs.next_change
             end = change if change < point - close else point
             if time < end:
-                slave.doStep(time, end - time)
+                inputs.step(time, end)
                 time = end
-            slave.setReal([self._variables["rss_force"].valueReference], [force])
+            inputs.change()
         if time < point:
-            slave.doStep(time, point - time)
+            inputs.step(time, point)
 
     def _reader(self, slave: Any) -> Callable[[], list[float]]:
         """A function that reads the values of all columns but the time."""
@@ -189,6 +202,60 @@ class FmuRun:
             return [next(values[is_integer]) for is_integer in integer]
 
         return read
+
+
+class GivenInputs:
+    """The inputs that an instance is given: values where another piece of their course starts, then derivatives."""
+
+    def __init__(self, slave: Any, variables: dict[str, Any], course: Course | None, start: float) -> None:
+        self._slave, self._course = slave, course
+        self._changes: deque[tuple[float, int]] = deque()  # time, and the piece that starts then
+        self._given: dict[str, float] = {}
+        self._slopes: dict[int, float] = {}  # reference → change per second
+        if course is None:
+            return
+        names = [name for name in course.names if name in variables]
+        self._references = {name: variables[name].valueReference for name in names}
+        self._rates = np.ones(len(course.starts))
+        if RATE in course.names:
+            self._rates = course.values[:, course.names.index(RATE)]
+        elif RATE in variables:
+            self._rates = np.full(len(course.starts), slave.getReal([variables[RATE].valueReference])[0])
+        time = start
+        for piece, rate in enumerate(self._rates):
+            if piece:
+                time += (course.starts[piece] - course.starts[piece - 1]) / self._rates[piece - 1]
+            self._changes.append((float(time), piece))
+            if rate == 0.0:  # nothing is drilled any more
+                break
+
+    @property
+    def next_change(self) -> float:
+        """When the inputs change next, s."""
+        return self._changes[0][0] if self._changes else inf
+
+    def change(self) -> None:
+        """Give the instance the inputs with which the next piece starts: those that jump, for the others are there."""
+        _, piece = self._changes.popleft()
+        course, slave = self._course, self._slave
+        assert course is not None
+        values = dict(zip(course.names, course.values[piece].tolist(), strict=True))
+        slopes = dict(zip(course.names, (course.slopes[piece] * self._rates[piece]).tolist(), strict=True))
+        for name, reference in self._references.items():
+            if name not in self._given or not isclose(self._given[name], values[name], rel_tol=ROUNDING):
+                slave.setReal([reference], [values[name]])
+        self._slopes = {self._references[name]: slopes[name] for name in self._references if slopes[name]}
+        if self._changes:  # what is there when the piece after this one starts
+            ahead = course.starts[piece + 1] - course.starts[piece]
+            ends = course.values[piece] + course.slopes[piece] * ahead
+            self._given = dict(zip(course.names, ends.tolist(), strict=True))
+
+    def step(self, time: float, end: float) -> None:
+        """Take a communication step; derivatives act over one."""
+        if self._slopes:
+            references, slopes = list(self._slopes), list(self._slopes.values())
+            self._slave.setRealInputDerivatives(references, [1] * len(references), slopes)
+        self._slave.doStep(time, end - time)
 
 
 def drive(

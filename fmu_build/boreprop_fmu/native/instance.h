@@ -65,7 +65,7 @@ static fmi2Status fail_by(const Component *c, fmi2Status status, const Problem *
 
 /* A drilling system that has not begun; NULL with `why` if the parameters are bad. */
 static Run *new_run(const Variables *all, const double value[MOST_VARIABLES], char why[LINE]) {
-    System system = system_of(all->n, value + all->first_parameter);
+    System system = system_of(all->structure, value + all->first_parameter);
     Run *run = calloc(1, sizeof *run);
     Problem problem;
     if (!run) explain(why, "run: must fit into the memory");
@@ -114,7 +114,8 @@ static int are_off_bottom(const double input[INPUT_COUNT]) {
 /* What the run is given: without weight there is no ηΠ, and the last one that drilled stands for it. */
 static Inputs present_inputs(const Component *c) {
     double weight = c->value[IN_ACTIVE_WEIGHT_ON_BIT];
-    Inputs inputs = {c->value[IN_RSS_FORCE], 0.0, weight == 0.0 ? c->weight : weight};
+    Inputs inputs = {.rss_force = c->value[IN_RSS_FORCE], .active_weight_on_bit = weight == 0.0 ? c->weight : weight};
+    if (c->packed.variables.structure.axial) inputs.weight_on_bit = c->value[IN_WEIGHT_ON_BIT];
     return inputs;
 }
 
@@ -223,7 +224,7 @@ static int compute(Component *c, char why[LINE]) {
     if (!take_inputs(c, &before, why)) return 0;
     int count = drilling_outputs(&c->run->drilling, outputs);
     give_back(c, before);
-    if (!check_outputs(all->n, outputs, &problem)) return tell(&problem, why);
+    if (!check_outputs(all->structure, outputs, &problem)) return tell(&problem, why);
     memcpy(c->value + all->first_output, outputs, (size_t)count * sizeof *outputs);
     if (c->value[IN_ACTIVE_WEIGHT_ON_BIT] == 0.0) c->value[all->eta_pi] = 0.0;
     return 1;

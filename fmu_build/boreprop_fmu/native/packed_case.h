@@ -49,15 +49,15 @@ static int read_number(CaseFile *file, const char *name, double *number, char wh
     return explain(why, "%s:%ld: %s: must be a finite number, got %s", file->path, file->line, name, shown);
 }
 
-/* A whole number from 1 to `most`. */
-static int read_count(CaseFile *file, const char *name, long most, long *count, char why[LINE]) {
+/* A whole number from `least` to `most`. */
+static int read_count(CaseFile *file, const char *name, long least, long most, long *count, char why[LINE]) {
     double number;
     char got[32];
     if (!read_number(file, name, &number, why)) return 0;
-    *count = number >= 1.0 && number <= (double)most ? (long)number : 0;
-    if (*count && (double)*count == number) return 1;
+    *count = number >= (double)least && number <= (double)most ? (long)number : least - 1;
+    if (*count >= least && (double)*count == number) return 1;
     represent(number, got);
-    return explain(why, "%s:%ld: %s: must be 1 to %ld, got %s", file->path, file->line, name, most, got);
+    return explain(why, "%s:%ld: %s: must be %ld to %ld, got %s", file->path, file->line, name, least, most, got);
 }
 
 /* Whose case it is: the guid, and the table of quantities that numbers the variables. */
@@ -91,7 +91,7 @@ static int read_stations(CaseFile *file, PackedCase *packed, char why[LINE]) {
     char name[48], fault[LINE];
     long count;
     Problem problem;
-    if (!read_count(file, "stations", (long)strlen(file->at) / 2 + 1, &count, why)) return 0;
+    if (!read_count(file, "stations", 1, (long)strlen(file->at) / 2 + 1, &count, why)) return 0;
     double *next = packed->stations = calloc((size_t)count, 2 * sizeof *next);
     if (!next) return explain(why, "%s: must fit into the memory, got %ld stations", file->path, count);
     for (int column = 0; column < 2; column++)
@@ -106,12 +106,23 @@ static int read_stations(CaseFile *file, PackedCase *packed, char why[LINE]) {
     return explain(why, "%s: %s", file->path, fault);
 }
 
+static int read_structure(CaseFile *file, Structure *structure, char why[LINE]) {
+    long n, sections, axial, points;
+    if (!read_count(file, "stabilizers", 1, MAX_STABILIZERS, &n, why)) return 0;
+    if (!read_count(file, "sections", 0, MAX_SECTIONS, &sections, why)) return 0;
+    if (!read_count(file, "axial_load", 0, 1, &axial, why)) return 0;
+    if (!read_count(file, "body_points", 0, MAX_POINTS, &points, why)) return 0;
+    structure->n = (int)n, structure->sections = (int)sections, structure->axial = (int)axial;
+    structure->points = (int)points;
+    return 1;
+}
+
 static int read_lines(CaseFile *file, PackedCase *packed, char why[LINE]) {
     Variables *all = &packed->variables;
     char shown[SHOWN];
-    long n;
-    if (!read_identity(file, packed, why) || !read_count(file, "stabilizers", MAX_STABILIZERS, &n, why)) return 0;
-    list_variables(all, (int)n);
+    Structure structure;
+    if (!read_identity(file, packed, why) || !read_structure(file, &structure, why)) return 0;
+    list_variables(all, structure);
     for (int i = 0; i < all->count; i++)
         if (all->at[i].role != OUTPUT && all->at[i].kind == REAL &&
             !read_number(file, all->at[i].name, &packed->start[i], why))

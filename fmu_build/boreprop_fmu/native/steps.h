@@ -4,37 +4,29 @@
 
 #include "instance.h"
 
-#define MOST_STAIRS 1000.0
+#define LEAST_SHARE 5e-4 /* of a weight at one end of a step, at least, is that at the other end, also where it is 0 */
 
-/* Drill to a length while the inputs go from their present values to those at its end. The force is linear in the
-   length. The kernel keeps the active weight on bit constant over a stretch, so it goes up or down in stairs of equal
-   length, each by a thousandth of its larger value at most. If one stair fails, nothing has moved. */
+/* Drill to a length while the inputs go from their present values to those at its end; force and active weight on bit
+   are linear in the length, the whole weight on bit is held. If that fails, nothing has moved. */
 static int drill_on(Component *c, double to, const double end[INPUT_COUNT], char why[LINE]) {
-    Drilling *drilling = &c->run->drilling;
-    double from = drilling_length(drilling), force = c->value[IN_RSS_FORCE], weight = c->value[IN_ACTIVE_WEIGHT_ON_BIT];
-    double slope = to > from ? (end[IN_RSS_FORCE] - force) / (to - from) : 0.0,
-           rise = end[IN_ACTIVE_WEIGHT_ON_BIT] - weight;
-    int stairs = to > from ? (int)ceil(MOST_STAIRS * (fabs(rise) / larger(weight, weight + rise))) : 1;
-    int stair = 0, done = 1;
-    double *before = NULL, accepted = drilling->integrator.now.accepted, last = c->weight;
+    double way = to - drilling_length(&c->run->drilling), force = c->value[IN_RSS_FORCE];
+    double weight = c->value[IN_ACTIVE_WEIGHT_ON_BIT], end_weight = end[IN_ACTIVE_WEIGHT_ON_BIT];
+    double least = LEAST_SHARE * larger(weight, end_weight);
+    int axial = c->packed.variables.structure.axial;
+    int stays = (!axial || end[IN_WEIGHT_ON_BIT] == c->value[IN_WEIGHT_ON_BIT]) && end[IN_RSS_FORCE] == force &&
+                end_weight == weight;
+    weight = larger(weight, least), end_weight = larger(end_weight, least);
+    Inputs inputs = {.rss_force = force, .active_weight_on_bit = weight};
+    if (axial) inputs.weight_on_bit = c->value[IN_WEIGHT_ON_BIT];
     Problem problem;
-    if (!check_finite(Q_RSS_FORCE_SLOPE, 0, slope, &problem)) return tell(&problem, why);
-    if (stairs <= 1) stairs = 1;
-    else if (!(before = kept_state(drilling, why))) return 0;
-    for (; done && stair < stairs; stair++) {
-        double at = drilling_length(drilling);
-        Inputs inputs = {force + slope * (at - from), slope, weight + rise * (stair + 0.5) / stairs};
-        if (to > from) last = inputs.active_weight_on_bit;
-        double next = stair + 1 < stairs ? from + (to - from) * (stair + 1) / stairs : to;
-        done = run_advance(c->run, next, inputs, &problem) == DONE;
-        if (done && drilling->integrator.now.accepted - accepted > USUAL_OPTIONS.most_steps)
-            done = too_many(&drilling->integrator, &problem) == DONE;
+    if (way > 0) {
+        inputs.rss_force_slope = (end[IN_RSS_FORCE] - force) / way;
+        inputs.active_weight_on_bit_slope = (end_weight - weight) / way;
     }
-    if (!done) tell(&problem, why);
-    if (!done && before) drilling_return(drilling, before);
-    free(before);
-    if (done) c->weight = last, c->run_has_inputs = rise == 0.0 && (to > from || end[IN_RSS_FORCE] == force);
-    return done;
+    if (run_advance(c->run, to, inputs, &problem) != DONE) return tell(&problem, why);
+    if (way > 0) c->weight = end_weight;
+    c->run_has_inputs = stays || (way > 0 && !axial);
+    return 1;
 }
 
 /* Whether a step may be taken to these inputs at its end, before the run is looked at. */
@@ -68,10 +60,11 @@ static fmi2Status check_step(
    drilled until it is looked at again. States know nothing of that: a host that goes back and forth hears it once. */
 static void look_at_body(Component *c) {
     Drilling *drilling = &c->run->drilling;
-    double length = drilling_length(drilling), reach = drilling->system.stabilizer_position[drilling->system.n - 1];
+    double length = drilling_length(drilling),
+           reach = drilling->system.stabilizer_position[drilling->system.structure.n - 1];
     double radius = c->packed.hole_radius;
     char line[MESSAGE];
-    Sag sag = run_sag(c->run);
+    Sag sag = present_sag(drilling);
     c->next_look = length + reach * larger(1 - fabs(sag.offset) / radius, OFTEN);
     if (!(fabs(sag.offset) > radius)) return;
     c->next_look = INFINITY;

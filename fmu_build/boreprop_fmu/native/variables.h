@@ -1,4 +1,4 @@
-/* The variables of the FMU: which there are follows from the table of quantities and the number of stabilizers. */
+/* The variables of the FMU: which there are follows from the table of quantities and the structure of the system. */
 #ifndef BOREPROP_VARIABLES_H
 #define BOREPROP_VARIABLES_H
 
@@ -18,23 +18,24 @@ enum { MOST_VARIABLES = INPUT_COUNT + MOST_OUTPUTS + MOST_PARAMETERS + 1 };
 /* All variables by value reference: the inputs, numbered as in INPUT_TABLE, the outputs, the parameters of the kernel,
    and last the survey file. */
 typedef struct {
-    int n, count;                                                               /* stabilizers, variables */
+    Structure structure;
+    int count;
     int first_output, first_parameter, eta_pi, relative_tolerance, survey_file; /* value references */
     Variable at[MOST_VARIABLES];
 } Variables;
 
 static void add_variables(Variables *all, int place, Name quantity, Size size, Role role, Kind kind) {
-    for (int i = 0; i < value_count(size, all->n); i++) {
+    for (int i = 0; i < value_count(size, all->structure); i++) {
         Variable *next = &all->at[all->count++];
-        if (size == ONE) snprintf(next->name, sizeof next->name, "%s", NAME[quantity]);
+        if (!is_list(size)) snprintf(next->name, sizeof next->name, "%s", NAME[quantity]);
         else snprintf(next->name, sizeof next->name, "%s[%d]", NAME[quantity], i + 1);
         next->role = role, next->kind = kind, next->quantity = place, next->index = i;
     }
 }
 
-/* The variables for n stabilizers, 1 to MAX_STABILIZERS. */
-static void list_variables(Variables *all, int n) {
-    all->n = n, all->count = 0;
+/* The variables of a drilling system of this structure. */
+static void list_variables(Variables *all, Structure structure) {
+    all->structure = structure, all->count = 0;
     for (int k = 0; k < INPUT_COUNT; k++) add_variables(all, k, INPUT_TABLE[k].name, INPUT_TABLE[k].size, INPUT, REAL);
     all->first_output = all->count;
     for (int k = 0; k < OUTPUT_COUNT; k++) {

@@ -50,7 +50,7 @@ def describe(
     description = model_description(
         identifier,
         guid,
-        len(case.bha.stabilizer_positions),
+        case.bha.structure,
         start_values(case),
         stop_time=case.length,
         step_size=STEP_SIZE,

@@ -7,7 +7,7 @@ from importlib.metadata import metadata
 from math import isfinite
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from boreprop.core.quantities import VARIABLES, Quantity
+from boreprop.core.quantities import VARIABLES, Quantity, Structure
 from boreprop.core.system import LEAST_SPAN
 from boreprop.errors import InputError
 from boreprop.units import UNITS
@@ -25,7 +25,7 @@ LEAST_POSITIVE = 1e-300  # for "> 0", which FMI cannot say: what is made of it, 
 def model_description(
     identifier: str,
     guid: str,
-    n: int,
+    structure: int | Structure,
     start: Mapping[str, float | str],
     *,
     stop_time: float,
@@ -41,8 +41,8 @@ def model_description(
         Model name and file name of the binaries.
     guid
         The FMU's identity.
-    n
-        Number of stabilizers.
+    structure
+        How the BHA is made up; or the number of stabilizers on the paper's beam.
     start
         Start value of every input and parameter, by scalar name.
     stop_time, step_size
@@ -80,7 +80,7 @@ def model_description(
     tolerance = repr(start["relative_tolerance"])
     experiment = {"startTime": "0.0", "stopTime": repr(stop_time), "tolerance": tolerance, "stepSize": repr(step_size)}
     SubElement(root, "DefaultExperiment", experiment)
-    scalars = [(name, quantity) for quantity in VARIABLES for name in quantity.names(n)]
+    scalars = [(name, quantity) for quantity in VARIABLES for name in quantity.names(structure)]
     variables = SubElement(root, "ModelVariables")
     for reference, (name, quantity) in enumerate(scalars):
         _add_variable(variables, name, reference, quantity, start)

@@ -127,6 +127,9 @@ def documents(case: Case, identifier: str, runtime: str, start: Mapping[str, flo
     written = {"index.html": page(case, identifier, runtime, start), "licenses/license.txt": license_text("boreprop")}
     if runtime == "python":
         written |= {"externalDependencies.txt": EXTERNAL, "licenses/pythonfmu.txt": license_text("pythonfmu")}
+    else:
+        third_party = files("boreprop.kernel").joinpath("THIRD_PARTY.txt")
+        written["licenses/third_party.txt"] = third_party.read_text(encoding="utf-8")
     return {f"documentation/{name}": text.encode() for name, text in written.items()}
 
 
@@ -138,7 +141,7 @@ def page(case: Case, identifier: str, runtime: str, start: Mapping[str, float | 
         f"{n} stabilizer{'s' * (n > 1)}, the last one {case.bha.stabilizer_positions[-1]:g} m from the bit; "
         f"the existing hole ends at {degrees(case.survey.inclination[-1]):.3g}°"
     )
-    lines = [_line(quantity, quantity.names(n), start) for quantity in VARIABLES if quantity.names(n)]
+    lines = [_line(quantity, names, start) for quantity in VARIABLES if (names := quantity.names(case.bha.structure))]
     warning = steadily_outside(case)
     outside = f" Of this case, drilled on steadily: {warning}." if warning else ""
     left_out = "\n".join(f"<tr><td>{what}</td><td>{change}</td></tr>" for what, change in LEFT_OUT.items())

@@ -53,9 +53,9 @@ def pack_sources(identifier: str) -> dict[str, bytes]:
 
 def case_text(case: Case, guid: str) -> bytes:
     """The case as lines "name value", in SI units, in the order in which packed_case.h reads them."""
-    n, start, survey = len(case.bha.stabilizer_positions), start_values(case), case.survey
-    lines: dict[str, object] = {"guid": guid, "quantities": quantities_digest(), "stabilizers": n}
-    names = scalar_names(INPUTS + PARAMETERS, n)
+    structure, start, survey = case.bha.structure, start_values(case), case.survey
+    lines: dict[str, object] = {"guid": guid, "quantities": quantities_digest(), **structure._asdict()}
+    names = scalar_names(INPUTS + PARAMETERS, structure)
     lines |= {name: float(start[name]) for name in names if not isinstance(start[name], str)}
     lines["bit_diameter"] = float(case.bit_diameter)
     lines["stations"] = len(survey.measured_depth)

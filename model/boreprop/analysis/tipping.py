@@ -25,7 +25,7 @@ from ..core.options import RELATIVE_TOLERANCE, Options
 from ..core.quantities import OUTPUTS, scalar_names
 from ..core.survey import Survey
 from ..errors import CannotContinue, ParameterError
-from ..run.engines import Engine, engine, start
+from ..run.engines import Engine, engine, held, start
 from ..run.trajectory import Stopped, Trajectory
 from ..run.workers import WorkerLost, work
 from .rippling import Rippling, State, find_rippling, last_wave
@@ -115,10 +115,10 @@ class _OpenEndedRun:
         """The run down to a drilled length, m; `Stopped` if the integrator cannot go on."""
         more = np.empty((int(length / self.interval) + 1 - len(self.rows), len(self.names)))
         lengths = self.interval * np.arange(len(self.rows), len(self.rows) + len(more), dtype=np.float64)
-        force = np.full(len(more), self.case.schedule.rss_force[0])
+        inputs = held(len(more), rss_force=self.case.schedule.rss_force[0], weight=self.case.active_weight_on_bit)
         each = np.arange(len(more), dtype=np.intc)
         try:
-            self.drilling.follow(lengths, force, self.case.active_weight_on_bit, each, more)
+            self.drilling.follow(lengths, inputs, each, more)
         except CannotContinue as error:
             raise Stopped(f"after {self.drilling.drilled_length:g} m: {error}") from error
         self.rows = np.concatenate((self.rows, more))

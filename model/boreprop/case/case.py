@@ -1,30 +1,52 @@
 """A case: the drilling system, the existing hole, the active weight on bit, the steering force and the length."""
 
-from dataclasses import dataclass
+from bisect import bisect_right
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from itertools import repeat
+from operator import attrgetter
+from typing import NamedTuple
 
-from ..core.checks import check_increasing, check_part, checked_float
+from ..core.checks import check_increasing, check_number, check_part, check_quantity, checked_float
 from ..core.errors import ParameterError
+from ..core.quantities import INPUTS
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly, eta_pi
+
+CLOSE = 0.005  # m: depths are given to the centimetre, so a first entry this little beyond the bit is at it
+
+
+INTERPOLATIONS = ("held", "linear")
+RATE = "rate_of_penetration"
+
+
+class Profile(NamedTuple):
+    """One input over the drilled length: its entries, and whether it is linear or constant from each to the next."""
+
+    drilled_length: tuple[float, ...]
+    values: tuple[float, ...]
+    linear: bool = False
 
 
 @dataclass(frozen=True)
 class Schedule:
-    """The force of the steering pads over the drilled length, constant from each entry to the next.
+    """The force of the steering pads over the drilled length, constant or linear from each entry to the next.
 
     Parameters
     ----------
     drilled_length
         Lengths from the start of the run at which an entry begins, m, shape (k,). The first is 0, and they increase.
     rss_force
-        The force from each of these lengths to the next, N, shape (k,); the last one acts to the end of the run. A
-        positive force builds inclination.
+        The force at each of these lengths, N, shape (k,); the last one acts to the end of the run. A positive force
+        builds inclination.
+    interpolation
+        "held": each force acts up to the next length; "linear": it changes evenly to the next one.
 
     Raises
     ------
     ParameterError
-        If a value is not finite, the lengths do not start at 0 or do not increase, or the two shapes differ.
+        If a value is not finite, the lengths do not start at 0 or do not increase, the two shapes differ, or there is
+        no such interpolation.
 
     Examples
     --------
@@ -35,17 +57,147 @@ class Schedule:
 
     drilled_length: tuple[float, ...] = (0.0,)
     rss_force: tuple[float, ...] = (0.0,)
+    interpolation: str = "held"
 
     def __post_init__(self) -> None:
         for name in ("drilled_length", "rss_force"):
             object.__setattr__(self, name, tuple(map(checked_float, repeat(name), getattr(self, name))))
-        if not self.drilled_length or self.drilled_length[0] != 0.0:
-            raise ParameterError("drilled_length", "must start at 0", self.drilled_length)
-        check_increasing("drilled_length", self.drilled_length)
-        if len(self.rss_force) != len(self.drilled_length):
-            constraint = f"must hold one value per drilled_length, {len(self.drilled_length)} in all"
-            raise ParameterError("rss_force", constraint, self.rss_force)
+        _check_entries(self.drilled_length, {"rss_force": self.rss_force}, self.interpolation)
         check_part("schedule", self)
+
+    def profile(self) -> Profile:
+        """The force over the drilled length."""
+        return Profile(self.drilled_length, self.rss_force, self.interpolation == "linear")
+
+    @classmethod
+    def by_depth(
+        cls,
+        measured_depth: tuple[float, ...],
+        rss_force: tuple[float, ...],
+        bit_depth: float,
+        interpolation: str = "held",
+    ) -> "Schedule":
+        """A schedule whose entries begin at measured depths.
+
+        Parameters
+        ----------
+        measured_depth
+            Depths at which an entry begins, m, increasing, shape (k,). The first one is not beyond the bit; what lies
+            above the bit is left out.
+        rss_force
+            The force at each of these depths, N, shape (k,).
+        bit_depth
+            Measured depth of the bit at the start of the run, m: that of the last station of a `Survey`.
+        interpolation
+            See `Schedule`.
+
+        Returns
+        -------
+        Schedule
+            The same forces over the drilled length.
+
+        Raises
+        ------
+        ParameterError
+            If the first entry lies beyond the bit, for then no force is given at the start; or as for any schedule.
+
+        Examples
+        --------
+        >>> from boreprop import Schedule
+        >>> schedule = Schedule.by_depth((2500.0, 2590.0, 2600.0), (0.0, 8e3, 4e3), bit_depth=2594.0)
+        >>> schedule.drilled_length, schedule.rss_force
+        ((0.0, 6.0), (8000.0, 4000.0))
+        """
+        drilled_length, [force] = from_bit(measured_depth, {"rss_force": rss_force}, bit_depth, interpolation)
+        return cls(drilled_length, force, interpolation)
+
+
+@dataclass(frozen=True)
+class InputSchedule:
+    """Other inputs than the force over the drilled length, constant or linear from each entry to the next.
+
+    Parameters
+    ----------
+    drilled_length
+        Lengths from the start of the run at which an entry begins, m, shape (k,). The first is 0, and they increase.
+    inputs
+        Name of each input in the table of quantities, and its value at each of these lengths, in SI units, shape (k,).
+    interpolation
+        "held" or "linear". The rate of penetration is always constant from each entry to the next.
+
+    Raises
+    ------
+    ParameterError
+        If a value is out of range, the lengths do not start at 0 or do not increase, the shapes differ, there is no
+        such interpolation, or a rate of penetration is 0, with which no next entry would be reached.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> from boreprop import InputSchedule, paper_case, simulate
+    >>> weights = (("active_weight_on_bit", (2e3, 3e3)),)
+    >>> case = replace(paper_case(), inputs=InputSchedule((0.0, 10.0), weights, "linear"))
+    >>> simulate(case, length=20.0, sample_interval=5.0)["active_weight_on_bit"].tolist()
+    [2000.0, 2500.0, 3000.0, 3000.0, 3000.0]
+    """
+
+    drilled_length: tuple[float, ...]
+    inputs: tuple[tuple[str, tuple[float, ...]], ...]
+    interpolation: str = "held"
+
+    def __post_init__(self) -> None:
+        _check_entries(self.drilled_length, dict(self.inputs), self.interpolation)
+        for name, values in self.inputs:
+            check_quantity(name, values)
+            if name == RATE:
+                for index, value in enumerate(values, 1):
+                    check_number(name, value, index=index, above=0.0)
+
+    def profiles(self) -> dict[str, Profile]:
+        """Each input over the drilled length."""
+        linear = self.interpolation == "linear"
+        return {name: Profile(self.drilled_length, values, linear and name != RATE) for name, values in self.inputs}
+
+    def without(self, name: str) -> "InputSchedule | None":
+        """The same without one of the inputs; None if it is the only one."""
+        left = tuple((other, values) for other, values in self.inputs if other != name)
+        return replace(self, inputs=left) if left else None
+
+
+def _check_entries(lengths: tuple[float, ...], columns: Mapping[str, tuple[float, ...]], interpolation: str) -> None:
+    """Raise `ParameterError` unless columns have an entry for each length, and these increase from 0."""
+    if not lengths or lengths[0] != 0.0:
+        raise ParameterError("drilled_length", "must start at 0", lengths)
+    check_increasing("drilled_length", lengths)
+    for name, values in columns.items():
+        if len(values) != len(lengths):
+            raise ParameterError(name, f"must hold one value per drilled_length, {len(lengths)} in all", values)
+    if interpolation not in INTERPOLATIONS:
+        raise ParameterError("interpolation", f"must be {' or '.join(INTERPOLATIONS)}", interpolation)
+
+
+def from_bit(
+    measured_depth: tuple[float, ...], columns: Mapping[str, tuple[float, ...]], bit_depth: float, interpolation: str
+) -> tuple[tuple[float, ...], list[tuple[float, ...]]]:
+    """Entries at measured depths as such at drilled lengths, see `Schedule.by_depth`: the lengths, and each column."""
+    check_increasing("measured_depth", measured_depth)
+    if not measured_depth or measured_depth[0] > bit_depth + CLOSE:
+        constraint = f"must start at {bit_depth:.9g} or before, where the bit starts"
+        raise ParameterError("measured_depth", constraint, measured_depth)
+    for name, values in columns.items():
+        if len(values) != len(measured_depth):
+            constraint = f"must hold one value per measured_depth, {len(measured_depth)} in all"
+            raise ParameterError(name, constraint, values)
+    first = max(bisect_right(measured_depth, bit_depth) - 1, 0)
+    later = tuple(depth - bit_depth for depth in measured_depth[first + 1 :])
+    share = 0.0  # of the way from the entry before the bit to the next one
+    if interpolation == "linear" and later and measured_depth[first] < bit_depth:
+        share = (bit_depth - measured_depth[first]) / (measured_depth[first + 1] - measured_depth[first])
+    starts = [
+        values[first] + share * (values[first + 1] - values[first]) if share else values[first]
+        for values in columns.values()
+    ]
+    return (0.0, *later), [(at, *values[first + 1 :]) for at, values in zip(starts, columns.values(), strict=True)]
 
 
 @dataclass(frozen=True)
@@ -68,6 +220,11 @@ class Case:
         The existing hole. Its last station is the bit at the start of the run.
     schedule
         The steering force over the drilled length; without it there is none.
+    inputs
+        Other inputs over the drilled length; None: they are constant. A weight in it takes the place of
+        `active_weight_on_bit`, which is then the one at the start.
+    weight_on_bit
+        All of the weight on bit, N, which presses a BHA with `axial_load`; 0: it is the active weight on bit.
 
     Raises
     ------
@@ -89,9 +246,23 @@ class Case:
     length: float
     survey: Survey
     schedule: Schedule = Schedule()
+    inputs: InputSchedule | None = None
+    weight_on_bit: float = 0.0
 
     def __post_init__(self) -> None:
         check_part("", self)
+        if self.weight_on_bit:
+            check_number("weight_on_bit", self.weight_on_bit, at_least=self.active_weight_on_bit)
+
+    def profiles(self) -> dict[str, Profile]:
+        """Each input that the case gives over the drilled length, by name."""
+        constant = {
+            quantity.name: Profile((0.0,), (attrgetter(quantity.field)(self),))
+            for quantity in INPUTS
+            if quantity.field and quantity.part != "schedule" and quantity.count(self.bha.structure)
+        }
+        scheduled = self.inputs.profiles() if self.inputs else {}
+        return {"rss_force": self.schedule.profile()} | constant | scheduled
 
     @property
     def length_scale(self) -> float:

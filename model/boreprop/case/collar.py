@@ -13,8 +13,10 @@ def flexural_stiffness(outer_diameter: float, inner_diameter: float) -> float:
     return YOUNGS_MODULUS * pi / 64 * (outer_diameter**4 - inner_diameter**4)
 
 
-def buoyant_weight(outer_diameter: float, inner_diameter: float, mud_density: float) -> float:
-    """Weight per length, N/m, of a steel collar inside and outside of which there is mud.
+def buoyant_weight(
+    outer_diameter: float, inner_diameter: float, mud_density: float, density: float = STEEL_DENSITY
+) -> float:
+    """Weight per length, N/m, of a collar inside and outside of which there is mud.
 
     Parameters
     ----------
@@ -22,6 +24,8 @@ def buoyant_weight(outer_diameter: float, inner_diameter: float, mud_density: fl
         Of the collar, m.
     mud_density
         Density of the mud, kg/m³.
+    density
+        That of the collar, kg/m³: steel unless told otherwise.
     """
     area = pi / 4 * (outer_diameter**2 - inner_diameter**2)
-    return area * (STEEL_DENSITY - mud_density) * STANDARD_GRAVITY
+    return area * (density - mud_density) * STANDARD_GRAVITY

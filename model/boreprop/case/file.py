@@ -15,7 +15,8 @@ from ..core.columns import regular
 from ..core.quantities import QUANTITIES
 from ..errors import InputError
 from .case import Case
-from .schema import OF_FILES, TABLES, parse, read_toml
+from .schema import OF_FILES, TABLES, Read, parse, read_toml
+from .sections import sections_in_file
 
 
 def load_case(path: str | Path) -> Case:
@@ -53,6 +54,11 @@ def load_case(path: str | Path) -> Case:
     ...         print(str(error).partition("case.toml: ")[2])
     bha: must be given, got nothing (and 3 more)
     """
+    return read_case(path).case
+
+
+def read_case(path: str | Path) -> Read:
+    """Read a case file, see `load_case`, with what was made of it that its author may not expect."""
     try:
         text = regular(path).read_text(encoding="utf-8-sig")
     except OSError as error:
@@ -60,9 +66,9 @@ def load_case(path: str | Path) -> Case:
     except UnicodeDecodeError as error:
         constraint = "must be a TOML file in UTF-8 (save it with that encoding)"
         raise InputError(f"{path}: {constraint}, got the byte 0x{error.object[error.start]:02x}") from error
-    case = parse_case(text, path)
-    _check_clearances(case, path)
-    return case
+    read = parse(text, Path(path))
+    _check_clearances(read.case, path)
+    return read
 
 
 def _check_clearances(case: Case, path: str | Path) -> None:
@@ -93,7 +99,7 @@ def parse_case(text: str, source: str | Path) -> Case:
     InputError
         If the text, or a file that it names, is malformed or breaks a constraint.
     """
-    return parse(text, Path(source))
+    return parse(text, Path(source)).case
 
 
 def files_named(path: Path) -> list[Path]:
@@ -130,11 +136,24 @@ def dump_case(case: Case, **run: str | None) -> str:
     """
     document: dict[str, dict[str, Any]] = {table: {} for table in TABLES if table != "run"}
     for quantity in QUANTITIES:
-        if quantity.key and quantity.field:
+        there = quantity.size == "n-1" or quantity.count(case.bha.structure)  # no clearances are an empty list
+        if quantity.key and quantity.field and there:
             table, key = quantity.key.split(".")
             value = attrgetter(quantity.field)(case)
-            written = _file_degrees if key.endswith("_deg") else float
-            document[table][key] = list(map(written, value)) if isinstance(value, tuple) else written(value)
+            if value == quantity.start:
+                continue
+            written = (
+                _file_degrees if key.endswith("_deg") else {"String": str, "Boolean": bool}.get(quantity.kind, float)
+            )
+            columns = document.setdefault(table, {})
+            columns[key] = list(map(written, value)) if isinstance(value, tuple) else written(value)
+    if "section" in document:
+        document["bha"]["section"] = sections_in_file(document.pop("section"))
+    if case.inputs is not None:
+        entries = {"drilled_length": case.inputs.drilled_length, **dict(case.inputs.inputs)}
+        document["drilling"]["schedule"] = {name: list(map(float, values)) for name, values in entries.items()}
+        if case.inputs.interpolation != "held":
+            document["drilling"]["interpolation"] = case.inputs.interpolation
     facts = {key: text for key, text in run.items() if text is not None}
     if facts:
         document["run"] = facts

@@ -3,8 +3,9 @@
 from pathlib import Path
 
 from .archive import open_archive
-from .case import Case
+from .case import Case, InputSchedule, Schedule
 from .file import parse_case
+from .tables import read_inputs
 
 CASE_FILE = "resources/case.toml"
 
@@ -31,3 +32,15 @@ def read_packed_case(fmu: str | Path) -> Case | None:
             return None
         text = archive.read(CASE_FILE).decode()
     return parse_case(text, Path(fmu, CASE_FILE))
+
+
+def read_schedules_for(fmu: str | Path, path: str | Path) -> tuple[Schedule | None, InputSchedule | None]:
+    """Read schedules for an FMU, see `read_inputs`. Measured depths count from the bit of the case packed in the FMU.
+
+    Raises
+    ------
+    InputError
+        As `read_inputs`, also for measured depths if no case is packed in the FMU; or as `read_packed_case`.
+    """
+    case = read_packed_case(fmu)
+    return read_inputs(path, None if case is None else case.survey.measured_depth[-1])

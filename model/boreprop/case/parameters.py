@@ -20,7 +20,7 @@ def parameters(case: Case) -> dict[str, float]:
     values = values_of("", case) | values_of("schedule", case.schedule)
     for part in PARTS:
         values |= values_of(part, getattr(case, part))
-    names = scalar_names(INPUTS + PARAMETERS, len(case.bha.stabilizer_positions))
+    names = scalar_names(INPUTS + PARAMETERS, case.bha.structure)
     return {name: values[name] for name in names if name in values}
 
 
@@ -32,7 +32,7 @@ def with_parameters(case: Case, values: Mapping[str, float]) -> Case:
     case
         The case to start from.
     values
-        Scalar name, see `parameters` → value in SI units. An "rss_force" replaces the schedule by a constant force.
+        Scalar name, see `parameters` → value in SI units. An input replaces its schedule by a constant value.
 
     Raises
     ------
@@ -45,11 +45,14 @@ def with_parameters(case: Case, values: Mapping[str, float]) -> Case:
     for name in values:
         if name not in own:
             raise InputError(f"a parameter must be one of {', '.join(own)}, got {name!r}")
-    n, wanted = len(case.bha.stabilizer_positions), own | dict(values)
+    structure, wanted = case.bha.structure, own | dict(values)
     changed = {quantity_of(name).part for name in values}
     parts: dict[str, Any] = {
-        part: replace(getattr(case, part), **fields_of(part, wanted, n)) for part in PARTS if part in changed
+        part: replace(getattr(case, part), **fields_of(part, wanted, structure)) for part in PARTS if part in changed
     }
     if "schedule" in changed:
         parts["schedule"] = Schedule((0.0,), (wanted["rss_force"],))
-    return replace(case, **parts, **fields_of("", wanted, n))
+    for name in values:
+        if case.inputs is not None and name in dict(case.inputs.inputs):
+            parts["inputs"] = case.inputs.without(name)
+    return replace(case, **parts, **fields_of("", wanted, structure))

@@ -6,46 +6,135 @@ The keys are those of the table of quantities; the types are those of the datacl
 import json
 import re
 import tomllib
-from collections.abc import Callable
-from contextlib import suppress
-from dataclasses import asdict
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import asdict, replace
 from difflib import get_close_matches
 from math import degrees, radians
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import ErrorDetails
 
 from ..core.checks import check_number
 from ..core.errors import ParameterError
-from ..core.quantities import QUANTITIES, Quantity, columns_of, quantity_of
+from ..core.quantities import Quantity, columns_of, quantity_of
 from ..core.survey import Survey
 from ..errors import InputError, shown
-from .case import Case, Schedule
-from .tables import read_schedule, read_survey
+from .body import place_points
+from .case import CLOSE, INTERPOLATIONS, Case, Schedule
+from .schedules import LENGTHS, NAMES_OF_INPUTS, force_schedule, input_schedule
+from .sections import lift_sections
+from .tables import BY_KEY, read_inputs, read_schedule, read_survey
 
 Document = dict[str, dict[str, Any]]  # table → key → value
 
-BY_KEY = {quantity.key: quantity for quantity in QUANTITIES if quantity.key}
 DEEPEST = 100  # parts that a dotted key may have
 TABLES = ("bha", "bit", "drilling", "hole", "rss", "run")  # of a file, in the order in which they are written
-OF_FILES: dict[str, tuple[str, Callable[[Path], Survey | Schedule]]] = {
-    "hole.survey": ("survey", read_survey),
-    "rss.schedule": ("schedule", read_schedule),
+OF_FILES = ("hole.survey", "rss.schedule", "drilling.schedule")
+"""Keys that name a CSV file."""
+
+CHOICES: dict[str, tuple[tuple[str, ...], ...]] = {
+    "hole": (columns_of("hole"), ("survey",)),
+    "rss": (
+        ("drilled_length", "force"),
+        ("measured_depth", "force"),
+        ("schedule",),
+        ("drilled_length", "duty", "toolface_deg"),
+        ("measured_depth", "duty", "toolface_deg"),
+    ),
 }
-"""Key that names a CSV file → the field of a `Case` that the file holds, and the function that reads it."""
+"""Table → the sets of keys of which it holds one."""
+
+BESIDE = {"hole": ("bit_depth",), "rss": ("full_force", "interpolation")}
+"""Table → the keys that may stand beside each of these sets."""
 
 PATHS = "must be a path with forward slashes or in single quotes, since in double quotes a backslash begins an escape"
 
-_CASE = TypeAdapter(Case)
+_CASE, _NUMBER, _COLUMN = TypeAdapter(Case), TypeAdapter(float), TypeAdapter(tuple[float, ...])
 
 
-def parse(text: str, source: Path) -> Case:
+class Read(NamedTuple):
+    """A case as its file describes it, and what was made of the file that its author may not expect: a phrase each."""
+
+    case: Case
+    notes: list[str]
+
+
+def parse(text: str, source: Path) -> Read:
     """See `boreprop.case.file.parse_case`."""
     document = read_toml(text, source)
+    lift_sections(document, source)
+    place_points(document, source)
     check_keys(document, source)
-    fields = case_fields(document) | read_files(document, source)
+    case, notes = _case(document, source), []
+    if "bit_depth" in document["hole"]:
+        bit_depth = _typed(_NUMBER, document, "hole.bit_depth", source)
+        notes = _beyond(case.survey, bit_depth)
+        with _naming("hole", source):
+            case = replace(case, survey=case.survey.with_bit_at(bit_depth))
+    bit = case.survey.measured_depth[-1]
+    if "rss" in document:
+        case = replace(case, schedule=_force(document, bit, source))
+    if "schedule" in document["drilling"]:
+        case = _with_inputs(case, document, bit, source)
+    return Read(case, notes)
+
+
+def _force(document: Document, bit_depth: float, source: Path) -> Schedule:
+    """The schedule of the table [rss]."""
+    table = document["rss"]
+    interpolation = table.get("interpolation", "held")
+    full_force = _typed(_NUMBER, document, "rss.full_force", source) if "full_force" in table else None
+    if (full_force is None) == ("duty" in table) and "schedule" not in table:
+        constraint = "must be given with duty and toolface_deg, and only with them"
+        raise InputError(f"{source}: rss.full_force: {constraint}, got {shown(table)}")
+    with _naming("rss", source):
+        if "schedule" in table:
+            return read_schedule(source.parent / table["schedule"], bit_depth, interpolation, full_force)
+        keys = [key for key in table if key not in BESIDE["rss"]]
+        columns = {key: _typed(_COLUMN, document, f"rss.{key}", source) for key in keys}
+        return force_schedule(columns, bit_depth, interpolation, full_force)
+
+
+def _with_inputs(case: Case, document: Document, bit_depth: float, source: Path) -> Case:
+    """The case with the schedule of the table [drilling]."""
+    table, given = document["drilling"], document["drilling"]["schedule"]
+    interpolation, where = table.get("interpolation", "held"), "drilling.schedule"
+    if isinstance(given, str):
+        force, inputs = read_inputs(source.parent / given, bit_depth, interpolation)
+    else:
+        lengths = set(given) & set(LENGTHS)
+        if len(lengths) != 1 or len(given) == 1 or set(given) - lengths - set(NAMES_OF_INPUTS):
+            constraint = f"must hold either {' or '.join(LENGTHS)}, and any of {', '.join(NAMES_OF_INPUTS)}"
+            raise InputError(f"{source}: {where}: {constraint}, got {shown(given)}")
+        columns = {key: _typed(_COLUMN, document, f"{where}.{key}", source) for key in given}
+        with _naming(where, source):
+            force, inputs = input_schedule(columns, bit_depth, interpolation)
+    if force is not None:
+        if "rss" in document:
+            raise InputError(f"{source}: rss: must be left out where {where} gives rss_force, got both")
+        case = replace(case, schedule=force)
+    weights = dict(inputs.inputs).get("active_weight_on_bit") if inputs else None
+    if weights is None and "active_weight_on_bit" not in table:
+        raise InputError(f"{source}: drilling.active_weight_on_bit: must be given, got nothing")
+    if weights is not None and table.get("active_weight_on_bit", weights[0]) != weights[0]:
+        constraint = f"must be left out, or {weights[0]!r} as {where} has it at the start"
+        raise InputError(
+            f"{source}: drilling.active_weight_on_bit: {constraint}, got {table['active_weight_on_bit']!r}"
+        )
+    return replace(case, inputs=inputs, active_weight_on_bit=weights[0] if weights else case.active_weight_on_bit)
+
+
+def _case(document: Document, source: Path) -> Case:
+    """The case with its survey as it is given, and without a schedule that depends on where the bit is."""
+    fields = case_fields(document)
+    if "survey" in document.get("hole", {}):
+        fields["survey"] = asdict(read_survey(source.parent / document["hole"]["survey"]))
+    fields.pop("schedule", None)
+    if "schedule" in document.get("drilling", {}):
+        fields.setdefault("active_weight_on_bit", 1.0)  # that of the schedule takes its place
     try:
         # Validated as JSON: there, even strict types accept an object for a dataclass and an array for a tuple.
         return _CASE.validate_json(json.dumps(fields, default=str), strict=True)
@@ -53,6 +142,38 @@ def parse(text: str, source: Path) -> Case:
         errors = error.errors(include_url=False)
         more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
         raise InputError(f"{source}: {_message(errors[0], document)}{more}") from error
+
+
+def _beyond(survey: Survey, bit_depth: float) -> list[str]:
+    """What is made of the hole between the bit and the end of its survey, if they are not at the same place."""
+    end = survey.measured_depth[-1]
+    if bit_depth - end > CLOSE:
+        return [f"hole.bit_depth: {bit_depth - end:.4g} m beyond the survey: the hole is extended straight to the bit"]
+    if end - bit_depth > CLOSE:
+        return [f"hole.bit_depth: {end - bit_depth:.4g} m before the end of the survey: what lies beyond is left out"]
+    return []
+
+
+def _typed(kind: TypeAdapter[Any], document: Document, where: str, source: Path) -> Any:
+    """The value under "table.key" or "table.key.key", which must be of a kind."""
+    try:
+        return kind.validate_json(json.dumps(_written(document, where), default=str), strict=True)
+    except ValidationError as error:
+        [first, *_] = error.errors(include_url=False)
+        index = next((part + 1 for part in first["loc"] if isinstance(part, int)), None)
+        raise InputError(f"{source}: {_wrong_type(first, where, index, document)}") from error
+
+
+@contextmanager
+def _naming(table: str, source: Path) -> Iterator[None]:
+    """Turn errors about what a table holds into an `InputError` that names file and key."""
+    try:
+        yield
+    except ParameterError as error:
+        quantity = quantity_of(error.name)
+        key = quantity.key.rpartition(".")[2] if table != "drilling.schedule" else quantity.name
+        where = f"{table}.{key}{error.name.removeprefix(quantity.name)}"
+        raise InputError(f"{source}: {where}: {error.constraint}, got {shown(error.value)}") from error
 
 
 def _no_toml(error: tomllib.TOMLDecodeError, text: str) -> str:
@@ -90,7 +211,7 @@ def check_keys(document: dict[str, Any], source: Path) -> None:
     Keys whose values are texts are checked for their type too; pydantic checks all other types.
     """
     for table, content in document.items():
-        if table not in TABLES:
+        if table not in (*TABLES, "section"):
             raise InputError(f"{source}: {table}: {_unknown(table)}, got {shown(content)}")
         if not isinstance(content, dict):
             raise InputError(f"{source}: {table}: must be a table, got {shown(content)}")
@@ -98,15 +219,18 @@ def check_keys(document: dict[str, Any], source: Path) -> None:
             where = f"{table}.{key}"
             if where not in BY_KEY:
                 raise InputError(f"{source}: {where}: {_unknown(key)}, got {shown(value)}")
+            if where == "drilling.schedule" and isinstance(value, dict):
+                continue
             if BY_KEY[where].kind == "String" and not isinstance(value, str):
                 raise InputError(f"{source}: {where}: must be text in quotes, got {shown(value)}")
+            if where.endswith(".interpolation") and value not in INTERPOLATIONS:
+                raise InputError(f"{source}: {where}: must be {' or '.join(INTERPOLATIONS)}, got {shown(value)}")
             if where in OF_FILES and any(escaped in value for escaped in "\b\t\n\f\r"):  # "\temp" begins with a tab
                 raise InputError(f"{source}: {where}: {PATHS}, got {shown(value)}")
-    for where in OF_FILES:
-        table, _, file = where.partition(".")
-        columns = columns_of(table)
-        if table in document and set(document[table]) not in ({file}, set(columns)):
-            constraint = f"must hold either {' and '.join(columns)}, or {file}"
+    for table, choices in CHOICES.items():
+        given = set(document.get(table, {})) - set(BESIDE.get(table, ()))
+        if table in document and given not in map(set, choices):
+            constraint = f"must hold either {', or '.join(map(' and '.join, choices))}"
             raise InputError(f"{source}: {table}: {constraint}, got {shown(document[table])}")
 
 
@@ -119,16 +243,6 @@ def case_fields(document: Document) -> dict[str, Any]:
             if quantity.field:
                 owner = fields.setdefault(quantity.part, {}) if quantity.part else fields
                 owner[quantity.attribute] = _radians(value) if key.endswith("_deg") else value
-    return fields
-
-
-def read_files(document: Document, source: Path) -> dict[str, Any]:
-    """The fields of a `Case` whose columns stand in files of their own, looked up beside the case file."""
-    fields = {}
-    for where, (part, read) in OF_FILES.items():
-        table, _, key = where.partition(".")
-        if key in document.get(table, {}):
-            fields[part] = asdict(read(source.parent / document[table][key]))
     return fields
 
 
@@ -161,9 +275,15 @@ def _message(error: ErrorDetails, document: Document) -> str:
     if quantity is None:  # the field is a whole part of a case: its table is missing
         where = next(key for key, quantity in BY_KEY.items() if quantity.part == field).partition(".")[0]
     else:
-        where = quantity.key + (f"[{index}]" if index else "")
+        where = quantity.key
     if error["type"] == "missing":
         return f"{where}: must be given, got nothing"
+    return _wrong_type(error, where, index, document)
+
+
+def _wrong_type(error: ErrorDetails, where: str, index: int | None, document: Document) -> str:
+    """The message for a value, or for the one with an index in a list, that is of another type."""
+    where += f"[{index}]" if index else ""
     constraint = "must be a list" if error["type"] == "tuple_type" else error["msg"].replace("Input should", "must")
     return f"{where}: {constraint}, got {shown(_written(document, where))}"
 
@@ -191,6 +311,7 @@ def _in_degrees(quantity: Quantity, value: Any) -> str:
 def _written(document: Document, where: str) -> Any:
     """The value that the file has under "table.key" or "table.key[i]"."""
     where, _, index = where.partition("[")
-    table, key = where.split(".")
-    value = document[table][key]
+    value: Any = document
+    for key in where.split("."):
+        value = value[key]
     return value[int(index[:-1]) - 1] if index else value

@@ -1,19 +1,39 @@
-"""Reads surveys and force schedules from CSV files, see `boreprop.case.sheet` for what these may look like."""
+"""Reads surveys and schedules from CSV files, see `boreprop.case.sheet` for what these may look like."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 from math import radians
 from pathlib import Path
+from typing import NamedTuple
 
 from ..core.errors import ParameterError
-from ..core.quantities import QUANTITIES, columns_of
+from ..core.quantities import BY_NAME, QUANTITIES
 from ..core.survey import Survey
 from ..errors import InputError, shown
-from .case import Schedule
-from .sheet import read_sheet
+from .case import InputSchedule, Schedule
+from .schedules import LENGTHS, NAMES_OF_INPUTS, force_schedule, input_schedule
+from .sheet import Sheet, read_sheet
 
-OTHER_UNITS = {"m": {"ft": 0.3048}, "N": {"kN": 1e3, "lbf": 4.4482216152605}}
+BY_KEY = {quantity.key: quantity for quantity in QUANTITIES if quantity.key}
+
+OTHER_UNITS = {
+    "m": {"ft": 0.3048},
+    "N": {"kN": 1e3, "lbf": 4.4482216152605},
+    "m/s": {"m_h": 1 / 3600, "ft_h": 0.3048 / 3600},
+}
 """Unit of a column → the ends of names under which it may stand in another unit, and what that is in the first one."""
+
+
+class Spelling(NamedTuple):
+    """What a heading stands for: a column, in a unit that is `factor` times that of the column."""
+
+    name: str
+    unit: str
+    factor: float
+
+
+Group = dict[str, Spelling]  # headings → what they stand for: one column, or one of several
+Column = tuple[float, ...]
 
 NULLS = (-999.25, -9999.0, -9999.25)  # what loggers write where there is no value (LAS, WITSML)
 LEAST_NULL = 1e30  # and beyond
@@ -30,22 +50,64 @@ def read_survey(path: str | Path) -> Survey:
         If the file cannot be read, an inclination is beyond ±180°, or the depths do not increase.
     """
     with naming(path):
-        measured_depth, inclination_deg = _read_columns(path, "hole")
+        columns = _read_columns(path, [_group("hole", "measured_depth"), _group("hole", "inclination_deg")])
+        measured_depth, inclination_deg = columns.values()
         return Survey(measured_depth, tuple(map(radians, inclination_deg)))
 
 
-def read_schedule(path: str | Path) -> Schedule:
-    """Read a force schedule: a CSV file with the columns drilled_length (m) and force (N).
+def read_schedule(
+    path: str | Path, bit_depth: float | None = None, interpolation: str = "held", full_force: float | None = None
+) -> Schedule:
+    """Read a force schedule: a CSV file with the columns drilled_length or measured_depth (m), and force (N).
 
-    They may also be drilled_length_ft, and force_kN or force_lbf.
+    They may also be drilled_length_ft or measured_depth_ft, and force_kN or force_lbf.
+
+    Parameters
+    ----------
+    path
+        The file.
+    bit_depth
+        Measured depth of the bit at the start of the run, m; None if it is not known.
+    interpolation
+        "held" or "linear".
+    full_force
+        The force at a duty of 1, N; with it there are the columns duty and toolface_deg in place of the force.
 
     Raises
     ------
     InputError
-        If the file cannot be read, or the lengths do not start at 0 or do not increase.
+        If the file cannot be read, has both drilled lengths and measured depths, or depths whereas that of the bit is
+        not known; if the lengths do not start at 0, the depths start beyond the bit, or they do not increase.
     """
+    steering = ["force"] if full_force is None else ["duty", "toolface_deg"]
+    columns = _read_columns(path, [_group("rss", *names) for names in (LENGTHS, *([name] for name in steering))])
     with naming(path):
-        return Schedule(*_read_columns(path, "rss"))
+        return force_schedule(columns, bit_depth, interpolation, full_force)
+
+
+def read_inputs(
+    path: str | Path, bit_depth: float | None = None, interpolation: str = "held"
+) -> tuple[Schedule | None, InputSchedule | None]:
+    """Read a schedule of inputs: a CSV file with the columns drilled_length or measured_depth (m), and names of inputs.
+
+    These are in SI units; a force may also be rss_force_kN, active_weight_on_bit_lbf, …, and the rate of penetration
+    rate_of_penetration_m_h or rate_of_penetration_ft_h. The steering force may be called force, as in `read_schedule`.
+
+    Returns
+    -------
+    The schedule of the steering force and that of the other inputs; None of what is not there.
+
+    Raises
+    ------
+    InputError
+        As `read_schedule`, and if no input is there.
+    """
+    inputs = [_spellings(name, BY_NAME[name].unit) for name in NAMES_OF_INPUTS]
+    force = {heading: of._replace(name="rss_force") for heading, of in _group("rss", "force").items()}
+    inputs = [group | force if "rss_force" in group else group for group in inputs]
+    columns = _read_columns(path, [_group("rss", *LENGTHS)], inputs)
+    with naming(path):
+        return input_schedule(columns, bit_depth, interpolation)
 
 
 @contextmanager
@@ -57,17 +119,17 @@ def naming(path: str | Path) -> Iterator[None]:
         raise InputError(f"{path}: {error.name}: {error.constraint}, got {shown(error.value)}") from error
 
 
-def _read_columns(path: str | Path, table: str) -> list[tuple[float, ...]]:
-    """The columns of a table of a case file that stands in a CSV file of its own, in the units of the case file."""
-    columns = {name: _spellings(name, unit) for name, unit in _units(table).items()}
-    known = {spelling for spellings in columns.values() for spelling in spellings}
-    sheet = read_sheet(path, known.__contains__)
-    found: dict[str, float] = {}
-    for spellings in columns.values():
-        spelling = next((spelling for spelling in spellings if spelling in sheet.headings), None)
-        if spelling is None:
-            raise sheet.missing(*(f"{spelling!r} ({unit})" for spelling, (unit, _) in spellings.items()))
-        found[spelling] = spellings[spelling][1]
+def _read_columns(path: str | Path, groups: list[Group], some_of: list[Group] | None = None) -> dict[str, Column]:
+    """Columns of a CSV file: of each group that of the heading that is there; name → values.
+
+    Of the groups `some_of` at least one must be there, if they are given.
+    """
+    everything = [heading for group in [*groups, *(some_of or [])] for heading in group]
+    sheet = read_sheet(path, everything.__contains__)
+    more = [group for group in some_of or [] if any(heading in sheet.headings for heading in group)]
+    if some_of and not more:
+        raise sheet.missing(*(repr(next(iter(group))) for group in some_of))
+    found = {heading: group[heading] for group in [*groups, *more] for heading in [_heading(sheet, group)]}
     numbers = sheet.numbers(list(found))
     for heading, column in zip(found, numbers, strict=True):
         for line, value in zip(sheet.lines, column, strict=True):
@@ -76,18 +138,31 @@ def _read_columns(path: str | Path, table: str) -> list[tuple[float, ...]]:
             if value in NULLS or abs(value) >= LEAST_NULL:
                 remedy = "which stands for no value: leave the row out"
                 raise InputError(f"{path}:{line}: {heading}: must be a value, got {value!r}, {remedy}")
-    return [
-        tuple(column) if factor == 1.0 else tuple(factor * value for value in column)
-        for factor, column in zip(found.values(), numbers, strict=True)
-    ]
+    return {
+        of.name: tuple(column) if of.factor == 1.0 else tuple(of.factor * value for value in column)
+        for of, column in zip(found.values(), numbers, strict=True)
+    }
 
 
-def _units(table: str) -> dict[str, str]:
-    """The columns of a table of a case file, and their units there."""
-    keys = {quantity.key.partition(".")[2]: quantity for quantity in QUANTITIES if quantity.key.startswith(table + ".")}
-    return {name: "degrees" if name.endswith("_deg") else keys[name].unit for name in columns_of(table)}
+def _heading(sheet: Sheet, spellings: Group) -> str:
+    """The first of some headings that a file has, all others of which must be of the same column."""
+    there = [heading for heading in spellings if heading in sheet.headings]
+    if not there:
+        raise sheet.missing(*(f"{heading!r} ({of.unit})" for heading, of in spellings.items()))
+    for other in there[1:]:
+        if spellings[other].name != spellings[there[0]].name:
+            both = f"{there[0]!r} and {other!r}"
+            raise InputError(f"{sheet.path}: must have one of the columns {both}, got both: remove one")
+    return there[0]
 
 
-def _spellings(name: str, unit: str) -> dict[str, tuple[str, float]]:
-    """The names under which a column is found, each with its unit and with what that is in the column's own unit."""
-    return {name: (unit, 1.0)} | {f"{name}_{end}": (end, factor) for end, factor in OTHER_UNITS.get(unit, {}).items()}
+def _group(table: str, *names: str) -> Group:
+    """The headings under which one of some columns of a table of a case file is found."""
+    units = {key: "degrees" if key.endswith("_deg") else BY_KEY[f"{table}.{key}"].unit for key in names}
+    return {heading: of for name, unit in units.items() for heading, of in _spellings(name, unit).items()}
+
+
+def _spellings(name: str, unit: str) -> Group:
+    """The headings under which a column is found."""
+    others = OTHER_UNITS.get(unit, {}).items()
+    return {name: Spelling(name, unit, 1.0)} | {f"{name}_{end}": Spelling(name, end, factor) for end, factor in others}

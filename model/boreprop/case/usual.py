@@ -34,19 +34,20 @@ def unusual(case: Case) -> list[str]:
     list of str
         A phrase for each: key, value, usual range; none for a usual case.
     """
+    profiles = case.profiles()
     values = {
-        "bha.flexural_stiffness": case.bha.flexural_stiffness,
-        "bha.distributed_weight": case.bha.distributed_weight,
-        "bit.diameter": case.bit_diameter,
-        "bit.tilt_limit_deg": degrees(case.bit.tilt_limit),
-        "drilling.active_weight_on_bit": case.active_weight_on_bit,
-        "rss.force": max(map(abs, case.schedule.rss_force)),
-        "ηΠ": case.eta_pi,
+        "bha.flexural_stiffness": [case.bha.flexural_stiffness],
+        "bha.distributed_weight": [case.bha.distributed_weight],
+        "bit.diameter": [case.bit_diameter],
+        "bit.tilt_limit_deg": [degrees(case.bit.tilt_limit)],
+        "drilling.active_weight_on_bit": profiles["active_weight_on_bit"].values,
+        "rss.force": [max(map(abs, profiles["rss_force"].values))],
+        "ηΠ": [case.eta_pi],
     }
     found = [
-        f"{key}: is usually {low:g} to {high:g} {unit}".rstrip() + f", got {values[key]:g}"
+        f"{key}: is usually {low:g} to {high:g} {unit}".rstrip() + f", got {value:g}"
         for key, (low, high, unit) in USUAL.items()
-        if values[key] != 0.0 and not low <= values[key] <= high
+        for value in [value for value in values[key] if value != 0.0 and not low <= value <= high][:1]
     ]
     depth, reach = case.survey.measured_depth, case.bha.stabilizer_positions[-1]
     if depth[-1] - depth[0] < reach * (1 - 1e-9):

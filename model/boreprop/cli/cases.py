@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from ..case.case import Case
-from ..case.file import load_case
+from ..case.file import load_case, read_case
 from ..case.usual import unusual
 from ..core.system import scale
 from ..errors import InputError, ParameterError
@@ -25,13 +25,13 @@ RunCase = Annotated[
 
 
 def open_case(path: Path) -> Case:
-    """Read a case file; warn, once and in one line, of what in it is far from any bottom-hole assembly."""
-    case = load_case(path)
+    """Read a case file; warn, once and in one line, of what is far from any assembly, and of a hole made longer."""
+    case, notes = read_case(path)
     try:
         scale(case.bha, case.bit)
     except ParameterError as error:  # of a number that no key has, so the case is not refused for a key
         raise InputError(f"{path}: {error}") from error
-    found = unusual(case)
+    found = notes + unusual(case)
     if found:
         console.warn(f"{path}: {'; '.join(found)}")
     return case

@@ -71,7 +71,7 @@ Units = Annotated[
         parser=one_of("si", "field"),
         callback=_show_in,
         metavar="si|field",
-        help="Units of what is printed: m, kN and °/30 m, or ft, klbf and °/100 ft.",
+        help="Units of what is printed or drawn: m, kN and °/30 m, or ft, klbf and °/100 ft.",
     ),
 ]
 """The option --units of a command that prints tables: ``units: Units = "si"``. It holds until the command ends."""

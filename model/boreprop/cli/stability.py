@@ -107,6 +107,7 @@ def stability_command(
         ),
     ] = None,
     as_json: AsJson = False,
+    units: Units = "si",  # noqa: ARG001 - its callback has done it
 ) -> None:
     """Draw the stability chart of a case over ηΠ and λ₂, and print its limits.
 

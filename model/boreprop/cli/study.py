@@ -12,13 +12,14 @@ from ..analysis.study.design import Study, grid, sample
 from ..analysis.study.figures import key_figures
 from ..core.checks import check_number
 from ..errors import InputError
-from ..report.tables.study import lines, outcome
+from ..report.tables.study import as_plain, lines, outcome
 from ..run.files import files_read
 from . import console
 from .cases import open_case
 from .fallback import warn_of_fallback
-from .options import CaseFile, Tolerance
-from .printing import print_table
+from .options import AsJson, CaseFile, Tolerance, Units
+from .outputs import check_run_output
+from .printing import print_json, print_table
 from .ranges import parse_axis, parse_distribution, parse_each
 
 QUANTILES_OF_GRID = {"least": 0.0, "median": 0.5, "largest": 1.0}
@@ -29,7 +30,10 @@ def study_command(
     case_file: CaseFile,
     output: Annotated[
         Path,
-        typer.Option(metavar="STUDY.parquet", help="The file of results. If it exists, the study continues from it."),
+        typer.Option(
+            metavar="STUDY.csv",
+            help="The file of results, .csv or .parquet. If it exists, the study continues from it.",
+        ),
     ],
     vary: Annotated[
         list[str] | None,
@@ -55,13 +59,15 @@ def study_command(
         str | None, typer.Option(metavar="ADDRESS", help="Compute on the workers of a Dask scheduler, tcp://HOST:PORT.")
     ] = None,
     tolerance: Tolerance = None,
+    as_json: AsJson = False,
+    units: Units = "si",  # noqa: ARG001 - its callback has done it
 ) -> None:
     """Simulate many cases on all cores: over a grid, or of uncertain parameters.
 
     NAME is an input or parameter of the case, such as stabilizer_clearance[1], in SI units; or eta_pi; or
     bit_tilt_limit_deg.
     """
-    console.check_output(output, (".parquet",), reads=files_read(case_file))
+    check_run_output(output, files_read(case_file))
     check_number("--sample", draws, at_least=1)
     check_number("--seed", seed, at_least=0)
     if workers is not None:
@@ -80,6 +86,9 @@ def study_command(
             console.warn(f"{output}: keeps the cases that are done; the same command continues from there")
         raise
     quantiles = QUANTILES_OF_SAMPLE if uncertain else QUANTILES_OF_GRID
+    if as_json:
+        print_json(as_plain(results, quantiles.values()))
+        return
     print_table(lines(results, quantiles.values()), (str(output), *quantiles))
     print(f"{output}: {outcome(results)}")
 

@@ -91,6 +91,7 @@ def hysteresis_command(
     ] = 0.5,
     tolerance: Tolerance = None,
     as_json: AsJson = False,
+    units: Units = "si",  # noqa: ARG001 - its callback has done it
 ) -> None:
     """Draw where a ripple dies out on the way up, and returns on the way down.
 

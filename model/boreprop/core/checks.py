@@ -46,7 +46,7 @@ def check_quantity(name: str, value: float | tuple[float, ...]) -> None:
 def check_part(part: str, fields: object) -> None:
     """Raise `ParameterError` unless every quantity of a part of a case is in its range of the table of quantities."""
     for quantity in BY_NAME.values():
-        if quantity.field and quantity.part == part:
+        if quantity.field and quantity.part == part and quantity.kind != "String":
             check_quantity(quantity.name, getattr(fields, quantity.attribute))
 
 

@@ -6,10 +6,12 @@ from typing import Any
 
 from .checks import check_number, check_quantity
 from .errors import CannotContinue, ParameterError, error_of
+from .inputs import Inputs
 from .integrator import Integrator
 from .modes import Modes, bit_tilt, saturation, wall
 from .options import Options, Statistics
 from .problems import DERIVED, Problem
+from .quantities import ACTING
 from .survey import Survey
 from .system import BitRock, BottomHoleAssembly, eta_pi, scale
 
@@ -54,37 +56,65 @@ class Drilling:
         self._bha, self._bit = bha, bit
         self._length, self._force = bha.length_scale, bha.force_scale
         self.drilled_length = 0.0
-        self._given = self._inputs = (nan, nan)  # the inputs that were given last, in N and in the paper's numbers
+        self._given, self._inputs = (
+            (nan,) * 4,
+            Inputs(nan, nan),
+        )  # the last that were given, in N and as the paper's numbers
         scaled, inputs = scale(bha, bit), self._scaled_inputs(rss_force, active_weight_on_bit)
         try:
-            self.integrator = Integrator(Modes(scaled), survey, self._length, *inputs, options)
+            self.integrator = Integrator(Modes(scaled), survey, self._length, inputs.F_rss, inputs.eta_pi, options)
         except ParameterError:
             raise
         except (CannotContinue, ArithmeticError, ValueError) as error:  # as in `Integrator.drill`
             raise error_of(Problem("no start", "parameters")) from error
 
-    def _scaled_inputs(self, rss_force: float, active_weight_on_bit: float) -> tuple[float, float]:
-        """F_RSS and ηΠ; `ParameterError` if these numbers, or the inputs, are out of range."""
-        if (rss_force, active_weight_on_bit) == self._given:
+    def _scaled_inputs(
+        self, force: float, weight: float, force_slope: float = 0.0, weight_slope: float = 0.0
+    ) -> Inputs:
+        """The dimensionless inputs; `ParameterError` if these numbers, or the inputs, are out of range."""
+        given = (force, weight, force_slope, weight_slope)
+        if given == self._given:
             return self._inputs
-        check_quantity("rss_force", rss_force)
-        check_quantity("active_weight_on_bit", active_weight_on_bit)
-        F_rss, own_eta_pi = rss_force / self._force, eta_pi(self._bha, self._bit, active_weight_on_bit)
-        check_number(DERIVED["scaled_force"], F_rss)
-        check_number("eta_pi", own_eta_pi, above=0.0)
-        check_number(DERIVED["inverse_eta_pi"], 1 / own_eta_pi)
-        self._given, self._inputs = (rss_force, active_weight_on_bit), (F_rss, own_eta_pi)
-        return self._inputs
+        check_quantity("rss_force", force)
+        check_number("rss_force_slope", force_slope)
+        check_quantity("active_weight_on_bit", weight)
+        check_number("active_weight_on_bit_slope", weight_slope)
+        inputs = Inputs(
+            F_rss=force / self._force,
+            eta_pi=eta_pi(self._bha, self._bit, weight),
+            F_rss_slope=force_slope * self._length / self._force,
+            eta_pi_slope=eta_pi(self._bha, self._bit, weight_slope) * self._length,
+        )
+        check_number(DERIVED["scaled_force"], inputs.F_rss)
+        check_number(DERIVED["scaled_slope"], inputs.F_rss_slope)
+        check_number("eta_pi", inputs.eta_pi, above=0.0)
+        check_number(DERIVED["eta_pi_slope"], inputs.eta_pi_slope)
+        check_number(DERIVED["inverse_eta_pi"], 1 / inputs.eta_pi)
+        self._given, self._inputs = given, inputs
+        return inputs
 
-    def advance(self, drilled_length: float, rss_force: float, active_weight_on_bit: float) -> None:
-        """Drill on under inputs held from here.
+    def advance(
+        self,
+        drilled_length: float,
+        rss_force: float,
+        active_weight_on_bit: float,
+        *,
+        rss_force_slope: float = 0.0,
+        active_weight_on_bit_slope: float = 0.0,
+        weight_on_bit: float = 0.0,
+    ) -> None:
+        """Drill on under inputs from here, which are constant or linear in the drilled length.
 
         Parameters
         ----------
         drilled_length
             Where to stop, m from the start of the run. If the bit is there already, only the inputs are taken over.
         rss_force, active_weight_on_bit
-            N.
+            The inputs where the bit is, N.
+        rss_force_slope, active_weight_on_bit_slope
+            Their change per metre drilled, N/m.
+        weight_on_bit
+            All of the weight, N, which acts on a BHA with `axial_load` only, and so not here.
 
         Raises
         ------
@@ -94,29 +124,21 @@ class Drilling:
             If the integrator cannot drill on. Nothing has changed then, nor after a `ParameterError`.
         """
         drilled_length, rss_force = float(drilled_length), float(rss_force)  # numpy's own would slow down what follows
-        inputs = self._scaled_inputs(rss_force, active_weight_on_bit)
+        check_quantity("weight_on_bit", weight_on_bit)
+        inputs = self._scaled_inputs(rss_force, active_weight_on_bit, rss_force_slope, active_weight_on_bit_slope)
         check_number("drilled_length", drilled_length, at_least=self.drilled_length)
         self.integrator.drill(drilled_length / self._length, *inputs)
         self.drilled_length = drilled_length
 
-    def follow(
-        self,
-        lengths: Iterable[float],
-        forces: Iterable[float],
-        active_weight_on_bit: float,
-        rows: Iterable[int],
-        table: Any,
-    ) -> None:
+    def follow(self, lengths: Iterable[float], inputs: Iterable[Any], rows: Iterable[int], table: Any) -> None:
         """Drill leg after leg, each as by `advance`.
 
         Parameters
         ----------
         lengths
             Where the legs end, m from the start of the run, (legs,), not decreasing.
-        forces
-            The RSS force along each, N, (legs,).
-        active_weight_on_bit
-            N.
+        inputs
+            The inputs where each leg starts, and their changes per metre, (legs, inputs), in the order of `ACTING`.
         rows
             The row of `table` that takes the outputs at the end of each leg, (legs,); −1 for none.
         table
@@ -127,8 +149,8 @@ class Drilling:
         ParameterError, CannotContinue
             As in `advance`, for the leg that fails; the bit is then where the leg before ended.
         """
-        for length, force, row in zip(lengths, forces, rows, strict=True):
-            self.advance(length, force, active_weight_on_bit)
+        for length, values, row in zip(lengths, inputs, rows, strict=True):
+            self.advance(length, **dict(zip(ACTING, map(float, values), strict=True)))
             if row >= 0:
                 table[row] = tuple(self.outputs().values())
 

@@ -31,24 +31,24 @@ def first_event(law: Law, hole: Hole, trial: Trial, slack: float) -> Event | Non
     """
     first = None
     for bound in law.bounds:
-        values = bound.value.along(trial.thetas, trial.Ys, trial.delayed, trial.sines)
+        values = law.bounded_along(bound, trial.thetas, trial.Ys, trial.delayed, trial.sines, trial.aheads)
         low, high = min(values), max(values)
         near = NEAR * (high - low)
         if low - near >= bound.lower and high + near <= bound.upper:
             continue
-        event = _meet(bound, value_along(bound, trial.step, hole, law.s), trial.step, values, slack)
+        event = _meet(bound, value_along(law, bound, trial.step, hole), trial.step, values, slack)
         if event and event.xi < (first.xi if first else trial.step.end):
             first = event
     return first
 
 
-def value_along(bound: Bound, step: Step, hole: Hole, s: tuple[float, ...]) -> Callable[[float], float]:
+def value_along(law: Law, bound: Bound, step: Step, hole: Hole) -> Callable[[float], float]:
     """The value that a bound is on, over ξ along a step."""
 
     def value(xi: float) -> float:
         theta, Y = step.state(xi)
-        delayed = [hole.Y(xi - s_i) for s_i in s]
-        return bound.value.at(theta, Y, delayed, sin(Y - delayed[0]))
+        delayed = [hole.Y(xi - s_i) for s_i in law.s]
+        return law.bounded_at(bound, xi, theta, Y, delayed, sin(Y - delayed[0]))
 
     return value
 

@@ -5,16 +5,16 @@ from math import inf
 from typing import Any, NamedTuple
 
 from .checks import check_number
+from .inputs import Inputs
 from .problems import DERIVED
 from .survey import Survey
 
 
 class Drilled(NamedTuple):
-    """How a piece of the hole was drilled: with θ = Σ theta[m] t^m, t as in `Hole`, and under which inputs."""
+    """How a piece of the hole was drilled: with θ = Σ theta[m] t^m, t as in `Hole`, under which inputs at its start."""
 
     theta: tuple[float, ...]
-    F_rss: float
-    eta_pi: float
+    inputs: Inputs
 
     def at(self, t: float) -> float:
         """θ at `t`."""
@@ -130,4 +130,4 @@ class Hole:
         """Take over the pieces from `save`."""
         self.starts, self.rates = list(state["starts"]), list(state["rates"])
         self.coefficients = [tuple(c) for c in state["coefficients"]]
-        self.drilled = [piece and Drilled(tuple(piece[0]), *piece[1:]) for piece in state["drilled"]]
+        self.drilled = [piece and Drilled(tuple(piece[0]), Inputs(*piece[1])) for piece in state["drilled"]]

@@ -16,6 +16,7 @@ from . import radau
 from .errors import CannotContinue
 from .events import Event, first_event
 from .hole import Drilled, Hole
+from .inputs import Inputs
 from .kinks import MERGE, SMOOTHEST_KINK, Kinks
 from .law import Law, Laws
 from .modes import ROUNDING, Loads, Mode, Modes, Regime, bit_tilt, saturation
@@ -108,26 +109,29 @@ class Integrator:
             self.kinks.add_images(kink, 2, jump)
         theta = self.hole.final_inclination
         self.present = Step.standstill(0.0, theta, 0.0)  # the step that the bit is in
-        self._restart(self._loads(0.0, theta, 0.0, F_rss), eta_pi, theta)
+        self._restart(self._loads(0.0, theta, 0.0, F_rss), Inputs(F_rss, eta_pi), theta)
 
     # moving
 
-    def drill(self, xi: float, F_rss: float, eta_pi: float) -> None:
-        """Drill on to `xi` under inputs that act from where the bit is.
+    def drill(
+        self, xi: float, F_rss: float, eta_pi: float, F_rss_slope: float = 0.0, eta_pi_slope: float = 0.0
+    ) -> None:
+        """Drill on to `xi` under inputs that act from where the bit is, and change by these slopes per ξ.
 
         Raises `CannotContinue` if that fails; then nothing has changed.
         """
-        changed = (F_rss, eta_pi) != (self.F_rss, self.eta_pi)
+        inputs, way = Inputs(F_rss, eta_pi, F_rss_slope, eta_pi_slope), xi - self.xi
+        changed = not self._inputs_here().same(inputs, way if way > 0.0 else 1.0)
         if changed or xi > self.present.end:
             with self._all_or_nothing():
                 if changed:
-                    self._steer(F_rss, eta_pi)
+                    self._steer(inputs)
                 self._take_steps(xi)
         self.xi = xi
 
     def advance(self, xi: float) -> None:
         """Drill on to `xi` under the inputs as they are, see `drill`."""
-        self.drill(xi, self.F_rss, self.eta_pi)
+        self.drill(xi, *self._inputs_here())
 
     def steer(self, F_rss: float, eta_pi: float) -> None:
         """Take over inputs where the bit is, see `drill`."""
@@ -163,14 +167,34 @@ class Integrator:
                 raise CannotContinue(Problem("too many", limit=most, place=self.xi * self.length_scale))
             self._take_step()
 
-    def _steer(self, F_rss: float, eta_pi: float) -> None:
-        loads, (theta, Y) = self.loads(), self.present.state(self.xi)
-        before = self._inclination(theta, loads, self.eta_pi)
+    def _steer(self, inputs: Inputs) -> None:
+        """Take over inputs where the bit is. Where a slope changes, the curvature jumps."""
+        loads, (theta, Y), before = self.loads(), self.present.state(self.xi), self._inputs_here()
+        Theta = self._inclination(theta, loads, before.eta_pi)
         self._move_path(self.xi)
         self.present = Step.standstill(self.xi, theta, Y)
-        self._restart(loads._replace(F_rss=F_rss), eta_pi, before)
+        loads = loads._replace(F_rss=inputs.F_rss)
+        self._restart(loads, inputs, Theta)
+        bend, turn = inputs.F_rss_slope - before.F_rss_slope, inputs.eta_pi_slope - before.eta_pi_slope
+        if (bend or turn) and not self.regime.saturation:
+            F_0 = self.modes[self.regime.contact].F_0  # (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ
+            psi = F_0(loads) / inputs.eta_pi
+            self.kinks.add_images(self.xi, 2, abs((bend * F_0.rss - turn * psi) / inputs.eta_pi))
 
     # looking
+
+    def _inputs_here(self) -> Inputs:
+        return self.inputs.ahead(self.xi - self.inputs_xi)
+
+    @property
+    def F_rss(self) -> float:
+        """The steering force where the bit is."""
+        return self._inputs_here().F_rss
+
+    @property
+    def eta_pi(self) -> float:
+        """ηΠ where the bit is."""
+        return self._inputs_here().eta_pi
 
     def state(self) -> tuple[float, float]:
         """θ and Y (counted from the start of the run) at the bit."""
@@ -190,7 +214,8 @@ class Integrator:
             return hole.Theta(xi)
         xi = max(xi, hole.starts[k])
         theta = drilled.at((xi - hole.starts[k]) * hole.rates[k])
-        return self._inclination(theta, self._loads(xi, theta, hole.Y(xi), drilled.F_rss), drilled.eta_pi)
+        inputs = drilled.inputs.ahead(xi - hole.starts[k])
+        return self._inclination(theta, self._loads(xi, theta, hole.Y(xi), inputs.F_rss), inputs.eta_pi)
 
     def _inclination(self, theta: float, loads: Loads, eta_pi: float) -> float:
         return theta - bit_tilt(self.settled(loads).F_0(loads), eta_pi, self.scaled.psi_star)
@@ -224,8 +249,8 @@ class Integrator:
         """The whole evolving state. Drilling on does not change what is saved."""
         return {
             "xi": self.xi,
-            "F_rss": self.F_rss,
-            "eta_pi": self.eta_pi,
+            "inputs": self.inputs,
+            "inputs_xi": self.inputs_xi,
             "regime": self.regime,
             "path": self.path,
             "origin": self.origin,
@@ -244,19 +269,19 @@ class Integrator:
         xi, h, theta, Y, *rest = state["step"]
         self.present = Step(xi, h, tuple(theta), tuple(Y), *rest)
         self.hole.restore(state["hole"])
-        self._take_over(state["F_rss"], state["eta_pi"])
+        self._take_over(Inputs(*state["inputs"]), state["inputs_xi"])
         contact, side = state["regime"]
         self._change_regime(Regime(tuple(contact), side))
 
     # stepping
 
-    def _take_over(self, F_rss: float, eta_pi: float) -> None:
-        self.F_rss, self.eta_pi = F_rss, eta_pi
-        self._laws = Laws(self.modes, F_rss, eta_pi)
+    def _take_over(self, inputs: Inputs, xi: float) -> None:
+        self.inputs, self.inputs_xi = inputs, xi
+        self._laws = Laws(self.modes, inputs, xi)
 
-    def _restart(self, loads: Loads, eta_pi: float, Theta: float) -> None:
+    def _restart(self, loads: Loads, inputs: Inputs, Theta: float) -> None:
         """Take over inputs, find the regime under them, and mark the jump of the inclination, which was Θ so far."""
-        self._take_over(loads.F_rss, eta_pi)
+        self._take_over(inputs, self.xi)
         mode, psi_star = self.settled(loads), self.scaled.psi_star
         F_0 = mode.F_0(loads)
         jump = abs(self.present.theta[0] - bit_tilt(F_0, self.eta_pi, psi_star) - Theta)
@@ -292,6 +317,10 @@ class Integrator:
         """Append one step at the end of the last one."""
         last, xi = self.present, self.present.end
         theta, Y, kink = self._leave(last)
+        inputs = self.inputs.ahead(xi - self.inputs_xi)
+        if inputs.eta_pi_slope:  # each step has laws of its own
+            self._laws = Laws(self.modes, inputs, xi)
+            self._change_regime(self.regime)
         plan = self._first_plan(last, kink)
         trial, event = self._find_step(plan, xi, theta, Y)
         _, h, thetas, Ys, end, *_ = trial.step
@@ -302,7 +331,7 @@ class Integrator:
         self.present = step = Step(xi, h, thetas, Ys, end, part, side, next_h)
         if not abs(step.state(step.end)[0]) <= LARGEST_INCLINATION:
             raise self._failure("turns over", step.end)
-        self.hole.append(xi, h, step.Y, Drilled(step.theta, self.F_rss, self.eta_pi))
+        self.hole.append(xi, h, step.Y, Drilled(step.theta, inputs))
         if kink is not None:
             self.kinks.add_images(xi, kink, abs(step.derivative(kink, xi) - last.derivative(kink, xi)))
         self._accepted += 1
@@ -351,7 +380,7 @@ class Integrator:
 
     def _choose_length(self, law: Law, plan: Plan, xi: float) -> float:
         """Length of the next trial: as planned, but no kink lies within it, and none is left a short step ahead."""
-        largest = self.options.largest_step
+        largest = min(self.options.largest_step, law.longest)
         h = min(plan.h, largest)
         to_kink = self.kinks.next_kink(xi, 2 * h, law.gains, self.options.relative_tolerance) - xi
         if to_kink >= 2 * h:

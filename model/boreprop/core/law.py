@@ -6,60 +6,78 @@ with M and F_0 from the beam in the hole it drilled, e_i = Y(ξ) − Y(ξ−s_i)
 touch which wall, tilt saturated or not) only sin⟨Θ⟩_1 is not linear.
 """
 
+from math import inf
 from typing import NamedTuple
 
+from .inputs import Inputs
 from .linear import dot, ratio, total
 from .modes import Modes, Regime, Row
 from .radau import Jacobian
 
+LONGEST_RAMP = 0.1  # by which share ηΠ changes within a step, at most: it then takes about six iterations
+
 
 class Linear(NamedTuple):
-    """A `Row` under given inputs, on the state: theta θ + Y Y + Σ_i delayed[i] Y(ξ−s_i) + g sin⟨Θ⟩_1 + constant."""
+    """A `Row` under given inputs, on the state.
+
+    It is theta θ + Y Y + Σ_i delayed[i] Y(ξ−s_i) + g sin⟨Θ⟩_1 + constant + slope (ξ − ξ of the inputs).
+    """
 
     theta: float
     Y: float
     delayed: tuple[float, ...]
     g: float
     constant: float
+    slope: float = 0.0
 
     @classmethod
-    def of(cls, row: Row, s: tuple[float, ...], F_rss: float, scale: float) -> "Linear":
+    def of(cls, row: Row, s: tuple[float, ...], inputs: Inputs, scale: float) -> "Linear":
         """`scale` times `row`, with e_i = Y − Y(ξ−s_i) − s_i θ put in."""
         return cls(
             theta=-scale * dot(row.e, s),
             Y=scale * total(row.e),
             delayed=tuple(-scale * c for c in row.e),
             g=scale * row.g,
-            constant=scale * (row.rss * F_rss + row.constant),
+            constant=scale * (row.rss * inputs.F_rss + row.constant),
+            slope=scale * row.rss * inputs.F_rss_slope,
         )
 
-    def at(self, theta: float, Y: float, delayed: list[float], sine: float) -> float:
-        """Value at one point."""
-        value = self.theta * theta + self.Y * Y + self.g * sine + self.constant
+    def at(self, theta: float, Y: float, delayed: list[float], sine: float, ahead: float) -> float:
+        """Value at one point, `ahead` of where the inputs are those that it was made under."""
+        value = self.theta * theta + self.Y * Y + self.g * sine + self.constant + self.slope * ahead
         for c, Y_i in zip(self.delayed, delayed):
             value += c * Y_i
         return value
 
-    def frozen(self, theta: float, Y: float, delayed: list[list[float]], sines: list[float]) -> list[float]:
+    def frozen(
+        self, theta: float, Y: float, delayed: list[list[float]], sines: list[float], aheads: list[float]
+    ) -> list[float]:
         """Values along a step with (θ, Y) frozen; `delayed` has one list for each stabilizer."""
         state, g, c = self.theta * theta + self.Y * Y + self.constant, self.g, self.delayed[0]
-        return self._add_others([state + g * sine + c * Y_1 for sine, Y_1 in zip(sines, delayed[0])], delayed)
+        return self._add_others([state + g * sine + c * Y_1 for sine, Y_1 in zip(sines, delayed[0])], delayed, aheads)
 
     def along(
-        self, thetas: list[float], Ys: list[float], delayed: list[list[float]], sines: list[float]
+        self,
+        thetas: list[float],
+        Ys: list[float],
+        delayed: list[list[float]],
+        sines: list[float],
+        aheads: list[float],
     ) -> list[float]:
         """Values along a step; `delayed` has one list for each stabilizer."""
         a, b, c, g, constant = self.theta, self.Y, self.delayed[0], self.g, self.constant
         points = zip(thetas, Ys, delayed[0], sines)
         return self._add_others(
-            [constant + a * theta + b * Y + c * Y_1 + g * sine for theta, Y, Y_1, sine in points], delayed
+            [constant + a * theta + b * Y + c * Y_1 + g * sine for theta, Y, Y_1, sine in points], delayed, aheads
         )
 
-    def _add_others(self, values: list[float], delayed: list[list[float]]) -> list[float]:
-        """Add the parts of stabilizers 2 … n."""
+    def _add_others(self, values: list[float], delayed: list[list[float]], aheads: list[float]) -> list[float]:
+        """Add the parts of stabilizers 2 … n, and that of a force which changes along the step."""
         for c, Y_i in zip(self.delayed[1:], delayed[1:]):
             if c:
                 values = [value + c * y for value, y in zip(values, Y_i)]
+        if self.slope:
+            values = [value + self.slope * ahead for value, ahead in zip(values, aheads)]
         return values
 
 
@@ -92,21 +110,25 @@ class Bound(NamedTuple):
 
 
 class Law:
-    """The right-hand side in one regime under given inputs, and the bounds within which it holds."""
+    """The right-hand side in one regime, and the bounds within which it holds, under inputs as they are at `xi`."""
 
-    def __init__(self, modes: Modes, regime: Regime, F_rss: float, eta_pi: float) -> None:
-        scaled, mode = modes.scaled, modes[regime.contact]
-        self.s = scaled.s  # the delays
+    def __init__(self, modes: Modes, regime: Regime, inputs: Inputs, xi: float) -> None:
+        scaled, mode, eta_pi = modes.scaled, modes[regime.contact], inputs.eta_pi
+        self.s, self.xi, self.ramp = scaled.s, xi, inputs.ramp  # the delays; where it is made; whether inputs change
+        self.growth = inputs.eta_pi_slope / eta_pi  # of ηΠ per ξ, over ηΠ at `xi`
+        self.longest = LONGEST_RAMP / abs(self.growth) if self.growth else inf  # step under a changing ηΠ
         self.bounds = [
-            Bound(bound.part, Linear.of(bound.row, self.s, F_rss, bound.scale), bound.lower, bound.upper)
+            Bound(bound.part, Linear.of(bound.row, self.s, inputs, bound.scale), bound.lower, bound.upper)
             for bound in regime.bounds(modes, eta_pi)
         ]
         psi = self.bounds[0].value  # without saturation
-        self.theta_rate = Linear.of(mode.M, self.s, F_rss, ratio(1, scaled.epsilon * eta_pi))
+        self.saturated, self._tilt = regime.saturation != 0, self.bounds[0].part
+        self.theta_rate = Linear.of(mode.M, self.s, inputs, ratio(1, scaled.epsilon * eta_pi))
         if regime.saturation:
             self.Theta = Linear(1.0, 0.0, (0.0,) * len(self.s), 0.0, -regime.saturation * scaled.psi_star)
         else:
-            self.Theta = Linear(1.0 - psi.theta, -psi.Y, tuple(-c for c in psi.delayed), -psi.g, -psi.constant)
+            less = tuple(-c for c in psi.delayed)
+            self.Theta = Linear(1.0 - psi.theta, -psi.Y, less, -psi.g, -psi.constant, -psi.slope)
         self.relaxation = ratio(1, abs(self.theta_rate.theta + self.Theta.Y))  # length over which θ forgets
         # per change of Y(ξ−s_i) the change of Θ, once θ has followed, or that of a bounded value if it is larger
         self.gains = [
@@ -121,20 +143,62 @@ class Law:
         return (rate.theta, rate.Y + rate.g * sine.slope, Theta.theta, Theta.Y + Theta.g * sine.slope)
 
     def frozen(
-        self, theta: float, Y: float, delayed: list[list[float]], sines: list[float]
+        self, theta: float, Y: float, delayed: list[list[float]], sines: list[float], aheads: list[float]
     ) -> tuple[list[float], list[float]]:
-        """θ' and Y' along a step with (θ, Y) frozen at its start."""
-        return self.theta_rate.frozen(theta, Y, delayed, sines), self.Theta.frozen(theta, Y, delayed, sines)
+        """θ' and Y' along a step with (θ, Y) frozen at its start, where ηΠ does not change."""
+        rates = self.theta_rate.frozen(theta, Y, delayed, sines, aheads)
+        return rates, self.Theta.frozen(theta, Y, delayed, sines, aheads)
+
+    def along(
+        self,
+        thetas: list[float],
+        Ys: list[float],
+        delayed: list[list[float]],
+        sines: list[float],
+        aheads: list[float],
+    ) -> tuple[list[float], list[float]]:
+        """θ' and Y' along a step. M and F_0 are divided by ηΠ, which may change."""
+        rates = self.theta_rate.along(thetas, Ys, delayed, sines, aheads)
+        Thetas = self.Theta.along(thetas, Ys, delayed, sines, aheads)
+        ratios = [self.eta_pi_ratio(ahead) for ahead in aheads]
+        rates = [rate * p for rate, p in zip(rates, ratios)]
+        if not self.saturated:
+            Thetas = [theta + p * (Theta - theta) for theta, Theta, p in zip(thetas, Thetas, ratios)]
+        return rates, Thetas
+
+    def eta_pi_ratio(self, ahead: float) -> float:
+        """ηΠ at `xi` over that a length `ahead` of there."""
+        return 1 / (1 + self.growth * ahead)
+
+    def bounded_at(self, bound: Bound, xi: float, theta: float, Y: float, delayed: list[float], sine: float) -> float:
+        """The value that a bound is on, at one place."""
+        value = bound.value.at(theta, Y, delayed, sine, xi - self.xi)
+        return value * self.eta_pi_ratio(xi - self.xi) if self.growth and bound.part == self._tilt else value
+
+    def bounded_along(
+        self,
+        bound: Bound,
+        thetas: list[float],
+        Ys: list[float],
+        delayed: list[list[float]],
+        sines: list[float],
+        aheads: list[float],
+    ) -> list[float]:
+        """The value that a bound is on, along a step."""
+        values = bound.value.along(thetas, Ys, delayed, sines, aheads)
+        if self.growth and bound.part == self._tilt:
+            values = [value * self.eta_pi_ratio(ahead) for value, ahead in zip(values, aheads)]
+        return values
 
 
 class Laws:
-    """The laws of one drilling system under given inputs, each made when it is first asked for."""
+    """The laws of one drilling system under inputs as they are at `xi`, each made when it is first asked for."""
 
-    def __init__(self, modes: Modes, F_rss: float, eta_pi: float) -> None:
-        self._modes, self._F_rss, self._eta_pi = modes, F_rss, eta_pi
+    def __init__(self, modes: Modes, inputs: Inputs, xi: float) -> None:
+        self._modes, self._inputs, self._xi = modes, inputs, xi
         self._made: dict[Regime, Law] = {}
 
     def __getitem__(self, regime: Regime) -> Law:
         if regime not in self._made:
-            self._made[regime] = Law(self._modes, regime, self._F_rss, self._eta_pi)
+            self._made[regime] = Law(self._modes, regime, self._inputs, self._xi)
         return self._made[regime]

@@ -10,6 +10,7 @@ F_STAR = "(3 flexural_stiffness / stabilizer_position[1]^2)"
 DERIVED = {
     "scaled_force": f"rss_force / {F_STAR}",
     "scaled_slope": f"rss_force_slope / {F_STAR}",
+    "eta_pi_slope": f"lateral_steering_resistance active_weight_on_bit_slope / {F_STAR}",
     "inverse_eta_pi": "1 / eta_pi",
     "force_scale": F_STAR.strip("()"),
     "scaled_reach": "stabilizer_position[n] / stabilizer_position[1]",
@@ -27,7 +28,9 @@ CONSTRAINTS = {
     "too large": ("must be <= {limit}", "{value}"),
     "not increasing": ("must increase", "({before}, {value})"),
     "too close": ("must be at least {limit} m from each other and from the bit", "({before}, {value})"),
-    "wrong count": ("must hold 1 to {limit} positions", "{count}"),
+    "wrong count": ("must hold 1 to {limit} values", "{count}"),
+    "out of reach": ("must reach the last stabilizer, {limit} m from the bit, together", "{value}"),
+    "buckles": ("must be < {limit}, where the BHA buckles between its stabilizers", "{value}"),
     "no station": ("must hold at least one station", "()"),
     "no start": ("must give a finite state where the run starts", "{value}"),
     "no state": ("must be a valid saved state of this system", "{count} numbers that are not"),
@@ -46,6 +49,10 @@ OBSTACLES = {
         "raise relative_tolerance (--tolerance), now {limit}",
     ),
     "no mode": ("no contacts are found that hold at {place} m", "change relative_tolerance (--tolerance), now {limit}"),
+    "too crowded": (
+        "more than {limit} supports touch the wall, or are near it, at {place} m",
+        "put fewer points on the body (bha.body_contact_spacing)",
+    ),
     "too many": (
         "from {place} m on, more than {limit} steps of the integrator would be needed in one call",
         "drill to a nearer length, change inputs less often, or raise relative_tolerance (--tolerance)",

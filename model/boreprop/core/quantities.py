@@ -2,21 +2,58 @@
 
 The case file's keys and messages, the FMU's description, the C structs, result files, tables and pictures all follow
 from it. `n` is the number of stabilizers, counted from the bit up; a quantity of size "n" or "n-1" has one element for
-each (non-ideal) stabilizer, named ``name[1]``, ``name[2]``, …
+each (non-ideal) stabilizer, named ``name[1]``, ``name[2]``, …; the other sizes are those of a `Structure`.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from math import inf, isfinite, pi
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 Role = Literal["input", "output", "parameter", "case"]  # "case": only a case has it, an FMU has not
-Kind = Literal["Real", "Integer", "String"]
-Size = Literal["1", "n", "n-1", "column"]  # "column": as long as the table that it is a column of
+Kind = Literal["Real", "Integer", "Boolean", "String"]
+Size = Literal[
+    "1", "n", "n-1", "uniform", "sections", "stepped", "axial", "points", "body", "column"
+]  # "column": as long as its table
 
 MAX_STABILIZERS = 6
+MAX_SECTIONS = 24
+MAX_POINTS = 128  # of the body at which it may touch the wall
 MOST_DRILLED = 1e5  # m in a communication step of an FMU: no hole is longer, and a step must end soon
 RELATIVE_TOLERANCE = 1e-7  # with it θ is within 5e-7 rad of the reference trajectories
+
+
+class Structure(NamedTuple):
+    """How a drilling system is made up, which says how many values each quantity has."""
+
+    stabilizers: int
+    sections: int = 0  # of the beam; none: it is uniform
+    axial_load: int = 0  # 1: the load along the beam counts
+    body_points: int = 0  # of the beam between the stabilizers, at which its body may touch the wall
+
+    @property
+    def is_of_the_paper(self) -> bool:
+        """Whether it is a uniform beam without a load along it, the paper's."""
+        return self == Structure(self.stabilizers)
+
+
+@cache
+def counts(structure: Structure) -> dict[str, int]:
+    """Size → how many values a quantity of that size has."""
+    n, sections, axial, points = structure
+    return {
+        "1": 1,
+        "n": n,
+        "n-1": n - 1,
+        "column": 1,
+        "uniform": int(not sections),
+        "stepped": int(bool(sections)),
+        "sections": sections,
+        "axial": axial,
+        "points": points,
+        "body": int(bool(points)),
+    }
 
 
 @dataclass(frozen=True)
@@ -39,7 +76,7 @@ class Quantity:
     follows
         Of an output, the inputs and parameters that it follows at once, without any drilling.
     slope
-        Of an input, whether the native engine also takes its change per metre drilled.
+        Of an input, whether the engines also take its change per metre drilled.
     key
         Its table and key in a case file, such as "bha.rss_position". A key that ends in _deg holds degrees.
     field
@@ -64,15 +101,20 @@ class Quantity:
     key: str = ""
     field: str = ""
 
-    def names(self, n: int) -> list[str]:
-        """The scalar names of this quantity for `n` stabilizers."""
-        if self.size in ("1", "column"):
-            return [self.name]
-        return [f"{self.name}[{i}]" for i in range(1, self.count(n) + 1)]
+    def names(self, structure: int | Structure) -> list[str]:
+        """The scalar names of this quantity, for a structure or for so many stabilizers on the paper's beam."""
+        count = self.count(structure)
+        return [f"{self.name}[{i}]" for i in range(1, count + 1)] if self.is_list else [self.name] * count
 
-    def count(self, n: int) -> int:
-        """How many values it has for `n` stabilizers."""
-        return {"n": n, "n-1": n - 1}.get(self.size, 1)
+    def count(self, structure: int | Structure) -> int:
+        """How many values it has, for a structure or for so many stabilizers on the paper's beam."""
+        made = structure if isinstance(structure, Structure) else Structure(structure)
+        return counts(made)[self.size]
+
+    @property
+    def is_list(self) -> bool:
+        """Whether its values are numbered."""
+        return self.size in ("n", "n-1", "sections", "points")
 
     @property
     def part(self) -> str:
@@ -99,8 +141,9 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("drilled_length", "output", "m", "ξ ℓ₁", "(17)", "length drilled since the start of the run", at_least=0.0, nominal=100.0, key="rss.drilled_length", field="schedule.drilled_length"),
 
     Quantity("rss_force", "input", "N", "F_RSS", "(21)", "force of the steering pads on the BHA, positive builds", nominal=1e4, slope=True, key="rss.force", field="schedule.rss_force"),
-    Quantity("active_weight_on_bit", "input", "N", "Π F*", "(3)", "weight on bit that goes into drilling", above=0.0, nominal=1e4, key="drilling.active_weight_on_bit", field="active_weight_on_bit"),
+    Quantity("active_weight_on_bit", "input", "N", "Π F*", "(3)", "weight on bit that goes into drilling", above=0.0, nominal=1e4, slope=True, key="drilling.active_weight_on_bit", field="active_weight_on_bit"),
     Quantity("rate_of_penetration", "input", "m/s", "", "", "drilled length per time", at_least=0.0, start=1.0),
+    Quantity("weight_on_bit", "input", "N", "W", "(3)", "all of the weight on bit, which presses the BHA along its axis; 0: the active weight", size="axial", at_least=0.0, nominal=1e5, key="drilling.weight_on_bit", field="weight_on_bit"),
 
     Quantity("bit_inclination", "output", "rad", "θ", "(17)", "inclination of the bit axis from the downward vertical", follows=("survey_file",)),
     Quantity("borehole_inclination", "output", "rad", "Θ", "(16)", "inclination of the borehole at the bit", follows=FORCE_AND_WEIGHT),
@@ -113,6 +156,9 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("bit_lateral_force", "output", "N", "F_0", "(14)", "lateral force on the bit", nominal=1e4, follows=FORCE),
     Quantity("bit_moment", "output", "N.m", "M_0", "(9)", "moment on the bit", nominal=1e4, follows=FORCE),
     Quantity("borehole_curvature", "output", "rad/m", "Θ'", "", "change of borehole inclination over the last ℓ₁, per length", nominal=1e-3, follows=FORCE_AND_WEIGHT),
+    Quantity("body_contact_force", "output", "N", "F_ℓ − F_u", "(7)", "largest force of the wall on the body between the stabilizers, positive from the lower wall", size="body", nominal=1e4, follows=FORCE),
+    Quantity("body_contact_position", "output", "m", "s", "", "where that force acts, from the bit; 0 if the body touches no wall", size="body", at_least=0.0, nominal=10.0, follows=FORCE),
+    Quantity("wall_distance", "output", "m", "", "", "least distance of the body from the wall", size="body", nominal=1e-2, follows=FORCE),
     Quantity("displacement", "output", "m", "x", "", "horizontal position of the bit from the start of the run", nominal=100.0),
     Quantity("true_vertical_depth", "output", "m", "z", "", "depth of the bit below the start of the run", nominal=100.0),
     Quantity("eta_pi", "output", "", "ηΠ", "(9)", "lateral penetration stiffness of the rock over the BHA's bending stiffness", nominal=0.01, follows=("active_weight_on_bit", "lateral_steering_resistance", "flexural_stiffness", "stabilizer_position")),
@@ -120,20 +166,40 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("stabilizer_position", "parameter", "m", "s_i", "", "distance of the stabilizer from the bit; the last one is ideal", size="n", above=0.0, nominal=10.0, key="bha.stabilizer_positions", field="bha.stabilizer_positions"),
     Quantity("stabilizer_clearance", "parameter", "m", "y*_i", "(7)", "clearance between stabilizer and wall on each side", size="n-1", at_least=0.0, nominal=1e-3, key="bha.stabilizer_clearances", field="bha.stabilizer_clearances"),
     Quantity("rss_position", "parameter", "m", "Δ", "", "distance of the steering pads from the bit", at_least=0.0, key="bha.rss_position", field="bha.rss_position"),
-    Quantity("distributed_weight", "parameter", "N/m", "w", "", "buoyant weight of the BHA per length", at_least=0.0, nominal=1e3, key="bha.distributed_weight", field="bha.distributed_weight"),
-    Quantity("flexural_stiffness", "parameter", "N.m2", "EI", "", "bending stiffness of the BHA", above=0.0, nominal=1e7, key="bha.flexural_stiffness", field="bha.flexural_stiffness"),
+    Quantity("distributed_weight", "parameter", "N/m", "w", "", "buoyant weight of the BHA per length", size="uniform", at_least=0.0, nominal=1e3, key="bha.distributed_weight", field="bha.distributed_weight"),
+    Quantity("flexural_stiffness", "parameter", "N.m2", "EI", "", "bending stiffness of the BHA", size="uniform", above=0.0, nominal=1e7, key="bha.flexural_stiffness", field="bha.flexural_stiffness"),
+    Quantity("section_length", "parameter", "m", "", "", "length of a section of the BHA, from the bit up", size="sections", above=0.0, nominal=10.0, key="section.length", field="bha.section_lengths"),
+    Quantity("section_distributed_weight", "parameter", "N/m", "w", "", "buoyant weight of the section per length", size="sections", at_least=0.0, nominal=1e3, key="section.distributed_weight", field="bha.section_distributed_weights"),
+    Quantity("section_flexural_stiffness", "parameter", "N.m2", "EI", "", "bending stiffness of the section", size="sections", above=0.0, nominal=1e7, key="section.flexural_stiffness", field="bha.section_flexural_stiffnesses"),
+    Quantity("body_point_position", "parameter", "m", "s", "", "where the body between the stabilizers may touch the wall, from the bit", size="points", above=0.0, nominal=10.0, key="bha.body_point_positions", field="bha.body_point_positions"),
+    Quantity("body_point_clearance", "parameter", "m", "y*", "(7)", "clearance between the body there and the wall on each side", size="points", above=0.0, nominal=1e-2, key="bha.body_point_clearances", field="bha.body_point_clearances"),
+    Quantity("end_deflection", "parameter", "m", "δ_n", "(5)", "offset of the BHA from the borehole axis at the last stabilizer, positive to the high side", size="stepped", nominal=1e-2, key="bha.end_deflection", field="bha.end_deflection"),
     Quantity("lateral_steering_resistance", "parameter", "", "η", "(4)", "lateral over axial drilling resistance", above=0.0, nominal=10.0, key="bit.lateral_steering_resistance", field="bit.lateral_steering_resistance"),
     Quantity("angular_steering_resistance", "parameter", "", "χ", "(4)", "angular over axial drilling resistance", above=0.0, key="bit.angular_steering_resistance", field="bit.angular_steering_resistance"),
     Quantity("bit_tilt_limit", "parameter", "rad", "ψ*", "(10)", "tilt at which the bit gauge meets the wall", above=0.0, at_most=pi / 2, nominal=0.01, key="bit.tilt_limit_deg", field="bit.tilt_limit"),
     Quantity("relative_tolerance", "parameter", "", "", "", "local error allowed in one step of the integrator, relative to 1 rad and ℓ₁", at_least=1e-12, at_most=1e-2, nominal=1e-7, start=RELATIVE_TOLERANCE),
-    Quantity("survey_file", "parameter", "", "", "", "survey of the existing hole (plain CSV: UTF-8, commas, decimal points, m, degrees); empty: the survey packed in the FMU", kind="String", start="", key="hole.survey"),
+    Quantity("survey_file", "parameter", "", "", "", "survey of the existing hole, its last station is the bit (plain CSV: UTF-8, commas, decimal points, m, degrees); empty: the survey packed in the FMU", kind="String", start="", key="hole.survey"),
 
+    Quantity("section_outer_diameter", "case", "m", "", "", "outer diameter of the section; 0: not given", size="sections", at_least=0.0, key="section.outer_diameter", field="bha.section_outer_diameters"),
+    Quantity("mud_density", "case", "kg/m3", "", "", "density of the mud, for the buoyant weight of sections given by their diameters", at_least=0.0, key="bha.mud_density"),
+    Quantity("body_contact", "case", "", "", "", "whether the body between the stabilizers may touch the wall", kind="Boolean", key="bha.body_contact"),
+    Quantity("body_contact_spacing", "case", "m", "", "", "distance between the points of the body that may touch the wall", above=0.0, key="bha.body_contact_spacing"),
+    Quantity("axial_load", "case", "", "N", "", "whether the load along the BHA counts in its bending", kind="Boolean", size="axial", key="bha.axial_load", field="bha.axial_load"),
     Quantity("bit_diameter", "case", "m", "", "", "diameter of the hole", above=0.0, at_most=1.5, key="bit.diameter", field="bit_diameter"),
     Quantity("length", "case", "m", "", "", "length to drill", above=0.0, key="drilling.length", field="length"),
-    Quantity("measured_depth", "case", "m", "", "", "stations along the existing hole, the last one is the bit", size="column", key="hole.measured_depth", field="survey.measured_depth"),
+    Quantity("measured_depth", "case", "m", "", "", "stations along the existing hole, the last one is the bit if bit_depth does not say where it is", size="column", key="hole.measured_depth", field="survey.measured_depth"),
     Quantity("inclination", "case", "rad", "Θ", "", "inclination of the existing hole at each station", at_least=-pi, at_most=pi, size="column", key="hole.inclination_deg", field="survey.inclination"),
-    Quantity("schedule_file", "case", "", "", "", "steering force over the drilled length (CSV)", kind="String", key="rss.schedule"),
+    Quantity("bit_depth", "case", "m", "", "", "measured depth of the bit at the start of the run; beyond the survey the hole is straight", nominal=1e3, key="hole.bit_depth"),
+    Quantity("schedule_depth", "case", "m", "", "", "measured depths at which the forces begin, in place of drilled lengths", size="column", nominal=1e3, key="rss.measured_depth"),
+    Quantity("full_force", "case", "N", "", "", "force of the steering pads at a duty of 1", at_least=0.0, nominal=1e4, key="rss.full_force"),
+    Quantity("duty", "case", "", "", "", "share of the time in which the pads push to the side of the toolface", size="column", at_least=0.0, at_most=1.0, key="rss.duty"),
+    Quantity("toolface", "case", "rad", "", "", "side to which the pads push: 0 up, 180° down", size="column", key="rss.toolface_deg"),
+    Quantity("drilling_schedule", "case", "", "", "", "inputs over drilled length or measured depth (a CSV file, or columns in the case file)", kind="String", key="drilling.schedule"),
+    Quantity("drilling_interpolation", "case", "", "", "", "how these inputs go from each entry to the next: held or linear", kind="String", start="held", key="drilling.interpolation"),
+    Quantity("interpolation", "case", "", "", "", "how the force goes from each entry to the next: held or linear", kind="String", start="held", key="rss.interpolation", field="schedule.interpolation"),
+    Quantity("schedule_file", "case", "", "", "", "steering force over drilled length or measured depth (CSV)", kind="String", key="rss.schedule"),
     Quantity("engine", "case", "", "", "", "which engine drilled the case, in the case file beside the run", kind="String", key="run.engine"),
+    Quantity("study", "case", "", "", "", "what a study computed and which parameters it varied, in the case file beside its results", kind="String", key="run.study"),
     Quantity("stopped", "case", "", "", "", "why the run ended before the length of the case, in the case file beside the run", kind="String", key="run.stopped"),
 )  # fmt: skip
 
@@ -141,12 +207,14 @@ BY_NAME = {quantity.name: quantity for quantity in QUANTITIES}
 INPUTS = tuple(quantity for quantity in QUANTITIES if quantity.role == "input")
 OUTPUTS = tuple(quantity for quantity in QUANTITIES if quantity.role == "output")
 PARAMETERS = tuple(quantity for quantity in QUANTITIES if quantity.role == "parameter")
+ACTING = tuple(name for q in INPUTS if q.field for name in ((q.name, f"{q.name}_slope") if q.slope else (q.name,)))
+"""What an engine is given for a leg: the inputs where it starts, and the changes per metre of those that may change."""
 VARIABLES = INPUTS + OUTPUTS + PARAMETERS  # what an FMU has
 
 
-def scalar_names(quantities: tuple[Quantity, ...], n: int) -> list[str]:
-    """The scalar names of `quantities` for `n` stabilizers, in the order of the table."""
-    return [name for quantity in quantities for name in quantity.names(n)]
+def scalar_names(quantities: tuple[Quantity, ...], structure: int | Structure) -> list[str]:
+    """The scalar names of `quantities`, in the order of the table; the structure is as in `Quantity.names`."""
+    return [name for quantity in quantities for name in quantity.names(structure)]
 
 
 def quantity_of(scalar_name: str) -> Quantity:
@@ -177,16 +245,18 @@ def values_of(part: str, fields: Any) -> dict[str, float]:
     for quantity in INPUTS + PARAMETERS:
         if quantity.field and quantity.part == part:
             value = getattr(fields, quantity.attribute)
-            elements = value if isinstance(value, tuple) else (value,)
-            values |= zip(quantity.names(len(elements) + (quantity.size == "n-1")), elements, strict=False)
+            if quantity.is_list:
+                values |= {f"{quantity.name}[{i}]": element for i, element in enumerate(value, 1)}
+            else:
+                values[quantity.name] = value[0] if isinstance(value, tuple) else value
     return values
 
 
-def fields_of(part: str, values: Mapping[str, float], n: int) -> dict[str, Any]:
-    """The fields of a part of a drilling system with `n` stabilizers, from values as `values_of` gives them."""
+def fields_of(part: str, values: Mapping[str, float], structure: int | Structure) -> dict[str, Any]:
+    """The fields of a part of a drilling system of this structure, from values as `values_of` gives them."""
     fields: dict[str, Any] = {}
     for quantity in INPUTS + PARAMETERS:
-        if quantity.field and quantity.part == part:
-            elements = tuple(values[name] for name in quantity.names(n))
-            fields[quantity.attribute] = elements[0] if quantity.size == "1" else elements
+        if quantity.field and quantity.part == part and (quantity.is_list or quantity.count(structure)):
+            elements = tuple(values[name] for name in quantity.names(structure))
+            fields[quantity.attribute] = elements if quantity.is_list else elements[0]
     return fields

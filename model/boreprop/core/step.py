@@ -11,6 +11,10 @@ from .options import Options
 GAUSS = [(0.5 - 0.15**0.5, 5 / 18), (0.5, 8 / 18), (0.5 + 0.15**0.5, 5 / 18)]  # nodes and weights on [0, 1]
 REST = 0.03  # what may be neglected of sin⟨Θ⟩_1, in tolerances of θ: little beside the error that a step may have
 ITERATIONS = 10  # on what is neglected, at most; each gains two digits or more
+RAMP_ITERATIONS = 20  # the same under a changing ηΠ; each gains a digit or more
+NOT_FOUND = 2.0  # the least error of a trial whose iterations do not end: it is tried again, shorter
+
+Pair = tuple[list[float], list[float]]  # of θ and of Y, at the points
 
 
 class Step(NamedTuple):
@@ -66,6 +70,7 @@ class Trial(NamedTuple):
     Ys: list[float]
     delayed: list[list[float]]  # Y(ξ − s_i), a list for each stabilizer
     sines: list[float]
+    aheads: list[float]  # distance from where the law was made; none if the inputs do not change
     error: float  # estimated, over the tolerance
 
 
@@ -79,10 +84,13 @@ def try_step(law: Law, hole: Hole, xi: float, h: float, theta: float, Y: float, 
     average = Y - delayed[0][0]
     sine = Sine(average, sin(average), cos(average))
     J = law.jacobian(sine)
+    aheads = [xi - law.xi + t * h for t in radau.POINTS] if law.ramp else []
+    if law.growth:
+        return _try_ramp(law, J, Trial(Step(xi, h, (theta,), (Y,), xi + h), [], [], delayed, [], aheads, inf), options)
     frozen = sine.linear([Y - Y_1 for Y_1 in delayed[0]])
     allowed = REST * options.relative_tolerance * (abs(law.theta_rate.theta) + 1 / h)
     for _ in range(ITERATIONS):
-        f_theta, f_Y = law.frozen(theta, Y, delayed, frozen)
+        f_theta, f_Y = law.frozen(theta, Y, delayed, frozen, aheads)
         parts_theta, parts_Y = radau.collocate(h, J, f_theta, f_Y)
         Ys = radau.values(Y, parts_Y)
         averages = [Y_t - Y_1 for Y_t, Y_1 in zip(Ys, delayed[0])]
@@ -96,14 +104,57 @@ def try_step(law: Law, hole: Hole, xi: float, h: float, theta: float, Y: float, 
             break
         frozen = [s + r for s, r in zip(frozen, rest)]
     thetas = radau.values(theta, parts_theta)
-    at = radau.AT_CHECK
-    moved_theta, moved_Y = thetas[at] - theta, Ys[at] - Y
+    step = Step(xi, h, radau.coefficients(theta, parts_theta), radau.coefficients(Y, parts_Y), xi + h)
+    error = _error(h, J, (f_theta, f_Y), (parts_theta, parts_Y), (thetas, Ys), (theta, Y), options)
+    return Trial(step, thetas, Ys, delayed, sines, aheads, error)
+
+
+def _error(
+    h: float,
+    J: radau.Jacobian,
+    f: Pair,
+    parts: tuple[radau.Parts, radau.Parts],
+    values: Pair,
+    start: tuple[float, float],
+    options: Options,
+) -> float:
+    """The error of a trial over the tolerance, from the right-hand side with the state frozen at the start."""
+    at, (parts_theta, parts_Y) = radau.AT_CHECK, parts
+    moved_theta, moved_Y = values[0][at] - start[0], values[1][at] - start[1]
     error_theta, error_Y = radau.error(
         h,
         J,
-        radau.slope(parts_theta) - h * (f_theta[at] + J[0] * moved_theta + J[1] * moved_Y),
-        radau.slope(parts_Y) - h * (f_Y[at] + J[2] * moved_theta + J[3] * moved_Y),
+        radau.slope(parts_theta) - h * (f[0][at] + J[0] * moved_theta + J[1] * moved_Y),
+        radau.slope(parts_Y) - h * (f[1][at] + J[2] * moved_theta + J[3] * moved_Y),
     )
+    return max(options.theta_weight * abs(error_theta), abs(error_Y)) / options.relative_tolerance
+
+
+def _try_ramp(law: Law, J: radau.Jacobian, trial: Trial, options: Options) -> Trial:
+    """A trial under a changing ηΠ, given its place and the delayed hole.
+
+    What the Jacobian, which is that at the start, neglects is added to the right-hand side until it is small. Where it
+    does not become small, the error is made intolerable.
+    """
+    (xi, h, (theta,), (Y,), *_), delayed, aheads = trial.step, trial.delayed, trial.aheads
+    thetas, Ys = [theta] * len(aheads), [Y] * len(aheads)
+    sines = [sin(Y - Y_1) for Y_1 in delayed[0]]
+    f_theta, f_Y = law.along(thetas, Ys, delayed, sines, aheads)
+    allowed, found = REST * options.relative_tolerance, False
+    for _ in range(RAMP_ITERATIONS):
+        parts = parts_theta, parts_Y = radau.collocate(h, J, f_theta, f_Y)
+        thetas, Ys = radau.values(theta, parts_theta), radau.values(Y, parts_Y)
+        sines = [sin(Y_t - Y_1) for Y_t, Y_1 in zip(Ys, delayed[0])]
+        rates, Thetas = law.along(thetas, Ys, delayed, sines, aheads)
+        moved = [(theta_t - theta, Y_t - Y) for theta_t, Y_t in zip(thetas, Ys)]
+        off_theta = [rate - f - J[0] * a - J[1] * b for rate, f, (a, b) in zip(rates, f_theta, moved)]
+        off_Y = [Theta - f - J[2] * a - J[3] * b for Theta, f, (a, b) in zip(Thetas, f_Y, moved)]
+        small = max(map(abs, off_theta)) <= allowed * (abs(law.theta_rate.theta) + 1 / h)
+        found = small and max(map(abs, off_Y)) <= allowed / h
+        if found:
+            break
+        f_theta = [f + off for f, off in zip(f_theta, off_theta)]
+        f_Y = [f + off for f, off in zip(f_Y, off_Y)]
+    error = _error(h, J, (f_theta, f_Y), parts, (thetas, Ys), (theta, Y), options)
     step = Step(xi, h, radau.coefficients(theta, parts_theta), radau.coefficients(Y, parts_Y), xi + h)
-    error = max(options.theta_weight * abs(error_theta), abs(error_Y)) / options.relative_tolerance
-    return Trial(step, thetas, Ys, delayed, sines, error)
+    return Trial(step, thetas, Ys, delayed, sines, aheads, error if found else max(error, NOT_FOUND))

@@ -6,6 +6,7 @@ from itertools import pairwise
 from .checks import check_increasing, check_number, check_part
 from .errors import ParameterError, error_of
 from .problems import CONSTRAINTS, DERIVED, Problem
+from .quantities import MAX_POINTS, MAX_SECTIONS, Structure
 from .quantities import MAX_STABILIZERS as MAX_STABILIZERS
 
 LEAST_SPAN = 0.01  # m between stabilizers, at least: none stand closer, and the forces there would be rounding errors
@@ -26,9 +27,23 @@ class BottomHoleAssembly:
     rss_position
         Distance of the steering pads from the bit, m, between the bit and the first stabilizer.
     distributed_weight
-        Buoyant weight per length, N/m.
+        Buoyant weight per length, N/m; of a beam in sections that of the section at the bit, whatever is given.
     flexural_stiffness
-        EI, N·m².
+        EI, N·m²; likewise.
+    section_lengths, section_distributed_weights, section_flexural_stiffnesses
+        A beam in up to 24 sections, from the bit up: length, m, weight per length, N/m, and EI, N·m², of each. Together
+        they are at least as long as the BHA. Without any the beam is uniform.
+    section_outer_diameters
+        Outer diameter of each section, m; 0 where it is not known.
+    body_point_positions, body_point_clearances
+        Up to 128 points of the body between the stabilizers at which it may touch the wall: distance from the bit, and
+        clearance on each side of a centred body, m. Without any it never touches, assumption 5 of the paper.
+    end_deflection
+        Of a beam in sections: how far from the axis of the hole the last stabilizer holds it, m, positive to the high
+        side. A string that lies on the low side of the hole there is off by the clearance of its body.
+    axial_load
+        Whether the weight on bit, and the weight along the hole, press and pull the beam, which makes it softer and
+        stiffer. Only the native engine has this, sections and points of the body.
 
     Raises
     ------
@@ -41,8 +56,18 @@ class BottomHoleAssembly:
     rss_position: float
     distributed_weight: float
     flexural_stiffness: float
+    section_lengths: tuple[float, ...] = ()
+    section_distributed_weights: tuple[float, ...] = ()
+    section_flexural_stiffnesses: tuple[float, ...] = ()
+    section_outer_diameters: tuple[float, ...] = ()
+    body_point_positions: tuple[float, ...] = ()
+    body_point_clearances: tuple[float, ...] = ()
+    end_deflection: float = 0.0
+    axial_load: bool = False
 
     def __post_init__(self) -> None:
+        if self.section_lengths:
+            self._take_sections()
         n = len(self.stabilizer_positions)
         if not 1 <= n <= MAX_STABILIZERS:
             constraint = CONSTRAINTS["wrong count"][0].format(limit=MAX_STABILIZERS)
@@ -59,6 +84,47 @@ class BottomHoleAssembly:
             if after - before < LEAST_SPAN * (1 - 1e-9):  # 4.34 and 4.35 are that far apart, but for rounding
                 raise error_of(Problem("too close", "stabilizer_position", 0, after, before, LEAST_SPAN))
         check_number("rss_position", self.rss_position, at_most=self.length_scale)
+        self._check_body()
+
+    def _check_body(self) -> None:
+        """Check the points of the body together."""
+        positions, count = self.body_point_positions, len(self.body_point_positions)
+        if len(self.body_point_clearances) != count:
+            constraint = f"must hold one value per point of the body, here {count}"
+            raise ParameterError("body_point_clearance", constraint, self.body_point_clearances)
+        if count > MAX_POINTS:
+            raise ParameterError("body_point_position", f"must hold at most {MAX_POINTS} values", positions)
+        check_increasing("body_point_position", positions)
+        for position in positions[-1:]:
+            check_number("body_point_position", position, index=count, at_most=self.stabilizer_positions[-1])
+
+    def _take_sections(self) -> None:
+        """Check the sections together, and take weight and stiffness of the one at the bit."""
+        count, reach = len(self.section_lengths), self.stabilizer_positions[-1:]
+        columns = {
+            "section_distributed_weight": self.section_distributed_weights,
+            "section_flexural_stiffness": self.section_flexural_stiffnesses,
+            "section_outer_diameter": self.section_outer_diameters,
+        }
+        for name, values in columns.items():
+            if len(values) != count:
+                raise ParameterError(name, f"must hold one value per section, here {count}", values)
+        if count > MAX_SECTIONS:
+            raise ParameterError("section_length", f"must hold at most {MAX_SECTIONS} values", self.section_lengths)
+        if reach and sum(self.section_lengths) < reach[0] * (1 - 1e-9):
+            raise error_of(Problem("out of reach", "section_length", value=sum(self.section_lengths), limit=reach[0]))
+        object.__setattr__(self, "distributed_weight", self.section_distributed_weights[0])
+        object.__setattr__(self, "flexural_stiffness", self.section_flexural_stiffnesses[0])
+
+    @property
+    def structure(self) -> Structure:
+        """Numbers of stabilizers and sections, and whether the axial load counts."""
+        return Structure(
+            len(self.stabilizer_positions),
+            len(self.section_lengths),
+            int(self.axial_load),
+            len(self.body_point_positions),
+        )
 
     @property
     def length_scale(self) -> float:
@@ -130,8 +196,14 @@ def scale(bha: BottomHoleAssembly, bit: BitRock) -> Scaled:
     Raises
     ------
     ParameterError
-        If one of them is not finite, though the parameters are in their ranges.
+        If one of them is not finite, though the parameters are in their ranges, or the beam is not the paper's.
     """
+    if not bha.structure.is_of_the_paper:
+        raise ParameterError(
+            "bha",
+            "must be the paper's, a uniform beam without axial_load or body_contact, for what Python computes",
+            bha,
+        )
     l1 = bha.length_scale
     check_number(DERIVED["force_scale"], bha.force_scale, above=0.0)
     scaled = Scaled(

@@ -8,7 +8,7 @@
 #ifndef BOREPROP_BEAM_H
 #define BOREPROP_BEAM_H
 
-#include "system.h"
+#include "assembly.h"
 
 /* Deflection at `s` under a unit force at `p`, eq. (20); symmetric in s and p. */
 static inline double flexibility(double s, double p, double lambda_) {
@@ -41,43 +41,134 @@ static inline double force_reaction(double p, double lambda_) {
     return -(2 * cube - 3 * lambda_ * p * p + pow(p, 3)) / (2 * cube);
 }
 
-/* M, F_0 and δ of one BHA as linear functions of e, F, F_RSS and sin⟨Θ⟩_1.
+/* M, F_0 and δ of one BHA as linear functions of e, F, F_RSS and the sine g of an inclination.
 
    With n stabilizers and i, j = 1 … n−1:
 
-       δ_i = e_i + delta_e[i] e_n + Σ_j K_inv[i][j] F_j + delta_rss[i] F_RSS + delta_g[i] sin⟨Θ⟩_1      (5), (21)
-       M   =       M_e e_n        + Σ_j M_F[j] F_j      + M_rss F_RSS        + M_g sin⟨Θ⟩_1             (17), (23)
-       F_0 =       F0_e e_n       + Σ_j F0_F[j] F_j     + F0_rss F_RSS       + F0_g sin⟨Θ⟩_1            (14), (24)
+       δ_i = e_i + delta_e[i] (e_n − δ_n) + Σ_j K_inv[i][j] F_j + delta_rss[i] F_RSS + delta_g[i] g      (5), (21)
+       M   =       M_e (e_n − δ_n)        + Σ_j M_F[j] F_j      + M_rss F_RSS        + M_g g             (17), (23)
+       F_0 =       F0_e (e_n − δ_n)       + Σ_j F0_F[j] F_j     + F0_rss F_RSS       + F0_g g            (14), (24)
 
-   where M = −M_0 is the moment that turns the bit, εηΠ θ' = M. */
+   where M = −M_0 is the moment that turns the bit, εηΠ θ' = M. The paper has δ_n = 0 and g = sin⟨Θ⟩_1; where the axial
+   load counts, the weight across the axis of the bit goes with g = sin θ. */
 typedef struct {
     int n;
-    double K_inv[MAX_STABILIZERS][MAX_STABILIZERS];
-    double delta_e[MAX_STABILIZERS], delta_rss[MAX_STABILIZERS], delta_g[MAX_STABILIZERS];
-    double M_e, M_F[MAX_STABILIZERS], M_rss, M_g;
-    double F0_e, F0_F[MAX_STABILIZERS], F0_rss, F0_g;
+    double K_inv[MAX_STABILIZERS][MAX_STABILIZERS]; /* of a uniform beam */
+    int stepped;
+    Nodes nodes; /* of any other; the rest is by support, or of the pads */
+    int node[MAX_SUPPORTS], pads;
+    double bent[MAX_SUPPORTS], sheared[MAX_SUPPORTS]; /* deflections under a unit moment, a unit shear at the bit */
+    double delta_e[MAX_SUPPORTS], delta_rss[MAX_SUPPORTS], delta_g[MAX_SUPPORTS];
+    double M_e, M_F[MAX_SUPPORTS], M_rss, M_g;
+    double F0_e, F0_F[MAX_SUPPORTS], F0_rss, F0_g;
+    double end; /* δ_n */
 } Beam;
 
-static inline Beam make_beam(const Scaled *scaled) {
+static inline void make_uniform_beam(Beam *beam, const Scaled *scaled) {
     const double *s = scaled->s, Delta = scaled->Delta, w = scaled->w;
     double lambda_ = s[scaled->n - 1];
-    Beam beam = {0};
-    beam.n = scaled->n;
-    for (int i = 0; i < beam.n - 1; i++) {
-        for (int j = 0; j < beam.n - 1; j++) beam.K_inv[i][j] = flexibility(s[i], s[j], lambda_);
-        beam.delta_e[i] = end_offset_deflection(s[i], lambda_);
-        beam.delta_rss[i] = flexibility(s[i], Delta, lambda_);
-        beam.delta_g[i] = weight_deflection(s[i], w, lambda_);
-        beam.M_F[i] = force_moment(s[i], lambda_);
-        beam.F0_F[i] = force_reaction(s[i], lambda_);
+    beam->n = scaled->n, beam->stepped = 0, beam->end = 0.0;
+    for (int i = 0; i < beam->n - 1; i++) {
+        for (int j = 0; j < beam->n - 1; j++) beam->K_inv[i][j] = flexibility(s[i], s[j], lambda_);
+        beam->delta_e[i] = end_offset_deflection(s[i], lambda_);
+        beam->delta_rss[i] = flexibility(s[i], Delta, lambda_);
+        beam->delta_g[i] = weight_deflection(s[i], w, lambda_);
+        beam->M_F[i] = force_moment(s[i], lambda_);
+        beam->F0_F[i] = force_reaction(s[i], lambda_);
     }
-    beam.M_e = 1 / (lambda_ * lambda_);
-    beam.M_rss = force_moment(Delta, lambda_);
-    beam.M_g = w * lambda_ * lambda_ / 8;
-    beam.F0_e = 1 / pow(lambda_, 3);
-    beam.F0_rss = force_reaction(Delta, lambda_);
-    beam.F0_g = 5.0 / 8 * w * lambda_;
-    return beam;
+    beam->M_e = 1 / (lambda_ * lambda_);
+    beam->M_rss = force_moment(Delta, lambda_);
+    beam->M_g = w * lambda_ * lambda_ / 8;
+    beam->F0_e = 1 / pow(lambda_, 3);
+    beam->F0_rss = force_reaction(Delta, lambda_);
+    beam->F0_g = 5.0 / 8 * w * lambda_;
+}
+
+/* The deflection at support i under a unit force on support j. Up to the force, the line of a beam in sections is what the
+   bit answers to it. */
+static inline double compliance(const Beam *beam, int i, int j) {
+    if (!beam->stepped) return beam->K_inv[i][j];
+    if (beam->node[i] > beam->node[j]) {
+        int above = i;
+        i = j, j = above;
+    }
+    return beam->F0_F[j] * beam->sheared[i] - beam->M_F[j] * beam->bent[i];
+}
+
+/* What the bit answers to a unit force at each node. */
+static inline void answer_forces(
+    const Nodes *nodes, const double bent[PARTS], const double sheared[PARTS], Answer *answers
+) {
+    double asked[2][PARTS] = {
+        {1, 0, 0, 0}, {0, 0, 1, 0}
+    }; /* deflection and moment at the end, from a line at the node */
+    for (int k = nodes->count - 1; k >= 0; k--) {
+        if (k < nodes->count - 1) look_down(&nodes->above[k], asked);
+        answers[k] = answer_to(bent, sheared, asked[0][SHEAR], asked[1][SHEAR]);
+    }
+}
+
+/* The beam in sections, under an axial load, with the points of its body. */
+static inline void make_stepped_beam(Beam *beam, const Scaled *scaled, Axial axial) {
+    Nodes *nodes = &beam->nodes;
+    double bent[MAX_NODES][PARTS] = {{0, 0, 1, 0}}, sheared[MAX_NODES][PARTS] = {{0, 0, 0, 1}};
+    double bowed[MAX_NODES][PARTS] = {{0}};
+    Answer to_force[MAX_NODES] = {{0, 0}};
+    make_nodes(nodes, scaled, axial);
+    int last = nodes->count - 1, pads = beam->pads = node_at(nodes, scaled->Delta);
+    for (int k = 0; k < last; k++) {
+        memcpy(bent[k + 1], bent[k], sizeof bent[k]), memcpy(sheared[k + 1], sheared[k], sizeof sheared[k]);
+        memcpy(bowed[k + 1], bowed[k], sizeof bowed[k]);
+        pass_stretch(&nodes->above[k], 0.0, bent[k + 1]);
+        pass_stretch(&nodes->above[k], 0.0, sheared[k + 1]);
+        pass_stretch(&nodes->above[k], 1.0, bowed[k + 1]);
+    }
+    answer_forces(nodes, bent[last], sheared[last], to_force);
+    Answer to_offset = answer_to(bent[last], sheared[last], 1.0, 0.0), to_pads = to_force[pads];
+    Answer to_weight = answer_to(bent[last], sheared[last], bowed[last][DEFLECTION], bowed[last][MOMENT]);
+    beam->n = scaled->n, beam->stepped = 1, beam->end = scaled->end_deflection;
+    for (int i = 0; i < scaled->n + scaled->points; i++) {
+        int k = beam->node[i] = node_at(nodes, scaled->s[i]), low = k < pads ? k : pads;
+        Answer upper = k < pads ? to_pads : to_force[k];
+        double v_m = beam->bent[i] = bent[k][DEFLECTION], v_q = beam->sheared[i] = sheared[k][DEFLECTION];
+        beam->delta_e[i] = to_offset.m * v_m + to_offset.q * v_q;
+        beam->delta_rss[i] = upper.m * bent[low][DEFLECTION] + upper.q * sheared[low][DEFLECTION];
+        beam->delta_g[i] = to_weight.m * v_m + to_weight.q * v_q + bowed[k][DEFLECTION];
+        beam->M_F[i] = -to_force[k].m, beam->F0_F[i] = to_force[k].q;
+    }
+    beam->M_e = -to_offset.m, beam->F0_e = to_offset.q;
+    beam->M_rss = -to_pads.m, beam->F0_rss = to_pads.q;
+    beam->M_g = -to_weight.m, beam->F0_g = to_weight.q;
+}
+
+/* What acts on a beam in sections: forces by support, F_RSS and g; and what it answers at the bit. */
+typedef struct {
+    double F[MAX_SUPPORTS], F_rss, g, M, F_0;
+} Bending;
+
+/* How far the beam is from the bit's axis at increasing places s, 0 <= s <= λ ℓ₁; lengths in the unit of ℓ₁. */
+static inline void beam_shape(
+    const Beam *beam, const Bending *bending, int supports, double l1, Count count, const double *s, double *v
+) {
+    const Nodes *nodes = &beam->nodes;
+    double line[PARTS] = {0.0, 0.0, -bending->M, bending->F_0}, at[PARTS];
+    Count next = 0;
+    for (int k = 0; k < nodes->count - 1; k++) {
+        if (k == beam->pads) line[SHEAR] += bending->F_rss;
+        for (int i = 0; i < supports; i++)
+            if (beam->node[i] == k) line[SHEAR] += bending->F[i];
+        for (; next < count && (s[next] <= nodes->s[k + 1] * l1 || k == nodes->count - 2); next++) {
+            memcpy(at, line, sizeof at);
+            carry_from(nodes, k, s[next] / l1 - nodes->s[k], bending->g, at);
+            v[next] = at[DEFLECTION] * l1;
+        }
+        pass_stretch(&nodes->above[k], bending->g, line);
+    }
+}
+
+static inline void make_beam(Beam *beam, const Scaled *scaled, Axial axial) {
+    if (scaled->stepped) make_stepped_beam(beam, scaled, axial);
+    else make_uniform_beam(beam, scaled);
 }
 
 #endif

@@ -4,7 +4,7 @@ import ctypes
 from dataclasses import astuple, fields
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +13,11 @@ from ..arrays import Floats
 from ..core.errors import BorepropError, error_of
 from ..core.options import Options, Statistics
 from ..core.problems import SENTENCES, Problem
-from ..core.quantities import OUTPUTS, scalar_names, values_of
+from ..core.quantities import ACTING, OUTPUTS, scalar_names, values_of
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly
 from .compiler import library_path, sources_digest
-from .generate import NAMES, SYSTEM, acting, quantities_digest
+from .generate import NAMES, SYSTEM, quantities_digest
 
 CODES, QUANTITIES = ("", *SENTENCES), ("", *NAMES.values())  # by their numbers in problems.h
 
@@ -29,7 +29,7 @@ class KernelError(BorepropError, RuntimeError):
 class Inputs(ctypes.Structure):
     """The inputs, as in quantities.h."""
 
-    _fields_ = tuple((name, ctypes.c_double) for name, _, _ in acting())
+    _fields_ = tuple((name, ctypes.c_double) for name in ACTING)
 
 
 class OptionsInC(ctypes.Structure):
@@ -88,9 +88,14 @@ def load(path: Path) -> ctypes.CDLL:
     inputs, options, problem = (ctypes.POINTER(struct) for struct in (Inputs, OptionsInC, ProblemInC))
     for name, result, arguments in (
         ("sentence", None, (problem, ctypes.c_char_p)),
-        ("start", run, (ctypes.c_int, reals, options, whole, reals, reals, inputs, problem)),
+        ("start", run, (_array(np.intc), reals, options, whole, reals, reals, inputs, problem)),
         ("end", None, (run,)),
-        ("follow", whole, (run, whole, reals, reals, ctypes.c_double, _array(np.intc), reals, problem)),
+        ("follow", whole, (run, whole, reals, reals, _array(np.intc), reals, problem)),
+        (
+            "lie",
+            whole,
+            (_array(np.intc), reals, *2 * (ctypes.c_double,), whole, reals, reals, whole, reals, reals, problem),
+        ),
         ("outputs", ctypes.c_int, (run, reals)),
         ("length", ctypes.c_double, (run,)),
         ("step", ctypes.c_int, (run, problem)),
@@ -122,6 +127,75 @@ def available() -> bool:
     return not why_not()
 
 
+class Lie(NamedTuple):
+    """How a BHA lies in a hole, row by row: `lie`."""
+
+    forces: Floats  # of the wall on each support, N, (rows, supports)
+    bit_force: Floats  # F_0, N, (rows,)
+    bit_moment: Floats  # M = −M_0, N·m, (rows,)
+    shape: Floats  # distance from the bit's axis at the places that were asked for, m, (rows, places)
+
+
+def lie(
+    bha: BottomHoleAssembly,
+    offsets: Floats,
+    rss_force: Floats,
+    sine: Floats,
+    *,
+    weight_on_bit: float = 0.0,
+    inclination: float = 0.0,
+    places: Floats | tuple[float, ...] = (),
+) -> Lie:
+    """How a BHA lies in holes that are given, with its contacts found.
+
+    Parameters
+    ----------
+    bha
+        The BHA, with whatever it has of sections, axial load and points of the body.
+    offsets
+        Of the bit's axis from the axis of the hole at each support, e of eq. (5), m, (rows, supports): at the n
+        stabilizers, then at the points of the body.
+    rss_force
+        N, (rows,).
+    sine
+        Of the inclination at which the weight acts across: of θ with `axial_load`, else of ⟨Θ⟩_1, (rows,).
+    weight_on_bit
+        All of it, N, for a BHA with `axial_load`.
+    inclination
+        At which the weight acts along such a BHA, rad.
+    places
+        Increasing distances from the bit at which the shape is asked for, m, (places,).
+
+    Raises
+    ------
+    ParameterError
+        If the BHA buckles under the weight.
+    CannotContinue
+        If no contacts are found.
+    """
+    names = scalar_names(SYSTEM, bha.structure)
+    given = dict.fromkeys(names, 1e-3) | values_of("bha", bha)  # the bit has no say: any one will do
+    loads = numbers(np.column_stack([offsets, rss_force, sine]))
+    rows, width = loads.shape
+    answers, shapes, problem = np.empty_like(loads), np.empty((rows, len(places))), ProblemInC()
+    done = library().boreprop_lie(
+        numbers(bha.structure, np.intc),
+        numbers([given[name] for name in names]),
+        weight_on_bit,
+        inclination,
+        rows,
+        loads,
+        answers,
+        len(places),
+        numbers(places),
+        shapes,
+        problem,
+    )
+    if done < rows:
+        raise error_of(problem.read())
+    return Lie(answers[:, : width - 2], answers[:, -2], answers[:, -1], shapes)
+
+
 class NativeDrilling:
     """A borehole as it is drilled. Parameters, units, numbers and errors are those of `core.drilling.Drilling`.
 
@@ -139,21 +213,22 @@ class NativeDrilling:
         *,
         active_weight_on_bit: float,
         rss_force: float = 0.0,
+        weight_on_bit: float = 0.0,
         options: Options = Options(),  # noqa: B008 - frozen
     ) -> None:
-        n = len(bha.stabilizer_positions)
+        structure = bha.structure
         given = values_of("bha", bha) | values_of("bit", bit) | {"relative_tolerance": options.relative_tolerance}
-        self._names = scalar_names(OUTPUTS, n)
+        self._names = scalar_names(OUTPUTS, structure)
         self._problem = ProblemInC()
         self._library = library()
         self._run = self._library.boreprop_start(
-            n,
-            numbers([given[name] for name in scalar_names(SYSTEM, n)]),
+            numbers(structure, np.intc),
+            numbers([given[name] for name in scalar_names(SYSTEM, structure)]),
             OptionsInC(*astuple(options)),
             len(survey.measured_depth),
             numbers(survey.measured_depth),
             numbers(survey.inclination),
-            Inputs(rss_force=rss_force, active_weight_on_bit=active_weight_on_bit),
+            Inputs(rss_force=rss_force, active_weight_on_bit=active_weight_on_bit, weight_on_bit=weight_on_bit),
             self._problem,
         )
         self._check(self._run)
@@ -179,28 +254,35 @@ class NativeDrilling:
         self._library.boreprop_statistics(self._run, counts)
         return Statistics(*map(int, counts))
 
-    def advance(self, drilled_length: float, rss_force: float, active_weight_on_bit: float) -> None:
-        """Drill on under inputs held from here, as `Drilling.advance`."""
-        self.follow([drilled_length], [rss_force], active_weight_on_bit, [-1], np.empty((0, len(self._names))))
+    def advance(
+        self,
+        drilled_length: float,
+        rss_force: float,
+        active_weight_on_bit: float,
+        *,
+        rss_force_slope: float = 0.0,
+        active_weight_on_bit_slope: float = 0.0,
+        weight_on_bit: float = 0.0,
+    ) -> None:
+        """Drill on under inputs from here, constant or linear in the drilled length, as `Drilling.advance`."""
+        inputs = [[rss_force, rss_force_slope, active_weight_on_bit, active_weight_on_bit_slope, weight_on_bit]]
+        self.follow([drilled_length], inputs, [-1], np.empty((0, len(self._names))))
 
     def follow(
         self,
         lengths: Floats | list[float],
-        forces: Floats | list[float],
-        active_weight_on_bit: float,
+        inputs: Floats | list[list[float]],
         rows: NDArray[np.intc] | list[int],
         table: Floats,
     ) -> None:
         """Drill leg after leg, as `Drilling.follow`; `ValueError` if the arrays do not fit together."""
-        legs, on_rows = len(lengths), numbers(rows, np.intc)
-        if not len(forces) == len(on_rows) == legs or (on_rows >= len(table)).any():
-            constraint = f"must hold {legs} values like lengths, and rows below {len(table)}"
-            raise ValueError(f"forces, rows: {constraint}, got {len(forces)} forces and rows {on_rows.tolist()}")
+        legs, on_rows, given = len(lengths), numbers(rows, np.intc), numbers(inputs)
+        if given.shape != (legs, len(ACTING)) or len(on_rows) != legs or (on_rows >= len(table)).any():
+            constraint = f"must hold {legs} times {', '.join(ACTING)}, like lengths, and rows below {len(table)}"
+            raise ValueError(f"inputs, rows: {constraint}, got shape {given.shape} and rows {on_rows.tolist()}")
         if table.shape != (len(table), len(self._names)):
             raise ValueError(f"table: must have {len(self._names)} columns, got shape {table.shape}")
-        done = self._library.boreprop_follow(
-            self._run, legs, numbers(lengths), numbers(forces), active_weight_on_bit, on_rows, table, self._problem
-        )
+        done = self._library.boreprop_follow(self._run, legs, numbers(lengths), given, on_rows, table, self._problem)
         self._check(done == legs)
 
     def step(self) -> None:

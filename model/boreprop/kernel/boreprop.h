@@ -2,6 +2,7 @@
 #ifndef BOREPROP_H
 #define BOREPROP_H
 
+#include "lying.h"
 #include "run.h"
 #include "sentence.h"
 
@@ -20,20 +21,19 @@ EXPORT const char *boreprop_quantities_digest(void);
 /* The sentence that says what a problem is. */
 EXPORT void boreprop_sentence(const Problem *problem, char line[MESSAGE]);
 
-/* A run of n stabilizers at the end of its survey, with parameters in the order of the table of quantities; NULL, and
+/* A run of this structure (its members one after the other) at the end of its survey, with parameters in the order of the table of quantities; NULL, and
    the problem, if a value is out of range. The caller ends it with `boreprop_end`. The tolerance is that of the
    parameters; the other options are not checked. */
 EXPORT Run *boreprop_start(
-    int n, const double *parameters, const Options *options, Count count, const double *measured_depth,
+    const int structure[4], const double *parameters, const Options *options, Count count, const double *measured_depth,
     const double *inclination, const Inputs *inputs, Problem *problem
 );
 EXPORT void boreprop_end(Run *run);
 
-/* Drill leg after leg, to lengths[k] under forces[k]. Unless rows[k] is negative, the outputs there become that row of
+/* Drill leg after leg, to lengths[k] under inputs[k], which are those where the leg starts. Unless rows[k] is negative, the outputs there become that row of
    the table. Returns how many legs are drilled; if not all are, the problem is that of the next one. */
 EXPORT Count boreprop_follow(
-    Run *run, Count count, const double *lengths, const double *forces, double active_weight_on_bit, const int *rows,
-    double *table, Problem *problem
+    Run *run, Count count, const double *lengths, const Inputs *inputs, const int *rows, double *table, Problem *problem
 );
 
 /* Drill on to the end of the integrator's next step, under the inputs as they are; 0, and the problem, if that fails. */
@@ -55,5 +55,12 @@ EXPORT void boreprop_save(const Run *run, double *state);
 /* Go to a saved state of a run with the same system; 0, and the problem, if these numbers cannot be such a state.
    Nothing has changed then. */
 EXPORT int boreprop_restore(Run *run, const double *state, Count count, Problem *problem);
+
+/* How a BHA lies in holes that are given, row by row as `lie` of lying.h does, under a weight on bit, N, and its own at an
+   inclination, rad. Returns how many rows are done; if not all are, there is a problem. */
+EXPORT Count boreprop_lie(
+    const int structure[4], const double *parameters, double weight_on_bit, double inclination, Count rows,
+    const double *loads, double *answers, Count count, const double *s, double *shapes, Problem *problem
+);
 
 #endif

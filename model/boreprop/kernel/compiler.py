@@ -53,6 +53,8 @@ class Platform:
         The same in zig's names.
     suffix
         How the name of a shared library ends there.
+    tag
+        The platform of a wheel that holds a library for it: what `target` asks of a machine, in the words of wheels.
     sources
         C files that are part of every library for it.
     links
@@ -63,23 +65,42 @@ class Platform:
     machine: str
     target: str
     suffix: str
+    tag: str
     sources: tuple[Path, ...] = ()
     links: tuple[str, ...] = ("-lm",)
 
 
+# What zig has compiled of glibc, once for all that it links, names the places where it did so.
+_LINUX_LINKS = ("-lm", "-Wl,--strip-debug")
+
 PLATFORMS = {  # under the names of FMI 2.0.4
-    "linux64": Platform("linux", "x86_64", "x86_64-linux-gnu.2.17", ".so"),
+    "linux64": Platform(
+        "linux",
+        "x86_64",
+        "x86_64-linux-gnu.2.17",
+        ".so",
+        "manylinux_2_17_x86_64.manylinux2014_x86_64",
+        links=_LINUX_LINKS,
+    ),
     "win64": Platform(
         "win32",
         "x86_64",
         "x86_64-windows-gnu",
         ".dll",
+        "win_amd64",
         (FOLDER / "windows.c",),
         ("-nostdlib", "-lucrtbase", "-s"),  # -s leaves out the time of linking; what is exported stays
     ),
-    "darwin64": Platform("darwin", "x86_64", "x86_64-macos.11.0", ".dylib"),
-    "aarch64-linux": Platform("linux", "aarch64", "aarch64-linux-gnu.2.17", ".so"),
-    "aarch64-darwin": Platform("darwin", "aarch64", "aarch64-macos.11.0", ".dylib"),
+    "darwin64": Platform("darwin", "x86_64", "x86_64-macos.11.0", ".dylib", "macosx_11_0_x86_64"),
+    "aarch64-linux": Platform(
+        "linux",
+        "aarch64",
+        "aarch64-linux-gnu.2.17",
+        ".so",
+        "manylinux_2_17_aarch64.manylinux2014_aarch64",
+        links=_LINUX_LINKS,
+    ),
+    "aarch64-darwin": Platform("darwin", "aarch64", "aarch64-macos.11.0", ".dylib", "macosx_11_0_arm64"),
 }
 
 
@@ -211,10 +232,10 @@ def _gist(messages: str) -> str:
     return next((line for line in lines if "error" in line), lines[-1])
 
 
-def library_path() -> Path:
-    """Where the kernel's library for this machine is, or would be."""
-    suffix = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
-    return FOLDER / f"boreprop_kernel{suffix}"
+def library_path(platform: str | None = None) -> Path:
+    """Where the kernel's library for a platform, or else for this machine, is or would be."""
+    own = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
+    return FOLDER / f"boreprop_kernel{PLATFORMS[platform].suffix if platform else own}"
 
 
 def sources_digest(*folders: Path) -> str:
@@ -226,7 +247,7 @@ def sources_digest(*folders: Path) -> str:
     return digest.hexdigest()[:16]
 
 
-def build_library(output: Path | None = None) -> Path:
-    """Compile the kernel for this machine, to `output` or `library_path`; errors as in `compile_library`."""
+def build_library(output: Path | None = None, platform: str | None = None) -> Path:
+    """Compile the kernel, to `output` or `library_path`; the rest is as in `compile_library`."""
     defines = {"BOREPROP_SOURCES_DIGEST": f'"{sources_digest()}"'}
-    return compile_library(FOLDER / "library.c", output or library_path(), defines=defines)
+    return compile_library(FOLDER / "library.c", output or library_path(platform), defines=defines, platform=platform)

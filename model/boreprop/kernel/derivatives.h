@@ -15,11 +15,10 @@ static inline double inclination_at(const Drilling *d, int i) {
 /* Change of an output, or of the one with this index, per metre drilled; NaN if it may jump or bend on the way. */
 static inline double output_slope(const Drilling *d, const Present *at, Output which, int i) {
     const Scaled *scaled = &d->integrator.scaled;
-    double eta_pi = d->integrator.now.inputs.eta_pi;
     switch (which) {
         case OUT_DRILLED_LENGTH: return 1.0;
         case OUT_BIT_INCLINATION: /* εηΠ θ' = M */
-            return row_value(&at->mode->M, &at->loads, scaled->n) / (scaled->epsilon * eta_pi * at->l1);
+            return row_value(&at->mode->M, &at->loads) / (scaled->epsilon * at->eta_pi * at->l1);
         case OUT_AVERAGE_INCLINATION: /* λ_i ⟨Θ⟩_i' = Θ(ξ − s_{i−1}) − Θ(ξ − s_i) */
             return ((i ? inclination_at(d, i - 1) : at->Theta) - inclination_at(d, i)) / (lambda_(scaled, i) * at->l1);
         case OUT_DISPLACEMENT: return sin(at->Theta);
@@ -30,12 +29,10 @@ static inline double output_slope(const Drilling *d, const Present *at, Output w
 
 /* Change of an output, or of the one with this index, per change of an input, in the regime where the bit is. */
 static inline double output_gain(const Drilling *d, const Present *at, Output which, int i, Input input) {
-    const ScaledInputs *inputs = &d->integrator.now.inputs;
     double by_force = input == IN_RSS_FORCE ? 1 / at->F_star : 0.0;                      /* of F_RSS */
     double by_weight = input == IN_ACTIVE_WEIGHT_ON_BIT ? eta_pi(&d->system, 1.0) : 0.0; /* of ηΠ */
     double F_0 = at->mode->F_0.rss * by_force, psi = 0.0;                                /* changes */
-    if (fabs(at->F_0 / inputs->eta_pi) <= d->integrator.scaled.psi_star)
-        psi = (F_0 - at->psi * by_weight) / inputs->eta_pi;
+    if (fabs(at->F_0 / at->eta_pi) <= d->integrator.scaled.psi_star) psi = (F_0 - at->psi * by_weight) / at->eta_pi;
     switch (which) {
         case OUT_BOREHOLE_INCLINATION: return -psi;
         case OUT_BIT_TILT: return psi;

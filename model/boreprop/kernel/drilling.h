@@ -9,31 +9,65 @@ enum { LEAST_CAPACITY = 1024, MOST_PIECES = 1 << 19 }; /* of hole */
 /* A borehole as it is drilled, from the end of the survey on. */
 typedef struct {
     System system;
-    double drilled_length; /* m */
+    double drilled_length;  /* m */
+    Inputs given;           /* the inputs that were given last, and … */
+    ScaledInputs scaled;    /* … what they are in the paper's numbers */
+    double buckling_weight; /* over F*: under it the BHA buckles; infinite if the axial load does not count */
     Integrator integrator;
 } Drilling;
 
 static inline int check_inputs(Inputs inputs, Problem *problem) {
     return check_quantity(&INPUT_TABLE[IN_RSS_FORCE], 0, inputs.rss_force, problem) &&
            check_finite(Q_RSS_FORCE_SLOPE, 0, inputs.rss_force_slope, problem) &&
-           check_quantity(&INPUT_TABLE[IN_ACTIVE_WEIGHT_ON_BIT], 0, inputs.active_weight_on_bit, problem);
+           check_quantity(&INPUT_TABLE[IN_ACTIVE_WEIGHT_ON_BIT], 0, inputs.active_weight_on_bit, problem) &&
+           check_finite(Q_ACTIVE_WEIGHT_ON_BIT_SLOPE, 0, inputs.active_weight_on_bit_slope, problem);
 }
 
-/* The dimensionless inputs; 0, and the problem, if these numbers, or the inputs, are out of range. */
-static inline int scale_inputs(const System *system, Inputs inputs, ScaledInputs *scaled, Problem *problem) {
+/* Take the inclination, of which this is the cosine, as that at which the weight acts along the beam. */
+static inline void take_cosine(Drilling *d, double cosine) {
+    Integrator *p = &d->integrator;
+    p->now.cosine = p->scaled.axial ? cosine : 0.0;
+    d->buckling_weight = p->scaled.axial ? buckling_weight(&p->scaled, cosine) : INFINITY;
+}
+
+/* All of the weight on bit, N: the active weight if none is given. */
+static inline double whole_weight(Inputs inputs) {
+    return inputs.weight_on_bit == 0 ? inputs.active_weight_on_bit : inputs.weight_on_bit;
+}
+
+/* Whether a BHA under axial load bears the weight on bit. */
+static inline int check_weight(const Drilling *d, Inputs inputs, Problem *problem) {
+    double weight = whole_weight(inputs), least = inputs.active_weight_on_bit;
+    double most = d->buckling_weight * force_scale(&d->system);
+    if (!check_number(Q_WEIGHT_ON_BIT, 0, weight, -INFINITY, least, INFINITY, problem)) return 0;
+    return weight < most || wrong(problem, BUCKLES, Q_WEIGHT_ON_BIT, 0, weight, most);
+}
+
+/* Make the inputs dimensionless; 0, and the problem, if these numbers, or the inputs, are out of range. */
+static inline int take_given(Drilling *d, Inputs inputs, Problem *problem) {
+    const System *system = &d->system;
     double F_star = force_scale(system);
-    scaled->F_rss = inputs.rss_force / F_star;
-    scaled->F_rss_slope = inputs.rss_force_slope * length_scale(system) / F_star;
-    scaled->eta_pi = eta_pi(system, inputs.active_weight_on_bit);
-    return check_inputs(inputs, problem) && check_finite(Q_SCALED_FORCE, 0, scaled->F_rss, problem) &&
-           check_finite(Q_SCALED_SLOPE, 0, scaled->F_rss_slope, problem) &&
-           check_positive(Q_ETA_PI, scaled->eta_pi, problem) &&
-           check_finite(Q_INVERSE_ETA_PI, 0, 1 / scaled->eta_pi, problem);
+    if (!memcmp(&inputs, &d->given, sizeof inputs)) return 1;
+    ScaledInputs scaled = {
+        inputs.rss_force / F_star, inputs.rss_force_slope * length_scale(system) / F_star,
+        eta_pi(system, inputs.active_weight_on_bit),
+        eta_pi(system, inputs.active_weight_on_bit_slope) * length_scale(system),
+        system->structure.axial ? whole_weight(inputs) / F_star : 0.0
+    };
+    if (!check_inputs(inputs, problem) || (system->structure.axial && !check_weight(d, inputs, problem)) ||
+        !check_finite(Q_SCALED_FORCE, 0, scaled.F_rss, problem) ||
+        !check_finite(Q_SCALED_SLOPE, 0, scaled.F_rss_slope, problem) ||
+        !check_positive(Q_ETA_PI, scaled.eta_pi, problem) ||
+        !check_finite(Q_ETA_PI_SLOPE, 0, scaled.eta_pi_slope, problem) ||
+        !check_finite(Q_INVERSE_ETA_PI, 0, 1 / scaled.eta_pi, problem))
+        return 0;
+    d->given = inputs, d->scaled = scaled;
+    return 1;
 }
 
 /* The capacity, in pieces of hole, that a run needs if its inputs do not change often. */
 static inline Count drilling_capacity(const System *system, const Survey *survey) {
-    double l1 = length_scale(system), reach = LOOK_BACK + system->stabilizer_position[system->n - 1] / l1;
+    double l1 = length_scale(system), reach = LOOK_BACK + system->stabilizer_position[system->structure.n - 1] / l1;
     Count count, first = first_station(survey, l1, reach, &count), capacity = LEAST_CAPACITY;
     while (capacity < 4 * (count - first)) capacity *= 2;
     return capacity;
@@ -64,30 +98,31 @@ static inline Status drilling_prepare(
         return FAILED;
     d->system = *system;
     d->drilled_length = 0.0;
+    d->given.rss_force = (double)NAN;
     options.relative_tolerance = system->relative_tolerance;
     prepare(&d->integrator, &scaled, length_scale(system), options);
+    take_cosine(d, 0.0);
     drilling_move(d, memory, capacity);
     return DONE;
 }
 
 /* Start at the end of the survey, which need not live on. */
 static inline Status drilling_start(Drilling *d, const Survey *survey, Inputs inputs, Problem *problem) {
-    ScaledInputs scaled_inputs;
     if (!check_survey(survey, problem)) return FAILED;
-    if (!scale_inputs(&d->system, inputs, &scaled_inputs, problem)) return FAILED;
+    take_cosine(d, cos(survey->inclination[survey->count - 1]));
+    if (!take_given(d, inputs, problem)) return FAILED;
     if (d->integrator.now.hole.capacity < drilling_capacity(&d->system, survey)) return FULL;
-    return begin(&d->integrator, survey, scaled_inputs, problem);
+    return begin(&d->integrator, survey, d->scaled, problem);
 }
 
 /* Drill on to a length, m from the start, under inputs from here; where the bit is, only they are taken over.
    After FULL: `drilling_move`, and the same call again, which goes on; or `drilling_cancel`, and nothing has moved. */
 static inline Status drilling_advance(Drilling *d, double drilled_length, Inputs inputs, Problem *problem) {
-    ScaledInputs scaled_inputs;
-    if (!scale_inputs(&d->system, inputs, &scaled_inputs, problem)) return FAILED;
+    if (!take_given(d, inputs, problem)) return FAILED;
     if (!check_number(Q_DRILLED_LENGTH, 0, drilled_length, -INFINITY, d->drilled_length, INFINITY, problem))
         return FAILED;
     double xi = drilled_length / length_scale(&d->system);
-    Status status = drill(&d->integrator, xi, scaled_inputs, problem);
+    Status status = drill(&d->integrator, xi, d->scaled, problem);
     if (status == DONE) d->drilled_length = drilled_length;
     return status;
 }
@@ -103,10 +138,24 @@ static inline void drilling_cancel(Drilling *d) { go_back(&d->integrator); }
 
 /* What the outputs are computed from: the state where the bit is. */
 typedef struct {
-    double l1, F_star, theta, Y, Theta, psi, F_0, F[MAX_STABILIZERS], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
+    double l1, F_star, eta_pi, theta, Y, Theta, psi, F_0, F[MAX_PLACES], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
+    double body_force, body_place, wall_distance; /* the largest force on the body and where it acts; the least gap */
     Loads loads;
     const Mode *mode;
 } Present;
+
+/* What the wall does to the body of the BHA. */
+static inline void find_body(Drilling *d, Present *at) {
+    Integrator *p = &d->integrator;
+    int n = p->scaled.n, points = p->scaled.points;
+    double gap[MAX_POINTS];
+    at->body_force = at->body_place = 0.0, at->wall_distance = INFINITY;
+    if (!points) return;
+    for (int i = n; i < at->loads.count; i++)
+        if (fabs(at->F[i]) > fabs(at->body_force)) at->body_force = at->F[i], at->body_place = p->now.places.s[i];
+    find_gaps(p, &p->now.step, p->now.xi, points, gap);
+    for (int k = 0; k < points; k++) at->wall_distance = smaller(at->wall_distance, larger(gap[k], 0.0));
+}
 
 static inline Present present(Drilling *d) {
     Integrator *p = &d->integrator;
@@ -119,11 +168,13 @@ static inline Present present(Drilling *d) {
     at.theta = state[ANGLE], at.Y = state[LATERAL];
     at.loads = present_loads(p);
     at.mode = settle(&p->modes, &at.loads, now->regime.contact);
-    at.F_0 = row_value(&at.mode->F_0, &at.loads, p->scaled.n);
-    for (int i = 0; i < p->scaled.n - 1; i++) at.F[i] = row_value(&at.mode->F[i], &at.loads, p->scaled.n);
-    at.psi = bit_tilt(at.F_0, now->inputs.eta_pi, p->scaled.psi_star);
+    at.F_0 = row_value(&at.mode->F_0, &at.loads);
+    contact_forces(at.mode, &at.loads, at.F);
+    at.eta_pi = inputs_here(now).eta_pi;
+    at.psi = bit_tilt(at.F_0, at.eta_pi, p->scaled.psi_star);
     at.Theta = at.theta - at.psi;
     position(now, &at.x, &at.z);
+    find_body(d, &at);
     return at;
 }
 
@@ -131,9 +182,7 @@ static inline Present present(Drilling *d) {
 static inline double output(const Drilling *d, const Present *at, Output which, int i) {
     const Scaled *scaled = &d->integrator.scaled;
     const Loads *loads = &at->loads;
-    const ScaledInputs *inputs = &d->integrator.now.inputs;
     double l1 = at->l1, F_star = at->F_star;
-    int n = scaled->n;
     switch (which) {
         case OUT_DRILLED_LENGTH: return d->drilled_length;
         case OUT_BIT_INCLINATION: return at->theta;
@@ -141,25 +190,28 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_BIT_TILT: return at->psi;
         case OUT_AVERAGE_INCLINATION: /* λ_i (⟨Θ⟩_i − θ) = e_i − e_{i−1} */
             return at->theta + (loads->e[i] - (i ? loads->e[i - 1] : 0.0)) / lambda_(scaled, i);
-        case OUT_STABILIZER_DEFLECTION: return row_value(&at->mode->delta[i], loads, n) * l1;
+        case OUT_STABILIZER_DEFLECTION: return row_value(&at->mode->delta[i], loads) * l1;
         case OUT_STABILIZER_FORCE: return at->F[i] * F_star;
         case OUT_STABILIZER_CONTACT: return wall(at->F[i]);
         case OUT_BIT_TILT_SATURATION:
-            return side_beyond(at->F_0 / inputs->eta_pi, -scaled->psi_star, scaled->psi_star, ROUNDING);
+            return side_beyond(at->F_0 / at->eta_pi, -scaled->psi_star, scaled->psi_star, ROUNDING);
         case OUT_BIT_LATERAL_FORCE: return at->F_0 * F_star;
-        case OUT_BIT_MOMENT: return -row_value(&at->mode->M, loads, n) * F_star * l1;
+        case OUT_BIT_MOMENT: return -row_value(&at->mode->M, loads) * F_star * l1;
         case OUT_BOREHOLE_CURVATURE: return (at->Theta - at->earlier) / l1;
+        case OUT_BODY_CONTACT_FORCE: return at->body_force * F_star;
+        case OUT_BODY_CONTACT_POSITION: return at->body_place * l1;
+        case OUT_WALL_DISTANCE: return at->wall_distance * l1;
         case OUT_DISPLACEMENT: return at->x * l1;
         case OUT_TRUE_VERTICAL_DEPTH: return at->z * l1;
-        case OUT_ETA_PI: return inputs->eta_pi;
+        case OUT_ETA_PI: return at->eta_pi;
     }
     return NAN;
 }
 
 /* How many values `drilling_outputs` writes. */
-static inline int output_count(int n) {
+static inline int output_count(Structure structure) {
     int count = 0;
-    for (int k = 0; k < OUTPUT_COUNT; k++) count += value_count(OUTPUT_SIZE[k], n);
+    for (int k = 0; k < OUTPUT_COUNT; k++) count += value_count(OUTPUT_SIZE[k], structure);
     return count;
 }
 
@@ -168,15 +220,16 @@ static inline int drilling_outputs(Drilling *d, double out[MOST_OUTPUTS]) {
     Present at = present(d);
     double *next = out;
     for (int k = 0; k < OUTPUT_COUNT; k++)
-        for (int i = 0; i < value_count(OUTPUT_SIZE[k], d->system.n); i++) *next++ = output(d, &at, (Output)k, i);
+        for (int i = 0; i < value_count(OUTPUT_SIZE[k], d->system.structure); i++)
+            *next++ = output(d, &at, (Output)k, i);
     return (int)(next - out);
 }
 
 /* Whether the outputs are finite. */
-static inline int check_outputs(int n, const double *outputs, Problem *problem) {
+static inline int check_outputs(Structure structure, const double *outputs, Problem *problem) {
     for (int k = 0; k < OUTPUT_COUNT; k++)
-        for (int i = 0; i < value_count(OUTPUT_SIZE[k], n); i++)
-            if (!check_finite(OUTPUT_NAME[k], OUTPUT_SIZE[k] == ONE ? 0 : i + 1, *outputs++, problem)) return 0;
+        for (int i = 0; i < value_count(OUTPUT_SIZE[k], structure); i++)
+            if (!check_finite(OUTPUT_NAME[k], is_list(OUTPUT_SIZE[k]) ? i + 1 : 0, *outputs++, problem)) return 0;
     return 1;
 }
 

@@ -14,7 +14,7 @@
 
 /* A bound that is watched along a trial step. */
 typedef struct {
-    const Scaled *scaled;
+    const Places *places;
     const Hole *hole;
     const Law *law;
     const Step *step;
@@ -23,9 +23,9 @@ typedef struct {
 
 /* The bounded value at `xi`. */
 static inline double watched_value(const Watch *watch, double xi) {
-    double x[COMPONENTS], delayed[MAX_STABILIZERS][DIRECTIONS];
+    double x[COMPONENTS], delayed[MAX_PLACES][DIRECTIONS];
     step_state(watch->step, xi, x);
-    hole_at_stabilizers(watch->hole, watch->scaled, xi, delayed);
+    hole_at_places(watch->hole, watch->places, xi, delayed);
     return law_at(watch->law, watch->bound, xi, x, delayed);
 }
 
@@ -102,10 +102,10 @@ static inline int meet(const Watch *watch, double slack, const double values[POI
 
 /* End a trial step where it first meets a bound of its regime. A bound is met if the value lies beyond it by more than
    `slack` at a point of the step or an extreme between points. */
-static inline void cut_at_event(const Scaled *scaled, const Hole *hole, const Law *law, double slack, Trial *trial) {
+static inline void cut_at_event(const Places *places, const Hole *hole, const Law *law, double slack, Trial *trial) {
     Step *step = &trial->step;
     for (int b = 0; b < law->bound_count; b++) {
-        Watch watch = {scaled, hole, law, step, &law->bounds[b]};
+        Watch watch = {places, hole, law, step, &law->bounds[b]};
         double values[POINTS], where = 0.0;
         law_along(law, watch.bound, trial, values);
         double low = values[0], high = values[0];

@@ -8,7 +8,18 @@ from hashlib import sha256
 from ..core import radau
 from ..core.options import Options
 from ..core.problems import DERIVED, OUTSIDE, SENTENCES
-from ..core.quantities import INPUTS, MAX_STABILIZERS, MOST_DRILLED, OUTPUTS, PARAMETERS, QUANTITIES, Quantity
+from ..core.quantities import (
+    INPUTS,
+    MAX_POINTS,
+    MAX_SECTIONS,
+    MAX_STABILIZERS,
+    MOST_DRILLED,
+    OUTPUTS,
+    PARAMETERS,
+    QUANTITIES,
+    Quantity,
+    Structure,
+)
 from ..core.sag import OFTEN, POINTS
 from ..core.system import LEAST_SPAN
 from ..replacing import replacing
@@ -18,11 +29,27 @@ Table = tuple[Quantity, ...]
 SYSTEM = tuple(quantity for quantity in PARAMETERS if quantity.kind == "Real")
 """The parameters that the kernel has, in the order in which it takes their values."""
 
-SIZES = {"1": "ONE", "n": "EACH_STABILIZER", "n-1": "EACH_NON_IDEAL"}
-ROOMS = {"1": "", "n": "[MAX_STABILIZERS]", "n-1": "[MAX_STABILIZERS - 1]"}
+SIZES = {
+    "1": "ONE",
+    "n": "EACH_STABILIZER",
+    "n-1": "EACH_NON_IDEAL",
+    "uniform": "IF_UNIFORM",
+    "sections": "EACH_SECTION",
+    "stepped": "IF_STEPPED",
+    "axial": "IF_AXIAL",
+    "points": "EACH_POINT",
+    "body": "IF_POINTS",
+}
+ROOMS = {
+    "n": "[MAX_STABILIZERS]",
+    "n-1": "[MAX_STABILIZERS - 1]",
+    "sections": "[MAX_SECTIONS]",
+    "points": "[MAX_POINTS]",
+}
+LARGEST = Structure(MAX_STABILIZERS, MAX_SECTIONS, 1, MAX_POINTS)
 
 NAMES = {quantity.name: quantity.name for quantity in QUANTITIES} | {
-    "rss_force_slope": "rss_force_slope",
+    **{name: name for name in (f"{quantity.name}_slope" for quantity in INPUTS if quantity.slope)},
     **DERIVED,
     "parameters": "parameters",
     "state": "state",
@@ -51,11 +78,19 @@ QUANTITIES_HEADER = """\
 #define POINTS_ALONG_BHA {points} /* at which its distance from the hole is looked at */
 #define OFTEN {often!r} /* of its length, at most, from look to look */
 
-enum {{ MAX_STABILIZERS = {most}, PARAMETER_COUNT = {parameters}, INPUT_COUNT = {inputs}, OUTPUT_COUNT = {outputs} }};
+enum {{ MAX_STABILIZERS = {most}, MAX_SECTIONS = {most_sections}, MAX_POINTS = {most_points} }};
+enum {{ PARAMETER_COUNT = {parameters}, INPUT_COUNT = {inputs}, OUTPUT_COUNT = {outputs} }};
+
+/* How a drilling system is made up, which says how many values each quantity has. */
+typedef struct {{
+    int n, sections; /* numbers of stabilizers and of sections */
+    int axial;       /* whether the load along the beam counts */
+    int points;      /* number of points at which the body between the stabilizers may touch the wall */
+}} Structure;
 
 /* The parameters, in SI units. */
 typedef struct {{
-    int n; /* stabilizers */
+    Structure structure;
 {system}
 }} System;
 
@@ -208,10 +243,12 @@ def quantities_header(system: Table = SYSTEM, inputs: Table = INPUTS, outputs: T
         "points": POINTS,
         "often": OFTEN,
         "most": MAX_STABILIZERS,
+        "most_sections": MAX_SECTIONS,
+        "most_points": MAX_POINTS,
         "parameters": len(system),
         "inputs": len(inputs),
         "outputs": len(outputs),
-        "system": _lines(f"double {q.name}{ROOMS[q.size]}; /* {_note(q.unit, q.meaning)} */" for q in system),
+        "system": _lines(f"double {q.name}{ROOMS.get(q.size, '')}; /* {_note(q.unit, q.meaning)} */" for q in system),
         "acting": _lines(f"double {name}; /* {_note(unit, meaning)} */" for name, unit, meaning in acting(inputs)),
         "sizes": ", ".join(SIZES.values()),
         "parameter_table": _lines(_range_row(q, f"offsetof(System, {q.name})") for q in system),
@@ -223,8 +260,8 @@ def quantities_header(system: Table = SYSTEM, inputs: Table = INPUTS, outputs: T
         "options": ", ".join(field.name for field in fields(Options)),
         "usual": ", ".join(repr(float(value)) for value in astuple(Options())),
         "whole": ", ".join(str(int(q.kind == "Integer")) for q in outputs),
-        "most_parameters": sum(q.count(MAX_STABILIZERS) for q in system),
-        "most_outputs": sum(q.count(MAX_STABILIZERS) for q in outputs),
+        "most_parameters": sum(q.count(LARGEST) for q in system) + 2,
+        "most_outputs": sum(q.count(LARGEST) for q in outputs),
     }
     text = QUANTITIES_HEADER.format(digest="", **numbers) + problems_header()
     return QUANTITIES_HEADER.format(digest=_digest(text), **numbers)

@@ -15,11 +15,11 @@ typedef struct {
 
 /* The borehole's lateral coordinate Y(ξ) = ∫Θ dξ. It counts from an origin that moves with the bit, so only differences
    mean anything. The pieces that are kept, oldest first, are number `first` up to the one before `end`; number k lies at
-   k modulo the capacity of the ring, a power of two. A look-up at stabilizer i begins at piece cursor[i] if that piece
+   k modulo the capacity of the ring, a power of two. A look-up at place i begins at piece cursor[i] if that piece
    lies before the place, and searches all pieces otherwise: where the cursors stand affects the speed only. */
 typedef struct {
     Piece *ring;
-    Count capacity, first, end, cursor[MAX_STABILIZERS];
+    Count capacity, first, end, cursor[MAX_PLACES];
 } Hole;
 
 static inline Piece *piece(const Hole *hole, Count k) { return &hole->ring[k & (hole->capacity - 1)]; }
@@ -84,27 +84,27 @@ static inline Count find_from(const Hole *hole, Count k, double xi) {
     return k;
 }
 
-/* Bring the cursors to where the stabilizers are with the bit at `xi`. */
-static inline void move_cursors(Hole *hole, const Scaled *scaled, double xi) {
-    for (int i = 0; i < scaled->n; i++) hole->cursor[i] = find_from(hole, hole->cursor[i], xi - scaled->s[i]);
+/* Bring the cursors to where the places are with the bit at `xi`. */
+static inline void move_cursors(Hole *hole, const Places *places, double xi) {
+    for (int i = 0; i < places->count; i++) hole->cursor[i] = find_from(hole, hole->cursor[i], xi - places->s[i]);
 }
 
-/* Lateral coordinates of the hole axis at each stabilizer with the bit at `xi`. */
-static inline void hole_at_stabilizers(
-    const Hole *hole, const Scaled *scaled, double xi, double delayed[MAX_STABILIZERS][DIRECTIONS]
+/* Lateral coordinates of the hole axis at each place with the bit at `xi`. */
+static inline void hole_at_places(
+    const Hole *hole, const Places *places, double xi, double delayed[MAX_PLACES][DIRECTIONS]
 ) {
-    for (int i = 0; i < scaled->n; i++) {
-        double at = xi - scaled->s[i];
+    for (int i = 0; i < places->count; i++) {
+        double at = xi - places->s[i];
         const Piece *own = piece(hole, find_from(hole, hole->cursor[i], at));
         double t = (at - own->start) * own->rate;
         for (int d = 0; d < DIRECTIONS; d++) delayed[i][d] = polynomial(own->x[LATERAL + d], t);
     }
 }
 
-/* The same at the points of a trial step: one search a stabilizer, then a walk from piece to piece. */
-static inline void look_up(const Hole *hole, const Scaled *scaled, Trial *trial) {
-    for (int i = 0; i < scaled->n; i++) {
-        double from = trial->step.xi - scaled->s[i];
+/* The same at the points of a trial step: one search a place, then a walk from piece to piece. */
+static inline void look_up(const Hole *hole, const Places *places, Trial *trial) {
+    for (int i = 0; i < places->count; i++) {
+        double from = trial->step.xi - places->s[i];
         Count k = find_from(hole, hole->cursor[i], from);
         for (int point = 0; point < POINTS; point++) {
             double at = from + POINT[point] * trial->step.h;

@@ -6,7 +6,7 @@
 #ifndef BOREPROP_INTEGRATOR_H
 #define BOREPROP_INTEGRATOR_H
 
-#include "events.h"
+#include "surroundings.h"
 
 /* integrator.py gives the reasons for these numbers. */
 #define LOOK_BACK 1.0      /* ℓ₁: how far behind the bit Θ may be asked for */
@@ -21,60 +21,6 @@
 #define MOST_SLACK 1e-6                       /* of that slack */
 #define ORIGIN_LIMIT 8.0                      /* |Y| beyond which the origin of Y is moved to the bit */
 #define LARGEST_INCLINATION 6.283185307179586 /* beyond a full turn nothing is drilled */
-
-/* Everything that evolves, but for what the rings of the hole and its kinks hold. A copy of it is a way back. */
-typedef struct {
-    double xi;
-    ScaledInputs inputs;
-    double inputs_xi; /* where they were taken over */
-    Regime regime;
-    double path[2];            /* ∫ sin Θ dξ, ∫ cos Θ dξ up to the start of the present step */
-    double origin[DIRECTIONS]; /* of the lateral coordinates */
-    Step step;
-    Hole hole;
-    Kinks kinks;
-    double accepted, rejected, events; /* counts of steps, of rejected trials and of bounds met */
-} State;
-
-/* The bit at the front of its hole, dimensionless. */
-typedef struct {
-    Scaled scaled;
-    Modes modes;
-    double length_scale;
-    Options options;
-    State now;
-    Law law;        /* of the present regime and inputs, */
-    int law_known;  /* if it is made already */
-    int under_way;  /* whether a call has set out and not yet arrived; then the way back leads to … */
-    State before;   /* … the state before it, */
-    Kink last_kink; /* with its last kink, whose jump may have changed since */
-} Integrator;
-
-/* Note what the integrator has met at `xi`. */
-static inline Status failed(const Integrator *p, Code code, double xi, Problem *problem) {
-    return met(problem, code, p->options.relative_tolerance, xi * p->length_scale);
-}
-
-/* Note that the way from where the bit is takes too many steps. */
-static inline Status too_many(const Integrator *p, Problem *problem) {
-    return met(problem, TOO_MANY, p->options.most_steps, p->now.xi * p->length_scale);
-}
-
-/* The length of the shortest step at `xi`. */
-static inline double shortest_step(const Integrator *p, double xi) {
-    return p->options.smallest_step * larger(1.0, xi);
-}
-
-static inline const Law *present_law(Integrator *p) {
-    if (!p->law_known) p->law = make_law(&p->scaled, &p->modes, p->now.regime, p->now.inputs, p->now.inputs_xi);
-    p->law_known = 1;
-    return &p->law;
-}
-
-static inline void change_regime(Integrator *p, Regime regime) {
-    p->now.regime = regime;
-    p->law_known = 0;
-}
 
 /* Go to the regime on the other side of the bound that a step has met. */
 static inline void pass_event(Integrator *p, const Step *step) {
@@ -106,13 +52,16 @@ static inline int leave(Integrator *p, const Step *last, double x[COMPONENTS]) {
     step_state(last, xi, x);
     keep_origin_near(now, x);
     forget(&now->hole, xi - LOOK_BACK - p->scaled.s[p->scaled.n - 1]);
-    move_cursors(&now->hole, &p->scaled, xi);
+    move_cursors(&now->hole, &now->places, xi);
     /* a step may have to stop half way to a kink: a kink too near for that counts as met here */
-    int kink = kink_here(&now->kinks, &p->scaled, xi, larger(MERGE, 2 * shortest_step(p, xi)));
-    if (last->event == NONE) return kink;
-    pass_event(p, last);
-    now->events++;
-    return 2; /* Y' is continuous over a bound, Y'' is not */
+    int kink = kink_here(&now->kinks, &now->places, xi, larger(MERGE, 2 * shortest_step(p, xi)));
+    if (last->event != NONE) {
+        pass_event(p, last);
+        now->events++;
+        kink = 2; /* Y' is continuous over a bound, Y'' is not */
+    }
+    if (p->scaled.points) choose_watched(p, xi);
+    return kink;
 }
 
 /* Whether the rings have room for one step more, besides what the way back needs. */
@@ -130,12 +79,13 @@ typedef struct {
     int repeated;   /* an earlier trial was no good: the next is never longer than planned */
     double slack;   /* by which values at its points may lie beyond a bound */
     int switches;   /* of the regime where it starts */
+    int searched;   /* whether all contacts have been searched for there */
     double h;       /* the length of the trial */
 } Plan;
 
 /* The plan of the next step: as the last one left it, but after a kink no longer than `layers` allow. */
 static inline Plan first_plan(const Step *last, int kink, const Law *law, double layers) {
-    Plan plan = {last->next_h, last->next_h, 0, ROUNDING, 0, 0.0};
+    Plan plan = {last->next_h, last->next_h, 0, ROUNDING, 0, 0, 0.0};
     if (kink <= SMOOTHEST_KINK || last->end == last->xi) {
         plan.planned = smaller(plan.planned, layers * law->relaxation);
         if (last->event != NONE) plan.resumed = plan.planned;
@@ -145,8 +95,9 @@ static inline Plan first_plan(const Step *last, int kink, const Law *law, double
 
 /* Choose the length of the trial: as planned, but no kink lies within it, and none is left a short step ahead. */
 static inline void choose_length(const Integrator *p, const Law *law, double xi, Plan *plan) {
-    double largest = p->options.largest_step, h = smaller(plan->planned, largest);
-    double way = next_kink(&p->now.kinks, &p->scaled, law->gains, p->options.relative_tolerance, xi, 2 * h) - xi;
+    double largest = smaller(smaller(p->options.largest_step, p->now.places.nearest), law->longest);
+    double h = smaller(plan->planned, largest);
+    double way = next_kink(&p->now.kinks, &p->now.places, law->gains, p->options.relative_tolerance, xi, 2 * h) - xi;
     double longest = plan->repeated ? h : smaller(STRETCH * h, largest);
     if (way < 2 * h) h = way <= longest ? way : way / 2;
     plan->h = h;
@@ -158,7 +109,7 @@ static inline void try_step(
 ) {
     Step step = {xi, h, {{0}}, xi + h, NONE, 0, INFINITY};
     trial->step = step;
-    look_up(&p->now.hole, &p->scaled, trial);
+    look_up(&p->now.hole, &p->now.places, trial);
     law_try(law, &p->options, x, trial);
 }
 
@@ -196,17 +147,41 @@ static inline Status find_step(
             p->now.rejected++;
             continue;
         }
-        cut_at_event(&p->scaled, &p->now.hole, law, plan->slack, trial);
+        cut_at_event(&p->now.places, &p->now.hole, law, plan->slack, trial);
         if (step->event == NONE || step->end - xi >= shortest) return DONE;
         if (plan->switches < 2 * law->bound_count) {
             pass_event(p, step);
             plan->switches++;
             continue;
         }
+        if (p->scaled.points && !plan->searched) {
+            plan->searched = 1, plan->switches = 0;
+            if (touch_down(p, xi, x, problem) == DONE) continue;
+        }
         plan->planned = larger(plan->h / CLOSER, shortest);
         plan->repeated = 1, plan->switches = 0, plan->slack *= CLOSER;
         if (plan->slack >= MOST_SLACK) return failed(p, NO_MODE, xi, problem);
     }
+}
+
+/* See that no point of the body that is not watched has come through the wall along a trial step: where one has, it is
+   watched and the step tried again. Remember how far from the wall they are then. */
+static inline Status keep_clear(
+    Integrator *p, const Step *last, int kink, const double x[COMPONENTS], Plan *plan, Trial *trial, Problem *problem
+) {
+    Surroundings around;
+    for (;;) {
+        look_around(p, &trial->step, &around);
+        int beyond = around.near ? watch_beyond(p, around.gap, last->end) : 0; /* those beyond are near */
+        if (beyond < 0) return met(problem, TOO_CROWDED, MAX_WATCHED, last->end * p->length_scale);
+        if (!beyond) break;
+        p->now.rejected++;
+        *plan = first_plan(last, kink, present_law(p), p->options.layers);
+        Status status = find_step(p, last->end, x, plan, trial, problem);
+        if (status != DONE) return status;
+    }
+    copy_around(&p->around, &around, p->scaled.points);
+    return DONE;
 }
 
 /* Append one step at the end of the last one. */
@@ -217,8 +192,10 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     Trial trial;
     if (!has_room(p)) return FULL;
     int kink = leave(p, &last, x);
+    if (now->inputs.eta_pi_slope != 0) p->law_known = 0;
     Plan plan = first_plan(&last, kink, present_law(p), p->options.layers);
     Status status = find_step(p, last.end, x, &plan, &trial, problem);
+    if (status == DONE && p->scaled.points) status = keep_clear(p, &last, kink, x, &plan, &trial, problem);
     if (status != DONE) return status;
     Step *step = &now->step;
     *step = trial.step;
@@ -227,9 +204,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     step_state(step, step->end, end);
     for (int c = ANGLE; c < LATERAL; c++)
         if (!(fabs(end[c]) <= LARGEST_INCLINATION)) return failed(p, TURNS_OVER, step->end, problem);
-    ScaledInputs inputs = now->inputs;
-    inputs.F_rss += now->inputs.F_rss_slope * (last.end - now->inputs_xi);
-    append(&now->hole, step, inputs);
+    append(&now->hole, step, inputs_ahead(now->inputs, last.end - now->inputs_xi));
     if (kink <= SMOOTHEST_KINK)
         add_kink(&now->kinks, p->scaled.n, last.end, kink, step_jump(&last, step, kink, last.end));
     now->accepted++;
@@ -240,8 +215,10 @@ static inline Status take_step(Integrator *p, Problem *problem) {
 static inline void go_back(Integrator *p) {
     if (!p->under_way) return;
     p->now = p->before;
+    copy_around(&p->around, &p->around_before, p->scaled.points);
     *kink(&p->now.kinks, p->now.kinks.end - 1) = p->last_kink;
     p->law_known = p->under_way = 0;
+    bear(p, p->now.inputs.W);
 }
 
 /* Remember the state where a call sets out; 0 if the rings have no room. */
@@ -249,6 +226,7 @@ static inline int set_out(Integrator *p) {
     if (p->under_way) return 1;
     if (!has_room(p)) return 0;
     p->before = p->now;
+    copy_around(&p->around_before, &p->around, p->scaled.points);
     p->last_kink = *kink(&p->now.kinks, p->now.kinks.end - 1);
     p->under_way = 1;
     return 1;

@@ -17,10 +17,10 @@ typedef struct {
 } Kink;
 
 /* The kinks that are kept, up to the one before `end`; number k lies at k modulo the capacity of the ring, a power of
-   two. Stabilizer i will next pass number ahead[i]. */
+   two. The support at place i will next pass number ahead[i]. */
 typedef struct {
     Kink *ring;
-    Count capacity, end, ahead[MAX_STABILIZERS];
+    Count capacity, end, ahead[MAX_PLACES];
 } Kinks;
 
 static inline Kink *kink(const Kinks *kinks, Count k) { return &kinks->ring[k & (kinks->capacity - 1)]; }
@@ -38,12 +38,12 @@ static inline void add_kink(Kinks *kinks, int n, double xi, int order, double ju
 
 /* Take the kinks up to `xi` off the lists; returns the lowest derivative of the hole that jumps at `xi` by those within
    `near` of it. */
-static inline int kink_here(Kinks *kinks, const Scaled *scaled, double xi, double near) {
+static inline int kink_here(Kinks *kinks, const Places *places, double xi, double near) {
     int lowest = SMOOTH;
-    for (int i = 0; i < scaled->n; i++)
+    for (int i = 0; i < places->count; i++)
         for (Count *k = &kinks->ahead[i]; *k < kinks->end; ++*k) {
             const Kink *next = kink(kinks, *k);
-            double at = next->xi + scaled->s[i];
+            double at = next->xi + places->s[i];
             if (at - xi > near) break;
             if (xi - at <= near && next->order + 1 < lowest) lowest = (int)next->order + 1;
         }
@@ -53,13 +53,13 @@ static inline int kink_here(Kinks *kinks, const Scaled *scaled, double xi, doubl
 /* Where the next kink lies that a step of length `h` from `xi` must not pass; infinity if there is none. It may pass
    those that change it by less than the tolerance; `gains` are those of the law. */
 static inline double next_kink(
-    const Kinks *kinks, const Scaled *scaled, const double *gains, double tolerance, double xi, double h
+    const Kinks *kinks, const Places *places, const double *gains, double tolerance, double xi, double h
 ) {
     double first = INFINITY, factorial[] = {1, 1, 2, 6, 24}, power[] = {1, h, h * h, h * h * h, h * h * h * h};
-    for (int i = 0; i < scaled->n; i++)
+    for (int i = 0; i < places->count; i++)
         for (Count k = kinks->ahead[i]; k < kinks->end; k++) {
             const Kink *next = kink(kinks, k);
-            double at = next->xi + scaled->s[i];
+            double at = next->xi + places->s[i];
             int order = (int)next->order + 1;
             if (at >= xi + h || at >= first) break;
             if (gains[i] * next->jump * power[order] > tolerance * factorial[order]) first = at;

@@ -4,8 +4,8 @@
        εηΠ θ' = M ,   Y' = Θ = θ − ψ ,   ψ = clip(F_0/(ηΠ), −ψ*, ψ*)                                      (16), (17)
 
    with M and F_0 from the beam in the hole it drilled, e_i = Y(ξ) − Y(ξ−s_i) − s_i θ. Within a regime (which stabilizers
-   touch which wall, tilt saturated or not) only sin⟨Θ⟩_1 is not linear, so one step is one linear solve of Radau
-   collocation.
+   touch which wall, tilt saturated or not) only the sine that goes with the weight is not linear, so one step is one
+   linear solve of Radau collocation. It is that of ⟨Θ⟩_1; where the axial load counts, of θ.
 
    The integrator uses of a law `make_law`, `law_try`, `law_at`, `law_along` and `displacement`, and of a `Law` the
    relaxation length, the bounds and the gains; modes.h tells it which regime lies beyond a bound. */
@@ -16,170 +16,278 @@
 #include "step.h"
 
 /* A `Row` under given inputs, on the state:
-   theta θ + Y Y + Σ_i delayed[i] Y(ξ−s_i) + g sin⟨Θ⟩_1 + constant + slope (ξ − ξ of the inputs). */
+   theta θ + Y Y + Σ_i delayed[i] Y(ξ−s_i) + g times the sine + constant + slope (ξ − ξ of the inputs). */
 typedef struct {
-    double theta, Y, delayed[MAX_STABILIZERS], g, constant, slope;
+    double theta, Y, delayed[MAX_PLACES], g, constant, slope;
 } Linear;
 
 /* `scale` times `row`, with e_i = Y − Y(ξ−s_i) − s_i θ put in. */
-static inline Linear make_linear(const Row *row, const Scaled *scaled, ScaledInputs inputs, double scale) {
-    Linear linear = {0};
-    for (int i = 0; i < scaled->n; i++) {
-        linear.theta += row->e[i] * scaled->s[i];
-        linear.Y += row->e[i];
-        linear.delayed[i] = -scale * row->e[i];
+static inline void make_linear(
+    Linear *linear, const Row *row, const Places *places, ScaledInputs inputs, double scale
+) {
+    linear->theta = linear->Y = 0.0;
+    for (int i = 0; i < places->count; i++) {
+        linear->theta += row->e[i] * places->s[i];
+        linear->Y += row->e[i];
+        linear->delayed[i] = -scale * row->e[i];
     }
-    linear.theta *= -scale, linear.Y *= scale;
-    linear.g = scale * row->g;
-    linear.constant = scale * (row->rss * inputs.F_rss + row->constant);
-    linear.slope = scale * row->rss * inputs.F_rss_slope;
-    return linear;
+    linear->theta *= -scale, linear->Y *= scale;
+    linear->g = scale * row->g;
+    linear->constant = scale * (row->rss * inputs.F_rss + row->constant);
+    linear->slope = scale * row->rss * inputs.F_rss_slope;
 }
 
-/* While a regime holds, `value` lies between `lower` and `upper`: of stabilizer `part`, or of the tilt (part n−1). */
+/* While a regime holds, `value` lies between `lower` and `upper`: of the support at the place `part`, or of the tilt. */
 typedef struct {
     int part;
     Linear value;
     double lower, upper;
 } Bound;
 
+#define LONGEST_RAMP 0.1 /* by which share ηΠ changes within a step, at most: it then takes about six iterations */
+
 /* The right-hand side in one regime under given inputs, and the bounds within which it holds. */
 typedef struct {
-    int n;
-    double inputs_xi; /* where the inputs were taken over */
+    int count, last; /* of places, and that of the last stabilizer, which is the tilt's */
+    int saturated;
+    int axial;        /* whether the sine is that of θ */
+    double inputs_xi; /* where the inputs are those that it was made under */
+    double growth;    /* of ηΠ per ξ, over ηΠ there */
+    double longest;   /* step under a changing ηΠ */
     Linear theta_rate, Theta;
     double relaxation; /* length over which θ forgets */
     int bound_count;
-    Bound bounds[MAX_STABILIZERS];
+    Bound bounds[MAX_PLACES];
     /* per change of Y(ξ−s_i) the change of Θ, once θ has followed, or that of a bounded value if it is larger */
-    double gains[MAX_STABILIZERS];
+    double gains[MAX_PLACES];
 } Law;
 
 /* Θ = θ − ψ, with ψ as it is without saturation. */
-static inline Linear less_tilt(Linear psi, int n) {
-    Linear Theta = {1.0 - psi.theta, -psi.Y, {0}, -psi.g, -psi.constant, -psi.slope};
-    for (int i = 0; i < n; i++) Theta.delayed[i] = -psi.delayed[i];
-    return Theta;
+static inline void less_tilt(Linear *Theta, const Linear *psi, int count) {
+    Theta->theta = 1.0 - psi->theta, Theta->Y = -psi->Y, Theta->g = -psi->g;
+    Theta->constant = -psi->constant, Theta->slope = -psi->slope;
+    for (int i = 0; i < count; i++) Theta->delayed[i] = -psi->delayed[i];
 }
 
-static inline Law make_law(const Scaled *scaled, Modes *modes, Regime regime, ScaledInputs inputs, double inputs_xi) {
+/* Θ = θ − ψ, with a saturated ψ. */
+static inline void less_limit(Linear *Theta, double psi, int count) {
+    Theta->theta = 1.0, Theta->Y = Theta->g = Theta->slope = 0.0, Theta->constant = -psi;
+    for (int i = 0; i < count; i++) Theta->delayed[i] = 0.0;
+}
+
+/* How far the law's values change per change of Y(ξ−s_i). */
+static inline void find_gains(Law *law) {
+    for (int i = 0; i < law->count; i++) {
+        law->gains[i] = fabs(law->theta_rate.delayed[i] / law->theta_rate.theta) + fabs(law->Theta.delayed[i]);
+        for (int k = 0; k < law->bound_count; k++)
+            law->gains[i] = larger(law->gains[i], fabs(law->bounds[k].value.delayed[i]));
+    }
+    if (!law->axial) law->gains[0] += fabs(law->theta_rate.g / law->theta_rate.theta) + fabs(law->Theta.g);
+}
+
+/* Make the law of a regime under inputs taken over at `inputs_xi`. */
+static inline void make_law(
+    Law *law, const Scaled *scaled, const Places *places, Modes *modes, Regime regime, ScaledInputs inputs,
+    double inputs_xi
+) {
     const Mode *mode = mode_of(modes, regime.contact);
-    int n = scaled->n;
-    Law law = {0};
-    Linear psi = make_linear(&mode->F_0, scaled, inputs, 1 / inputs.eta_pi);
-    Linear saturated = {1.0, 0.0, {0}, 0.0, -regime.saturation * scaled->psi_star, 0.0};
-    law.n = n, law.inputs_xi = inputs_xi;
-    law.theta_rate = make_linear(&mode->M, scaled, inputs, 1 / (scaled->epsilon * inputs.eta_pi));
-    law.Theta = regime.saturation ? saturated : less_tilt(psi, n);
-    law.relaxation = 1 / fabs(law.theta_rate.theta + law.Theta.Y);
-    Bound of_tilt = {n - 1, psi, 0.0, 0.0};
-    saturation_bounds(regime.saturation, scaled->psi_star, &of_tilt.lower, &of_tilt.upper);
-    law.bounds[law.bound_count++] = of_tilt;
-    for (int i = 0; i < n - 1; i++) {
-        Bound *bound = &law.bounds[law.bound_count];
+    int n = scaled->n, count = places->count;
+    Bound *of_tilt = &law->bounds[0];
+    law->count = count, law->last = n - 1, law->axial = scaled->axial, law->inputs_xi = inputs_xi, law->bound_count = 1;
+    law->saturated = regime.saturation != 0;
+    law->growth = inputs.eta_pi_slope / inputs.eta_pi;
+    law->longest = law->growth == 0 ? INFINITY : LONGEST_RAMP / fabs(law->growth);
+    make_linear(&law->theta_rate, &mode->M, places, inputs, 1 / (scaled->epsilon * inputs.eta_pi));
+    of_tilt->part = n - 1;
+    make_linear(&of_tilt->value, &mode->F_0, places, inputs, 1 / inputs.eta_pi);
+    saturation_bounds(regime.saturation, scaled->psi_star, &of_tilt->lower, &of_tilt->upper);
+    if (regime.saturation) less_limit(&law->Theta, regime.saturation * scaled->psi_star, count);
+    else less_tilt(&law->Theta, &of_tilt->value, count);
+    law->relaxation = 1 / fabs(law->theta_rate.theta + law->Theta.Y);
+    for (int i = 0; i < count; i++) {
+        Bound *bound = &law->bounds[law->bound_count];
+        if (i == n - 1) continue;
         const Row *row = contact_bounds(modes, mode, i, &bound->lower, &bound->upper);
         if (bound->lower == -INFINITY && bound->upper == INFINITY) continue;
-        bound->part = i, bound->value = make_linear(row, scaled, inputs, 1.0);
-        law.bound_count++;
+        bound->part = i;
+        make_linear(&bound->value, row, places, inputs, 1.0);
+        law->bound_count++;
     }
-    for (int i = 0; i < n; i++) {
-        law.gains[i] = fabs(law.theta_rate.delayed[i] / law.theta_rate.theta) + fabs(law.Theta.delayed[i]);
-        for (int k = 0; k < law.bound_count; k++)
-            law.gains[i] = larger(law.gains[i], fabs(law.bounds[k].value.delayed[i]));
-    }
-    law.gains[0] += fabs(law.theta_rate.g / law.theta_rate.theta) + fabs(law.Theta.g);
-    return law;
+    find_gains(law);
 }
+
+/* ηΠ where a law was made over that a length `ahead` of there. M and F_0 are divided by ηΠ. */
+static inline double eta_pi_ratio(const Law *law, double ahead) { return 1 / (1 + law->growth * ahead); }
 
 /* A bounded value at one place. */
 static inline double law_at(
     const Law *law, const Bound *bound, double xi, const double x[COMPONENTS], double delayed[][DIRECTIONS]
 ) {
     const Linear *f = &bound->value;
-    double sine = sin(x[LATERAL] - delayed[0][0]);
+    double sine = sin(law->axial ? x[ANGLE] : x[LATERAL] - delayed[0][0]);
     double value = f->theta * x[ANGLE] + f->Y * x[LATERAL] + f->g * sine + f->constant;
-    for (int i = 0; i < law->n; i++) value += f->delayed[i] * delayed[i][0];
-    return value + f->slope * (xi - law->inputs_xi);
+    for (int i = 0; i < law->count; i++) value += f->delayed[i] * delayed[i][0];
+    value += f->slope * (xi - law->inputs_xi);
+    return law->growth != 0 && bound->part == law->last ? value * eta_pi_ratio(law, xi - law->inputs_xi) : value;
 }
 
-/* Add the terms of stabilizers 2 … n, and that of a force which changes along the step. */
-static inline void add_others(const Linear *f, int n, const Trial *trial, double values[POINTS]) {
-    for (int i = 1; i < n; i++)
+/* Add the terms of all places but the first, and that of a force which changes along the step. */
+static inline void add_others(const Linear *f, int count, const Trial *trial, double values[POINTS]) {
+    for (int i = 1; i < count; i++)
         if (f->delayed[i] != 0)
             for (int k = 0; k < POINTS; k++) values[k] += f->delayed[i] * trial->delayed[i][0][k];
     if (f->slope != 0)
         for (int k = 0; k < POINTS; k++) values[k] += f->slope * trial->ahead[k];
 }
 
-/* A bounded value at the points of a trial step. */
-static inline void law_along(const Law *law, const Bound *bound, const Trial *trial, double values[POINTS]) {
-    const Linear *f = &bound->value;
+/* The values of a row at the points of a trial step, by the ηΠ where the law was made. */
+static inline void linear_along(const Linear *f, int count, const Trial *trial, double values[POINTS]) {
     const double *theta = trial->x[ANGLE], *Y = trial->x[LATERAL], *Y_1 = trial->delayed[0][0];
     for (int k = 0; k < POINTS; k++)
         values[k] = f->constant + f->theta * theta[k] + f->Y * Y[k] + f->delayed[0] * Y_1[k] + f->g * trial->sines[k];
-    add_others(f, law->n, trial, values);
+    add_others(f, count, trial, values);
+}
+
+/* A bounded value at the points of a trial step. */
+static inline void law_along(const Law *law, const Bound *bound, const Trial *trial, double values[POINTS]) {
+    linear_along(&bound->value, law->count, trial, values);
+    if (law->growth == 0 || bound->part != law->last) return;
+    for (int k = 0; k < POINTS; k++) values[k] *= eta_pi_ratio(law, trial->ahead[k]);
 }
 
 /* The same of a part of the right-hand side, with (θ, Y) frozen at the start of the step. */
 static inline void linear_frozen(
-    const Linear *f, int n, const double x[COMPONENTS], const Trial *trial, const double sines[POINTS],
+    const Linear *f, int count, const double x[COMPONENTS], const Trial *trial, const double sines[POINTS],
     double values[POINTS]
 ) {
     double state = f->theta * x[ANGLE] + f->Y * x[LATERAL] + f->constant;
     for (int k = 0; k < POINTS; k++) values[k] = state + f->g * sines[k] + f->delayed[0] * trial->delayed[0][0][k];
-    add_others(f, n, trial, values);
+    add_others(f, count, trial, values);
 }
 
-#define REST 0.03     /* what may be neglected of sin⟨Θ⟩_1, in tolerances of θ: little beside the error of a step */
+#define REST 0.03     /* what may be neglected of the sine, in tolerances of θ: little beside the error of a step */
 #define ITERATIONS 10 /* on what is neglected, at most; each gains two digits or more */
 
-/* sin⟨Θ⟩_1 about its value at the start of a step, where ⟨Θ⟩_1 = Y(ξ) − Y(ξ−1) is `average`. */
+/* The sine about its value at the start of a step, where its angle is `from`: it is part ANGLE or LATERAL of the state,
+   less what is `behind` at the points of the step, so that it is θ or ⟨Θ⟩_1 = Y(ξ) − Y(ξ−1). */
 typedef struct {
-    double average, sine, cosine;
+    int part;
+    const double *behind;
+    double from, sine, cosine;
 } Tangent;
 
-/* The sines of ⟨Θ⟩_1 at the points of a step that was solved with `frozen` sines. Returns whether these agree well
-   enough; if they do not, `frozen` becomes better ones, less the linear part in Y, which belongs to the Jacobian. */
+static inline Tangent tangent_of(const Law *law, const double x[COMPONENTS], const Trial *trial) {
+    static const double nothing[POINTS] = {0};
+    int part = law->axial ? ANGLE : LATERAL;
+    const double *behind = law->axial ? nothing : trial->delayed[0][0];
+    double from = x[part] - behind[0];
+    Tangent tangent = {part, behind, from, sin(from), cos(from)};
+    return tangent;
+}
+
+/* The sines at the points of a step that was solved from the state `x` with `frozen` sines. Returns whether these agree
+   well enough; if they do not, `frozen` becomes better ones, less the linear part, which belongs to the Jacobian. */
 static inline int sines_agree(
-    Tangent tangent, double Y, double gain, double allowed, Trial *trial, double frozen[POINTS]
+    Tangent tangent, const double x[COMPONENTS], double gain, double allowed, Trial *trial, double frozen[POINTS]
 ) {
-    const double *Ys = trial->x[LATERAL], *Y_1 = trial->delayed[0][0];
+    const double *at = trial->x[tangent.part], *behind = tangent.behind, start = x[tangent.part];
     double far = 0.0, largest = 0.0;
     for (int k = 0; k < POINTS; k++) {
-        double away = Ys[k] - Y_1[k] - tangent.average;
+        double away = at[k] - behind[k] - tangent.from;
         trial->sines[k] = tangent.sine + tangent.cosine * away;
         far = larger(far, fabs(away));
     }
     if (far * far / 2 * gain <= allowed) return 1; /* |sin(a + d) − sin a − d cos a| <= d²/2 */
     for (int k = 0; k < POINTS; k++) {
-        double assumed = frozen[k] + tangent.cosine * (Ys[k] - Y);
-        trial->sines[k] = sin(Ys[k] - Y_1[k]);
+        double assumed = frozen[k] + tangent.cosine * (at[k] - start);
+        trial->sines[k] = sin(at[k] - behind[k]);
         frozen[k] += trial->sines[k] - assumed;
         largest = larger(largest, fabs(trial->sines[k] - assumed));
     }
     return largest * gain <= allowed;
 }
 
+/* The sines at the points of a trial step. */
+static inline void sines_along(const Law *law, Trial *trial) {
+    const double *theta = trial->x[ANGLE], *Y = trial->x[LATERAL], *Y_1 = trial->delayed[0][0];
+    for (int k = 0; k < POINTS; k++) trial->sines[k] = sin(law->axial ? theta[k] : Y[k] - Y_1[k]);
+}
+
+/* θ' and Y' at the points of a trial step under a changing ηΠ. */
+static inline void rates_along(const Law *law, const Trial *trial, double theta_rate[POINTS], double Theta[POINTS]) {
+    const double *theta = trial->x[ANGLE];
+    linear_along(&law->theta_rate, law->count, trial, theta_rate);
+    linear_along(&law->Theta, law->count, trial, Theta);
+    for (int k = 0; k < POINTS; k++) {
+        double ratio = eta_pi_ratio(law, trial->ahead[k]);
+        theta_rate[k] *= ratio;
+        if (!law->saturated) Theta[k] = theta[k] + ratio * (Theta[k] - theta[k]);
+    }
+}
+
+/* A function that is seldom called: inlined, it would slow down what is. */
+#ifdef __GNUC__
+#define APART __attribute__((noinline))
+#else
+#define APART
+#endif
+
+#define RAMP_ITERATIONS 20 /* at most; each gains a digit or more */
+
+/* Collocation under a changing ηΠ: what the Jacobian, which is that at the start, neglects is added to the right-hand
+   side until it is small. Returns whether it is; gives the right-hand side with the state frozen, and the parts. */
+APART static int collocate_on_ramp(
+    const Law *law, const Options *options, const double x[COMPONENTS], Jacobian J, Trial *trial,
+    double f_theta[POINTS], double f_Y[POINTS], double parts_theta[S], double parts_Y[S]
+) {
+    double h = trial->step.h, *theta = trial->x[ANGLE], *Y = trial->x[LATERAL];
+    double rate[POINTS], Theta[POINTS], allowed = REST * options->relative_tolerance;
+    for (int k = 0; k < POINTS; k++) theta[k] = x[ANGLE], Y[k] = x[LATERAL];
+    sines_along(law, trial);
+    rates_along(law, trial, f_theta, f_Y);
+    for (int iteration = 0; iteration < RAMP_ITERATIONS; iteration++) {
+        double off_theta = 0.0, off_Y = 0.0;
+        collocate(h, J, f_theta, f_Y, parts_theta, parts_Y);
+        radau_values(x[ANGLE], parts_theta, theta);
+        radau_values(x[LATERAL], parts_Y, Y);
+        sines_along(law, trial);
+        rates_along(law, trial, rate, Theta);
+        for (int k = 0; k < POINTS; k++) {
+            double moved_theta = theta[k] - x[ANGLE], moved_Y = Y[k] - x[LATERAL];
+            rate[k] -= f_theta[k] + J.theta_theta * moved_theta + J.theta_Y * moved_Y;
+            Theta[k] -= f_Y[k] + J.Y_theta * moved_theta + J.Y_Y * moved_Y;
+            off_theta = larger(off_theta, fabs(rate[k])), off_Y = larger(off_Y, fabs(Theta[k]));
+        }
+        if (off_theta <= allowed * (fabs(law->theta_rate.theta) + 1 / h) && off_Y <= allowed / h) return 1;
+        for (int k = 0; k < POINTS; k++) f_theta[k] += rate[k], f_Y[k] += Theta[k];
+    }
+    return 0;
+}
+
 /* Collocation from the state `x` over a trial step, whose place, length and delayed hole are given. */
 static inline void law_try(const Law *law, const Options *options, const double x[COMPONENTS], Trial *trial) {
     const Linear *rate = &law->theta_rate, *Theta = &law->Theta;
-    const double theta = x[ANGLE], Y = x[LATERAL], h = trial->step.h, *Y_1 = trial->delayed[0][0];
+    const double theta = x[ANGLE], Y = x[LATERAL], h = trial->step.h;
     double frozen[POINTS], f_theta[POINTS], f_Y[POINTS], parts_theta[S], parts_Y[S];
-    Tangent tangent = {Y - Y_1[0], sin(Y - Y_1[0]), cos(Y - Y_1[0])};
-    Jacobian J = {rate->theta, rate->Y + rate->g * tangent.cosine, Theta->theta, Theta->Y + Theta->g * tangent.cosine};
+    Tangent tangent = tangent_of(law, x, trial);
+    Jacobian J = {rate->theta, rate->Y, Theta->theta, Theta->Y};
+    *(law->axial ? &J.theta_theta : &J.theta_Y) += rate->g * tangent.cosine;
+    *(law->axial ? &J.Y_theta : &J.Y_Y) += Theta->g * tangent.cosine;
     double allowed = REST * options->relative_tolerance * (fabs(rate->theta) + 1 / h);
     for (int k = 0; k < POINTS; k++) {
         trial->ahead[k] = trial->step.xi - law->inputs_xi + POINT[k] * h;
-        frozen[k] = tangent.sine + tangent.cosine * (Y - Y_1[k] - tangent.average);
+        frozen[k] = tangent.sine + tangent.cosine * (x[tangent.part] - tangent.behind[k] - tangent.from);
     }
-    for (int iteration = 0; iteration < ITERATIONS; iteration++) {
-        linear_frozen(rate, law->n, x, trial, frozen, f_theta);
-        linear_frozen(Theta, law->n, x, trial, frozen, f_Y);
+    int ramp = law->growth != 0;
+    int found = ramp && collocate_on_ramp(law, options, x, J, trial, f_theta, f_Y, parts_theta, parts_Y);
+    for (int iteration = 0; !ramp && iteration < ITERATIONS; iteration++) {
+        linear_frozen(rate, law->count, x, trial, frozen, f_theta);
+        linear_frozen(Theta, law->count, x, trial, frozen, f_Y);
         collocate(h, J, f_theta, f_Y, parts_theta, parts_Y);
         radau_values(Y, parts_Y, trial->x[LATERAL]);
-        if (sines_agree(tangent, Y, fabs(rate->g), allowed, trial, frozen)) break;
+        radau_values(theta, parts_theta, trial->x[ANGLE]);
+        if (sines_agree(tangent, x, fabs(rate->g), allowed, trial, frozen)) break;
     }
-    radau_values(theta, parts_theta, trial->x[ANGLE]);
     radau_coefficients(theta, parts_theta, trial->step.x[ANGLE]);
     radau_coefficients(Y, parts_Y, trial->step.x[LATERAL]);
     double moved_theta = trial->x[ANGLE][AT_CHECK] - theta, moved_Y = trial->x[LATERAL][AT_CHECK] - Y;
@@ -189,6 +297,7 @@ static inline void law_try(const Law *law, const Options *options, const double 
         h, J, radau_slope(parts_theta) - h * slope_theta, radau_slope(parts_Y) - h * slope_Y, &error_theta, &error_Y
     );
     trial->error = larger(options->theta_weight * fabs(error_theta), fabs(error_Y)) / options->relative_tolerance;
+    if (ramp && !found) trial->error = larger(trial->error, 2.0); /* tried again, shorter */
 }
 
 #define SMALL_TURN 0.05 /* rad: up to here the series below are off by less than 1e-15 */

@@ -8,11 +8,12 @@ const char *boreprop_quantities_digest(void) { return QUANTITIES_DIGEST; }
 void boreprop_sentence(const Problem *problem, char line[MESSAGE]) { sentence(problem, line); }
 
 Run *boreprop_start(
-    int n, const double *parameters, const Options *options, Count count, const double *measured_depth,
+    const int structure[4], const double *parameters, const Options *options, Count count, const double *measured_depth,
     const double *inclination, const Inputs *inputs, Problem *problem
 ) {
     Survey survey = {count, measured_depth, inclination};
-    System system = system_of(n, parameters);
+    Structure made = {structure[0], structure[1], structure[2], structure[3]};
+    System system = system_of(made, parameters);
     Run *run = calloc(1, sizeof *run);
     met(problem, NO_MEMORY, MOST_PIECES, 0.0);
     if (run && run_prepare(run, &system, *options, problem) == DONE &&
@@ -25,13 +26,11 @@ Run *boreprop_start(
 void boreprop_end(Run *run) { run_end(run); }
 
 Count boreprop_follow(
-    Run *run, Count count, const double *lengths, const double *forces, double active_weight_on_bit, const int *rows,
-    double *table, Problem *problem
+    Run *run, Count count, const double *lengths, const Inputs *inputs, const int *rows, double *table, Problem *problem
 ) {
-    Count width = output_count(run->drilling.system.n);
+    Count width = output_count(run->drilling.system.structure);
     for (Count k = 0; k < count; k++) {
-        Inputs inputs = {.rss_force = forces[k], .active_weight_on_bit = active_weight_on_bit};
-        if (run_advance(run, lengths[k], inputs, problem) != DONE) return k;
+        if (run_advance(run, lengths[k], inputs[k], problem) != DONE) return k;
         if (rows[k] >= 0) drilling_outputs(&run->drilling, table + rows[k] * width);
     }
     return count;
@@ -54,4 +53,22 @@ void boreprop_save(const Run *run, double *state) { drilling_save(&run->drilling
 
 int boreprop_restore(Run *run, const double *state, Count count, Problem *problem) {
     return run_restore(run, state, count, problem) == DONE;
+}
+
+Count boreprop_lie(
+    const int structure[4], const double *parameters, double weight_on_bit, double inclination, Count rows,
+    const double *loads, double *answers, Count count, const double *s, double *shapes, Problem *problem
+) {
+    Structure made = {structure[0], structure[1], structure[2], structure[3]};
+    System system = system_of(made, parameters);
+    Lying *bha = calloc(1, sizeof *bha);
+    Count k = 0;
+    if (!bha) met(problem, NO_MEMORY, MOST_PIECES, 0.0);
+    else if (lay(bha, &system, weight_on_bit, inclination, problem)) {
+        int width = support_count(bha) + 2;
+        while (k < rows && lie(bha, loads + k * width, answers + k * width, count, s, shapes + k * count)) k++;
+        if (k < rows) met(problem, TOO_CROWDED, MAX_WATCHED, 0.0);
+    }
+    free(bha);
+    return k;
 }

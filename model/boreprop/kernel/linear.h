@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-enum { SIZE = 6 }; /* of the largest matrix */
+enum { SIZE = 64 }; /* of the largest matrix: that of all supports which may touch a wall at once */
 
 /* Sum of the products of two lists. */
 static inline double dot(int count, const double *a, const double *b) {

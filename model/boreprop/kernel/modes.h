@@ -6,82 +6,110 @@
 #define BOREPROP_MODES_H
 
 #include "beam.h"
-#include "linear.h"
 
 #define ROUNDING 1e-13 /* how far a force or deflection of order one may lie beyond its bound by rounding alone */
 
-/* What bends the beam besides the contacts: offsets e_1 … e_n, F_RSS and sin⟨Θ⟩_1. */
+/* The supports that have a say, each with a contact: 1 lower wall, −1 upper wall, 0 free. The first places are those of
+   the n stabilizers, the last of which has no contact; then come points of the body, in any order. */
 typedef struct {
-    double e[MAX_STABILIZERS], F_rss, sin_Theta_1;
-} Loads;
-
-/* A linear function of the loads: e · e_i + rss · F_RSS + g · sin⟨Θ⟩_1 + constant. */
-typedef struct {
-    double e[MAX_STABILIZERS], rss, g, constant;
-} Row;
-
-/* Value under `loads`. */
-static inline double row_value(const Row *row, const Loads *loads, int n) {
-    return dot(n, row->e, loads->e) + row->rss * loads->F_rss + row->g * loads->sin_Theta_1 + row->constant;
-}
-
-/* Add a sum of factors times rows. */
-static inline Row row_plus(Row row, int count, const double *factors, const Row *rows) {
-    Row sum = {{0}, 0, 0, 0};
-    for (int k = 0; k < count; k++) {
-        for (int i = 0; i < MAX_STABILIZERS; i++) sum.e[i] += factors[k] * rows[k].e[i];
-        sum.rss += factors[k] * rows[k].rss;
-        sum.g += factors[k] * rows[k].g;
-        sum.constant += factors[k] * rows[k].constant;
-    }
-    for (int i = 0; i < MAX_STABILIZERS; i++) row.e[i] += sum.e[i];
-    row.rss += sum.rss, row.g += sum.g, row.constant += sum.constant;
-    return row;
-}
-
-/* A contact at each non-ideal stabilizer: 1 lower wall, −1 upper wall, 0 free. */
-typedef struct {
-    signed char of[MAX_STABILIZERS];
+    signed char of[MAX_PLACES];
+    unsigned char watched, point[MAX_WATCHED]; /* how many points; which support each is, less n */
 } Contact;
 
 static inline int same_contact(Contact a, Contact b) { return !memcmp(&a, &b, sizeof a); }
+
+/* How many places there are, n of them of stabilizers. */
+static inline int place_count(Contact contact, int n) { return n + contact.watched; }
+
+/* The support at a place. */
+static inline int support_at(const Contact *contact, int n, int place) {
+    return place < n ? place : n + contact->point[place - n];
+}
+
+/* What bends the beam besides the contacts: offsets e of the bit's axis from the hole at each place, F_RSS, and the sine
+   that goes with the weight. */
+typedef struct {
+    int count;
+    double e[MAX_PLACES], F_rss, g;
+} Loads;
+
+/* A linear function of the loads: e · e_i + rss · F_RSS + g times the sine + constant. */
+typedef struct {
+    double e[MAX_PLACES], rss, g, constant;
+} Row;
+
+/* Value under `loads`. */
+static inline double row_value(const Row *row, const Loads *loads) {
+    return dot(loads->count, row->e, loads->e) + row->rss * loads->F_rss + row->g * loads->g + row->constant;
+}
+
+/* Add to a row, over so many places, a sum of factors times rows. */
+static inline void add_rows(Row *row, int places, int count, const double *factors, const Row *const *rows) {
+    double rss = 0.0, g = 0.0, constant = 0.0;
+    for (int i = 0; i < places; i++) {
+        double e = 0.0;
+        for (int k = 0; k < count; k++) e += factors[k] * rows[k]->e[i];
+        row->e[i] += e;
+    }
+    for (int k = 0; k < count; k++) {
+        rss += factors[k] * rows[k]->rss, g += factors[k] * rows[k]->g;
+        constant += factors[k] * rows[k]->constant;
+    }
+    row->rss += rss, row->g += g, row->constant += constant;
+}
 
 /* The beam with known contacts.
 
    In contact δ_i = −contact_i y*_i, so F_C = −K_C (q̃_C + contact_C y*_C), K_C = (K⁻¹_CC)⁻¹, and F = 0 elsewhere. */
 typedef struct {
     Contact contact;
-    Row F[MAX_STABILIZERS], delta[MAX_STABILIZERS], M, F_0;
+    Row F[MAX_PLACES], delta[MAX_PLACES], M, F_0;
 } Mode;
 
-static inline Mode make_mode(const Beam *beam, const double *y_star, Contact contact) {
-    int n = beam->n, C[MAX_STABILIZERS], touching = 0;
-    double K_inv_CC[SIZE][SIZE], K_C[SIZE][SIZE];
-    Row q[MAX_STABILIZERS] = {{{0}, 0, 0, 0}}, to_wall[MAX_STABILIZERS], zero = {{0}, 0, 0, 0};
-    Mode mode = {0};
-    mode.contact = contact;
-    for (int i = 0; i < n - 1; i++) {
-        q[i].e[i] = 1.0;
-        q[i].e[n - 1] = beam->delta_e[i];
-        q[i].rss = beam->delta_rss[i], q[i].g = beam->delta_g[i];
+/* q̃ at support i, which has this place: its deflection without contacts. */
+static inline Row free_deflection(const Beam *beam, int i, int place) {
+    Row q = {{0}, beam->delta_rss[i], beam->delta_g[i], -beam->delta_e[i] * beam->end};
+    q.e[place] = 1.0, q.e[beam->n - 1] = beam->delta_e[i];
+    return q;
+}
+
+static inline void make_mode(Mode *mode, const Beam *beam, const double *y_star, Contact contact) {
+    int n = beam->n, places = place_count(contact, n), C[MAX_PLACES], support[MAX_PLACES], touching = 0;
+    double K_inv_CC[SIZE][SIZE], K_C[SIZE][SIZE], factors[MAX_PLACES];
+    Row to_wall[MAX_PLACES], zero = {{0}, 0, 0, 0};
+    const Row *rows[MAX_PLACES], *F[MAX_PLACES];
+    mode->contact = contact;
+    for (int i = 0; i < places; i++) {
+        support[i] = support_at(&contact, n, i);
+        mode->F[i] = zero;
+        if (i == n - 1) continue;
+        mode->delta[i] = free_deflection(beam, support[i], i);
         if (contact.of[i]) C[touching++] = i;
     }
     for (int k = 0; k < touching; k++) {
-        for (int l = 0; l < touching; l++) K_inv_CC[k][l] = beam->K_inv[C[k]][C[l]];
-        to_wall[k] = q[C[k]];
-        to_wall[k].constant = contact.of[C[k]] * y_star[C[k]];
+        for (int l = 0; l < touching; l++) K_inv_CC[k][l] = compliance(beam, support[C[k]], support[C[l]]);
+        to_wall[k] = mode->delta[C[k]];
+        to_wall[k].constant += contact.of[C[k]] * y_star[support[C[k]]];
+        rows[k] = &to_wall[k], F[k] = &mode->F[C[k]];
     }
     inverse(touching, (const double (*)[SIZE])K_inv_CC, K_C);
     for (int k = 0; k < touching; k++) {
         for (int l = 0; l < touching; l++) K_C[k][l] = -K_C[k][l];
-        mode.F[C[k]] = row_plus(zero, touching, K_C[k], to_wall);
+        add_rows(&mode->F[C[k]], places, touching, K_C[k], rows);
     }
-    for (int i = 0; i < n - 1; i++) mode.delta[i] = row_plus(q[i], n - 1, beam->K_inv[i], mode.F);
-    mode.M.e[n - 1] = beam->M_e, mode.M.rss = beam->M_rss, mode.M.g = beam->M_g;
-    mode.M = row_plus(mode.M, n - 1, beam->M_F, mode.F);
-    mode.F_0.e[n - 1] = beam->F0_e, mode.F_0.rss = beam->F0_rss, mode.F_0.g = beam->F0_g;
-    mode.F_0 = row_plus(mode.F_0, n - 1, beam->F0_F, mode.F);
-    return mode;
+    for (int i = 0; i < places; i++) {
+        if (i == n - 1) continue;
+        for (int k = 0; k < touching; k++) factors[k] = compliance(beam, support[i], support[C[k]]);
+        add_rows(&mode->delta[i], places, touching, factors, F);
+    }
+    mode->M = mode->F_0 = zero;
+    mode->M.constant = -beam->M_e * beam->end, mode->F_0.constant = -beam->F0_e * beam->end;
+    mode->M.e[n - 1] = beam->M_e, mode->M.rss = beam->M_rss, mode->M.g = beam->M_g;
+    mode->F_0.e[n - 1] = beam->F0_e, mode->F_0.rss = beam->F0_rss, mode->F_0.g = beam->F0_g;
+    for (int k = 0; k < touching; k++) factors[k] = beam->M_F[support[C[k]]];
+    add_rows(&mode->M, places, touching, factors, F);
+    for (int k = 0; k < touching; k++) factors[k] = beam->F0_F[support[C[k]]];
+    add_rows(&mode->F_0, places, touching, factors, F);
 }
 
 enum { MODES = 4 }; /* that are kept: a few take turns where a hole ripples */
@@ -89,16 +117,24 @@ enum { MODES = 4 }; /* that are kept: a few take turns where a hole ripples */
 /* The modes of one beam that were asked for last. */
 typedef struct {
     Beam beam;
-    double y_star[MAX_STABILIZERS - 1];
+    Axial axial; /* under which it is */
+    double y_star[MAX_SUPPORTS];
     Mode made[MODES];
     int count, next;
 } Modes;
+
+/* Make the beam as it is under an axial load; no mode is known then. */
+static inline void load_beam(Modes *modes, const Scaled *scaled, Axial axial) {
+    make_beam(&modes->beam, scaled, axial);
+    modes->axial = axial;
+    modes->count = modes->next = 0;
+}
 
 static inline const Mode *mode_of(Modes *modes, Contact contact) {
     for (int k = 0; k < modes->count; k++)
         if (same_contact(modes->made[k].contact, contact)) return &modes->made[k];
     Mode *mode = &modes->made[modes->next];
-    *mode = make_mode(&modes->beam, modes->y_star, contact);
+    make_mode(mode, &modes->beam, modes->y_star, contact);
     modes->next = (modes->next + 1) % MODES;
     if (modes->count < MODES) modes->count++;
     return mode;
@@ -115,12 +151,13 @@ static inline signed char change(int contact, int side) { return (signed char)(c
 /* The wall that bears a stabilizer with the force F: 1 the lower, −1 the upper, 0 none. */
 static inline int wall(double F) { return F > 0 ? 1 : F < 0 ? -1 : 0; }
 
-/* The row that lies between two bounds while stabilizer `i` stays as it is in `mode`: F_i in contact, else δ_i, (7).
+/* The row that lies between two bounds while the support at place `i` stays as it is in `mode`: F_i in contact, else δ_i, (7).
 
    A stabilizer without clearance is held on both sides, and its bounds are infinite. */
 static inline const Row *contact_bounds(const Modes *modes, const Mode *mode, int i, double *lower, double *upper) {
     int contact = mode->contact.of[i];
-    if (modes->y_star[i] == 0.0) {
+    double y_star = modes->y_star[support_at(&mode->contact, modes->beam.n, i)];
+    if (y_star == 0.0) {
         *lower = -INFINITY, *upper = INFINITY;
         return &mode->F[i];
     }
@@ -128,7 +165,7 @@ static inline const Row *contact_bounds(const Modes *modes, const Mode *mode, in
         *lower = contact > 0 ? 0.0 : -INFINITY, *upper = contact > 0 ? INFINITY : 0.0;
         return &mode->F[i];
     }
-    *lower = -modes->y_star[i], *upper = modes->y_star[i];
+    *lower = -y_star, *upper = y_star;
     return &mode->delta[i];
 }
 
@@ -149,10 +186,11 @@ static inline const Mode *settle(Modes *modes, const Loads *loads, Contact conta
     for (int pivots = 1;; pivots++) {
         int side = 0;
         const Mode *mode = mode_of(modes, contact);
-        for (int i = 0; i < n - 1 && !side; i++) {
+        for (int i = 0; i < loads->count && !side; i++) {
             double lower, upper;
+            if (i == n - 1) continue;
             const Row *row = contact_bounds(modes, mode, i, &lower, &upper);
-            side = side_beyond(row_value(row, loads, n), lower, upper, slack);
+            side = side_beyond(row_value(row, loads), lower, upper, slack);
             if (side) contact.of[i] = change(contact.of[i], side);
         }
         if (!side) return mode;
@@ -166,7 +204,7 @@ static inline double bit_tilt(double F_0, double eta_pi, double psi_star) {
 }
 
 /* The contacts, and the saturation of the bit tilt: 1 at ψ*, −1 at −ψ*, 0 between. A regime is left by a switch of one
-   part: stabilizer i is part i − 1, the tilt the last part, n − 1. */
+   part: of the support at that place, or of the tilt, which has the place of the last stabilizer, n − 1. */
 typedef struct {
     Contact contact;
     int saturation;
@@ -180,7 +218,7 @@ static inline void saturation_bounds(int saturation, double psi_star, double *lo
 
 /* The regime beyond the bound of `part` on `side`. */
 static inline Regime switch_over(Regime regime, int n, int part, int side) {
-    if (part < n - 1) regime.contact.of[part] = change(regime.contact.of[part], side);
+    if (part != n - 1) regime.contact.of[part] = change(regime.contact.of[part], side);
     else regime.saturation = regime.saturation ? 0 : side;
     return regime;
 }

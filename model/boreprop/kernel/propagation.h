@@ -7,46 +7,35 @@
 
 /* looking */
 
-/* The steering force where the bit is. */
-static inline double present_force(const State *now) {
-    return now->inputs.F_rss + now->inputs.F_rss_slope * (now->xi - now->inputs_xi);
-}
-
-/* What bends the beam with the bit at `xi` in the state `x`. */
-static inline Loads loads_at(const Integrator *p, double xi, const double x[COMPONENTS], double F_rss) {
-    double delayed[MAX_STABILIZERS][DIRECTIONS] = {{0}};
-    Loads loads = {.F_rss = F_rss};
-    hole_at_stabilizers(&p->now.hole, &p->scaled, xi, delayed);
-    for (int i = 0; i < p->scaled.n; i++) loads.e[i] = x[LATERAL] - delayed[i][0] - p->scaled.s[i] * x[ANGLE];
-    loads.sin_Theta_1 = sin(x[LATERAL] - delayed[0][0]);
-    return loads;
-}
-
 /* What bends the beam where the bit is. */
 static inline Loads present_loads(const Integrator *p) {
     double x[COMPONENTS];
     step_state(&p->now.step, p->now.xi, x);
-    return loads_at(p, p->now.xi, x, present_force(&p->now));
+    return loads_at(p, p->now.xi, x, inputs_here(&p->now).F_rss);
 }
 
 /* Θ under given loads, eq. (16): algebraic, so it jumps with the inputs. */
 static inline double inclination_under(Integrator *p, double theta, const Loads *loads, double eta_pi) {
     const Mode *mode = settle(&p->modes, loads, p->now.regime.contact);
-    return theta - bit_tilt(row_value(&mode->F_0, loads, p->scaled.n), eta_pi, p->scaled.psi_star);
+    return theta - bit_tilt(row_value(&mode->F_0, loads), eta_pi, p->scaled.psi_star);
 }
 
 /* Θ as it was when the bit was at `xi`, at most LOOK_BACK behind; where Θ jumped, its value after the jump. */
 static inline double earlier_inclination(Integrator *p, double xi) {
     const Hole *hole = &p->now.hole;
     const Piece *at = piece(hole, find(hole, xi + MERGE));
-    if (at->inputs.eta_pi == 0) { /* of the survey, where Θ is the slope of the hole */
+    if (at->inputs.eta_pi == 0 || p->scaled.points) { /* Θ is the slope of the hole */
         const Piece *own = piece(hole, find(hole, xi));
         return polynomial_slope(own->x[LATERAL], (xi - own->start) * own->rate) * own->rate;
     }
     double ahead = larger(xi - at->start, 0.0), x[COMPONENTS];
     for (int c = 0; c < COMPONENTS; c++) x[c] = polynomial(at->x[c], ahead * at->rate);
-    Loads loads = loads_at(p, at->start + ahead, x, at->inputs.F_rss + at->inputs.F_rss_slope * ahead);
-    return inclination_under(p, x[ANGLE], &loads, at->inputs.eta_pi);
+    ScaledInputs inputs = inputs_ahead(at->inputs, ahead);
+    Loads loads = loads_at(p, at->start + ahead, x, inputs.F_rss);
+    bear(p, inputs.W);
+    double Theta = inclination_under(p, x[ANGLE], &loads, inputs.eta_pi);
+    bear(p, p->now.inputs.W);
+    return Theta;
 }
 
 /* Where the bit is in the vertical plane, sideways and down, from the start of the run. */
@@ -60,42 +49,54 @@ static inline void position(const State *now, double *x, double *z) {
 /* Take over inputs where the bit is, in the state `x`: find the regime under them, and mark the jump of the inclination,
    which was Θ so far. */
 static inline Status restart(
-    Integrator *p, ScaledInputs inputs, const double x[COMPONENTS], const Loads *loads, double Theta, Problem *problem
+    Integrator *p, ScaledInputs inputs, const double x[COMPONENTS], double Theta, Problem *problem
 ) {
     State *now = &p->now;
     now->inputs = inputs, now->inputs_xi = now->xi;
     now->step = standstill(now->xi, x);
-    const Mode *mode = settle(&p->modes, loads, now->regime.contact);
-    double F_0 = row_value(&mode->F_0, loads, p->scaled.n), psi_star = p->scaled.psi_star;
+    bear(p, inputs.W);
+    if (p->scaled.points && touch_down(p, now->xi, x, problem) != DONE) return FAILED;
+    Loads loads = loads_at(p, now->xi, x, inputs.F_rss);
+    const Mode *mode = settle(&p->modes, &loads, now->regime.contact);
+    double F_0 = row_value(&mode->F_0, &loads), psi_star = p->scaled.psi_star;
     double jump = fabs(x[ANGLE] - bit_tilt(F_0, inputs.eta_pi, psi_star) - Theta);
     if (!isfinite(jump) || !isfinite(F_0)) return failed(p, NOT_FINITE, now->xi, problem);
     Regime regime = {mode->contact, side_beyond(F_0 / inputs.eta_pi, -psi_star, psi_star, ROUNDING)};
     change_regime(p, regime);
     add_kink(&now->kinks, p->scaled.n, now->xi, 1, jump);
+    if (p->scaled.points) {
+        memset(p->around.change, 0, sizeof p->around.change);
+        find_gaps(p, &now->step, now->xi, p->scaled.points, p->around.gap);
+    }
     return DONE;
 }
 
 /* Take over inputs on the way: the path up to the bit, and the jump of curvature where a slope changes, count too. */
 static inline Status steer(Integrator *p, ScaledInputs inputs, Problem *problem) {
     State *now = &p->now;
-    double bend = inputs.F_rss_slope - now->inputs.F_rss_slope, x[COMPONENTS];
+    ScaledInputs before = inputs_here(now);
+    double bend = inputs.F_rss_slope - before.F_rss_slope, turn = inputs.eta_pi_slope - before.eta_pi_slope;
+    double x[COMPONENTS];
     Loads loads = present_loads(p);
     step_state(&now->step, now->xi, x);
-    double Theta = inclination_under(p, x[ANGLE], &loads, now->inputs.eta_pi);
+    double Theta = inclination_under(p, x[ANGLE], &loads, before.eta_pi);
     move_path(now, now->xi);
-    loads.F_rss = inputs.F_rss;
-    Status status = restart(p, inputs, x, &loads, Theta, problem);
-    if (status != DONE || bend == 0 || now->regime.saturation) return status;
-    const Mode *mode = mode_of(&p->modes, now->regime.contact);
-    add_kink(&now->kinks, p->scaled.n, now->xi, 2, fabs(bend * mode->F_0.rss / inputs.eta_pi));
+    Status status = restart(p, inputs, x, Theta, problem);
+    if (status != DONE || (bend == 0 && turn == 0) || now->regime.saturation) return status;
+    loads = loads_at(p, now->xi, x, inputs.F_rss);
+    const Mode *mode = mode_of(&p->modes, now->regime.contact); /* (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ */
+    double psi = row_value(&mode->F_0, &loads) / inputs.eta_pi;
+    add_kink(&now->kinks, p->scaled.n, now->xi, 2, fabs((bend * mode->F_0.rss - turn * psi) / inputs.eta_pi));
     return DONE;
 }
 
 /* Drill on to `xi` under inputs that act from where the bit is. After FULL the same call goes on in larger rings. */
 static inline Status drill(Integrator *p, double xi, ScaledInputs inputs, Problem *problem) {
     State *now = &p->now;
-    int changed = inputs.F_rss != present_force(now) || inputs.F_rss_slope != now->inputs.F_rss_slope ||
-                  inputs.eta_pi != now->inputs.eta_pi;
+    int changed = inputs.F_rss != now->inputs.F_rss || inputs.eta_pi != now->inputs.eta_pi;
+    if (are_ramps(&inputs) || are_ramps(&now->inputs))
+        changed = !same_ramps(inputs_here(now), inputs, xi > now->xi ? xi - now->xi : 1.0);
+    changed |= inputs.W != now->inputs.W;
     if (changed || xi > now->step.end) {
         if (!set_out(p)) return FULL;
         Status status = changed ? steer(p, inputs, problem) : DONE;
@@ -121,9 +122,11 @@ static inline Status drill_step(Integrator *p, Problem *problem) {
 
 /* Set what does not evolve, to be followed by `begin` or by a state that is restored. */
 static inline void prepare(Integrator *p, const Scaled *scaled, double length_scale, Options options) {
-    memset(p, 0, sizeof *p);
+    Axial unloaded = {0.0, 0.0};
+    memset(&p->now, 0, sizeof p->now);
+    p->law_known = p->under_way = 0;
     p->scaled = *scaled;
-    p->modes.beam = make_beam(scaled);
+    load_beam(&p->modes, scaled, unloaded);
     memcpy(p->modes.y_star, scaled->y_star, sizeof p->modes.y_star);
     p->length_scale = length_scale, p->options = options;
 }
@@ -136,8 +139,8 @@ static inline Status begin(Integrator *p, const Survey *survey, ScaledInputs inp
     take_kinks(&now->hole, &now->kinks, survey, p->length_scale, reach);
     for (Count k = 0; k < now->hole.end; k++)
         if (!check_finite(Q_STATION_RATE, 0, piece(&now->hole, k)->rate, problem)) return FAILED;
-    Loads loads = loads_at(p, now->xi, x, inputs.F_rss);
-    if (restart(p, inputs, x, &loads, x[ANGLE], problem) == DONE) return DONE;
+    find_places(now, &p->scaled, now->xi);
+    if (restart(p, inputs, x, x[ANGLE], problem) == DONE) return DONE;
     wrong(problem, NO_START, Q_PARAMETERS, 0, NAN, NAN);
     return FAILED;
 }

@@ -8,22 +8,36 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "e631805296e4024d" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "148e4c1ea9bf7620" /* of this file, but for this line, and of problems.h */
 #define MOST_DRILLED 100000.0 /* m in a communication step */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: forces between closer ones are rounding errors */
 #define POINTS_ALONG_BHA 36 /* at which its distance from the hole is looked at */
 #define OFTEN 0.125 /* of its length, at most, from look to look */
 
-enum { MAX_STABILIZERS = 6, PARAMETER_COUNT = 9, INPUT_COUNT = 3, OUTPUT_COUNT = 15 };
+enum { MAX_STABILIZERS = 6, MAX_SECTIONS = 24, MAX_POINTS = 128 };
+enum { PARAMETER_COUNT = 15, INPUT_COUNT = 4, OUTPUT_COUNT = 18 };
+
+/* How a drilling system is made up, which says how many values each quantity has. */
+typedef struct {
+    int n, sections; /* numbers of stabilizers and of sections */
+    int axial;       /* whether the load along the beam counts */
+    int points;      /* number of points at which the body between the stabilizers may touch the wall */
+} Structure;
 
 /* The parameters, in SI units. */
 typedef struct {
-    int n; /* stabilizers */
+    Structure structure;
     double stabilizer_position[MAX_STABILIZERS]; /* m: distance of the stabilizer from the bit; the last one is ideal */
     double stabilizer_clearance[MAX_STABILIZERS - 1]; /* m: clearance between stabilizer and wall on each side */
     double rss_position; /* m: distance of the steering pads from the bit */
     double distributed_weight; /* N/m: buoyant weight of the BHA per length */
     double flexural_stiffness; /* N.m2: bending stiffness of the BHA */
+    double section_length[MAX_SECTIONS]; /* m: length of a section of the BHA, from the bit up */
+    double section_distributed_weight[MAX_SECTIONS]; /* N/m: buoyant weight of the section per length */
+    double section_flexural_stiffness[MAX_SECTIONS]; /* N.m2: bending stiffness of the section */
+    double body_point_position[MAX_POINTS]; /* m: where the body between the stabilizers may touch the wall, from the bit */
+    double body_point_clearance[MAX_POINTS]; /* m: clearance between the body there and the wall on each side */
+    double end_deflection; /* m: offset of the BHA from the borehole axis at the last stabilizer, positive to the high side */
     double lateral_steering_resistance; /* lateral over axial drilling resistance */
     double angular_steering_resistance; /* angular over axial drilling resistance */
     double bit_tilt_limit; /* rad: tilt at which the bit gauge meets the wall */
@@ -35,10 +49,12 @@ typedef struct {
     double rss_force; /* N: force of the steering pads on the BHA, positive builds */
     double rss_force_slope; /* N/m: its change per metre drilled */
     double active_weight_on_bit; /* N: weight on bit that goes into drilling */
+    double active_weight_on_bit_slope; /* N/m: its change per metre drilled */
+    double weight_on_bit; /* N: all of the weight on bit, which presses the BHA along its axis; 0: the active weight */
 } Inputs;
 
 /* How many values a quantity has. */
-typedef enum { ONE, EACH_STABILIZER, EACH_NON_IDEAL } Size;
+typedef enum { ONE, EACH_STABILIZER, EACH_NON_IDEAL, IF_UNIFORM, EACH_SECTION, IF_STEPPED, IF_AXIAL, EACH_POINT, IF_POINTS } Size;
 
 /* A parameter or input, and its range: above < value, at_least <= value <= at_most. */
 typedef struct {
@@ -52,19 +68,26 @@ static const Quantity PARAMETER_TABLE[PARAMETER_COUNT] = {
     {Q_STABILIZER_POSITION, EACH_STABILIZER, offsetof(System, stabilizer_position), 0.0, -INFINITY, INFINITY},
     {Q_STABILIZER_CLEARANCE, EACH_NON_IDEAL, offsetof(System, stabilizer_clearance), -INFINITY, 0.0, INFINITY},
     {Q_RSS_POSITION, ONE, offsetof(System, rss_position), -INFINITY, 0.0, INFINITY},
-    {Q_DISTRIBUTED_WEIGHT, ONE, offsetof(System, distributed_weight), -INFINITY, 0.0, INFINITY},
-    {Q_FLEXURAL_STIFFNESS, ONE, offsetof(System, flexural_stiffness), 0.0, -INFINITY, INFINITY},
+    {Q_DISTRIBUTED_WEIGHT, IF_UNIFORM, offsetof(System, distributed_weight), -INFINITY, 0.0, INFINITY},
+    {Q_FLEXURAL_STIFFNESS, IF_UNIFORM, offsetof(System, flexural_stiffness), 0.0, -INFINITY, INFINITY},
+    {Q_SECTION_LENGTH, EACH_SECTION, offsetof(System, section_length), 0.0, -INFINITY, INFINITY},
+    {Q_SECTION_DISTRIBUTED_WEIGHT, EACH_SECTION, offsetof(System, section_distributed_weight), -INFINITY, 0.0, INFINITY},
+    {Q_SECTION_FLEXURAL_STIFFNESS, EACH_SECTION, offsetof(System, section_flexural_stiffness), 0.0, -INFINITY, INFINITY},
+    {Q_BODY_POINT_POSITION, EACH_POINT, offsetof(System, body_point_position), 0.0, -INFINITY, INFINITY},
+    {Q_BODY_POINT_CLEARANCE, EACH_POINT, offsetof(System, body_point_clearance), 0.0, -INFINITY, INFINITY},
+    {Q_END_DEFLECTION, IF_STEPPED, offsetof(System, end_deflection), -INFINITY, -INFINITY, INFINITY},
     {Q_LATERAL_STEERING_RESISTANCE, ONE, offsetof(System, lateral_steering_resistance), 0.0, -INFINITY, INFINITY},
     {Q_ANGULAR_STEERING_RESISTANCE, ONE, offsetof(System, angular_steering_resistance), 0.0, -INFINITY, INFINITY},
     {Q_BIT_TILT_LIMIT, ONE, offsetof(System, bit_tilt_limit), 0.0, -INFINITY, 1.5707963267948966},
     {Q_RELATIVE_TOLERANCE, ONE, offsetof(System, relative_tolerance), -INFINITY, 1e-12, 0.01},
 };
 
-typedef enum { IN_RSS_FORCE, IN_ACTIVE_WEIGHT_ON_BIT, IN_RATE_OF_PENETRATION } Input;
+typedef enum { IN_RSS_FORCE, IN_ACTIVE_WEIGHT_ON_BIT, IN_RATE_OF_PENETRATION, IN_WEIGHT_ON_BIT } Input;
 static const Quantity INPUT_TABLE[INPUT_COUNT] = {
     {Q_RSS_FORCE, ONE, 0, -INFINITY, -INFINITY, INFINITY},
     {Q_ACTIVE_WEIGHT_ON_BIT, ONE, 0, 0.0, -INFINITY, INFINITY},
     {Q_RATE_OF_PENETRATION, ONE, 0, -INFINITY, 0.0, INFINITY},
+    {Q_WEIGHT_ON_BIT, IF_AXIAL, 0, -INFINITY, 0.0, INFINITY},
 };
 
 /* The outputs, in their order. */
@@ -81,6 +104,9 @@ typedef enum {
     OUT_BIT_LATERAL_FORCE, /* N: lateral force on the bit */
     OUT_BIT_MOMENT, /* N.m: moment on the bit */
     OUT_BOREHOLE_CURVATURE, /* rad/m: change of borehole inclination over the last ℓ₁, per length */
+    OUT_BODY_CONTACT_FORCE, /* N: largest force of the wall on the body between the stabilizers, positive from the lower wall */
+    OUT_BODY_CONTACT_POSITION, /* m: where that force acts, from the bit; 0 if the body touches no wall */
+    OUT_WALL_DISTANCE, /* m: least distance of the body from the wall */
     OUT_DISPLACEMENT, /* m: horizontal position of the bit from the start of the run */
     OUT_TRUE_VERTICAL_DEPTH, /* m: depth of the bit below the start of the run */
     OUT_ETA_PI, /* lateral penetration stiffness of the rock over the BHA's bending stiffness */
@@ -98,6 +124,9 @@ static const Size OUTPUT_SIZE[OUTPUT_COUNT] = {
     ONE, /* bit_lateral_force */
     ONE, /* bit_moment */
     ONE, /* borehole_curvature */
+    IF_POINTS, /* body_contact_force */
+    IF_POINTS, /* body_contact_position */
+    IF_POINTS, /* wall_distance */
     ONE, /* displacement */
     ONE, /* true_vertical_depth */
     ONE, /* eta_pi */
@@ -115,12 +144,15 @@ static const Name OUTPUT_NAME[OUTPUT_COUNT] = {
     Q_BIT_LATERAL_FORCE,
     Q_BIT_MOMENT,
     Q_BOREHOLE_CURVATURE,
+    Q_BODY_CONTACT_FORCE,
+    Q_BODY_CONTACT_POSITION,
+    Q_WALL_DISTANCE,
     Q_DISPLACEMENT,
     Q_TRUE_VERTICAL_DEPTH,
     Q_ETA_PI,
 };
-static const int OUTPUT_IS_WHOLE[OUTPUT_COUNT] = { 0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0 };
-enum { MOST_PARAMETERS = 18, MOST_OUTPUTS = 32 }; /* values, of the largest assembly */
+static const int OUTPUT_IS_WHOLE[OUTPUT_COUNT] = { 0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0 };
+enum { MOST_PARAMETERS = 347, MOST_OUTPUTS = 35 }; /* values, of the largest assembly */
 
 /* How the integrator takes its steps: core/options.py says what each is. */
 typedef struct {

@@ -8,7 +8,6 @@
 typedef struct {
     Drilling drilling;
     void *memory;
-    Body body; /* made when the sag is first asked for */
 } Run;
 
 static inline void run_end(Run *run) {
@@ -61,12 +60,6 @@ static inline Status run_step(Run *run, Problem *problem) {
     while ((status = drilling_step(&run->drilling, problem)) == FULL)
         if (grow_on_the_way(run, problem) != DONE) return FAILED;
     return status;
-}
-
-/* Where the axis of the BHA is farthest from that of the hole. */
-static inline Sag run_sag(Run *run) {
-    if (!run->body.count) make_body(&run->body, &run->drilling.integrator.scaled);
-    return present_sag(&run->drilling, &run->body);
 }
 
 static inline Status run_restore(Run *run, const double *state, Count count, Problem *problem) {

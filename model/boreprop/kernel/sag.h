@@ -11,59 +11,47 @@ typedef struct {
     double offset, position;
 } Sag;
 
-/* The deflections of the BHA at places along it from the axis of the bit, under unit loads: e_n, F_1 … F_{n−1}, F_RSS,
-   sin⟨Θ⟩_1. Lengths are in ℓ₁. The places are evenly spaced, from the last stabilizer to the bit. */
-enum { LOADS = MAX_STABILIZERS + 2 };
-typedef struct {
-    int count; /* of loads; 0: not made yet */
-    double s[POINTS_ALONG_BHA], shape[POINTS_ALONG_BHA][LOADS];
-} Body;
-
-static inline void make_body(Body *body, const Scaled *scaled) {
-    int n = scaled->n;
-    double lambda_ = scaled->s[n - 1];
-    body->count = n + 2;
+/* How far the beam is from the bit's axis at increasing places s, in ℓ₁. */
+static inline void present_shape(const Drilling *d, const Present *at, const double s[POINTS_ALONG_BHA], double *v) {
+    const Integrator *p = &d->integrator;
+    const Beam *beam = &p->modes.beam;
+    int n = p->scaled.n;
+    double e_n = at->loads.e[n - 1], lambda_ = p->scaled.s[n - 1];
+    if (beam->stepped) {
+        Bending bending = {.F_rss = at->loads.F_rss, .g = at->loads.g, .F_0 = at->F_0};
+        bending.M = row_value(&at->mode->M, &at->loads);
+        for (int i = 0; i < at->loads.count; i++) bending.F[support_at(&at->mode->contact, n, i)] = at->F[i];
+        beam_shape(beam, &bending, n + p->scaled.points, 1.0, POINTS_ALONG_BHA, s, v);
+        return;
+    }
     for (int k = 0; k < POINTS_ALONG_BHA; k++) {
-        double s = body->s[k] = lambda_ * (POINTS_ALONG_BHA - 1 - k) / (POINTS_ALONG_BHA - 1), *shape = body->shape[k];
-        shape[0] = end_offset_deflection(s, lambda_);
-        for (int j = 1; j < n; j++) shape[j] = flexibility(s, scaled->s[j - 1], lambda_);
-        shape[n] = flexibility(s, scaled->Delta, lambda_);
-        shape[n + 1] = weight_deflection(s, scaled->w, lambda_);
+        v[k] = end_offset_deflection(s[k], lambda_) * e_n +
+               flexibility(s[k], p->scaled.Delta, lambda_) * at->loads.F_rss +
+               weight_deflection(s[k], p->scaled.w, lambda_) * at->loads.g;
+        for (int i = 0; i < n - 1; i++) v[k] += flexibility(s[k], p->scaled.s[i], lambda_) * at->F[i];
     }
 }
 
-/* What bends the BHA where the bit is, in the order of a body. */
-static inline void bending_loads(const Drilling *d, const Present *at, double loads[LOADS]) {
-    int n = d->integrator.scaled.n;
-    loads[0] = at->loads.e[n - 1], loads[n] = at->loads.F_rss, loads[n + 1] = at->loads.sin_Theta_1;
-    for (int j = 1; j < n; j++) loads[j] = at->F[j - 1];
-}
-
-/* Distance of the axis of the BHA from that of the hole at a place: eq. (5) anywhere, e(s) and the deflection from the
-   axis of the bit. The search for the piece of hole there begins at `from`, and leaves it there. */
-static inline double offset_at(
-    const Drilling *d, const Present *at, const Body *body, const double loads[LOADS], int place, Count *from
-) {
-    const Hole *hole = &d->integrator.now.hole;
-    double s = body->s[place], xi = d->integrator.now.xi - s;
-    *from = find_from(hole, *from, xi);
-    const Piece *own = piece(hole, *from);
-    double e = at->Y - polynomial(own->x[LATERAL], (xi - own->start) * own->rate) - s * at->theta;
-    return e + dot(body->count, body->shape[place], loads);
-}
-
-/* The sag with the bit where it is. */
-static inline Sag present_sag(Drilling *d, const Body *body) {
+/* The sag with the bit where it is. The distance is eq. (5) at any place along the BHA: e(s) plus the deflection from the
+   axis of the bit. */
+static inline Sag present_sag(Drilling *d) {
+    const State *now = &d->integrator.now;
     Present at = present(d);
-    Count from = 0;
-    double loads[LOADS], largest = 0.0;
+    double s[POINTS_ALONG_BHA], v[POINTS_ALONG_BHA], largest = 0.0,
+                                                     reach = d->integrator.scaled.s[d->integrator.scaled.n - 1];
     int found = 0;
-    bending_loads(d, &at, loads);
+    Count k = now->hole.end - 1;
+    for (int place = 0; place < POINTS_ALONG_BHA; place++) s[place] = reach * place / (POINTS_ALONG_BHA - 1);
+    present_shape(d, &at, s, v);
     for (int place = 0; place < POINTS_ALONG_BHA; place++) {
-        double offset = offset_at(d, &at, body, loads, place, &from);
+        double xi = now->xi - s[place];
+        while (k > now->hole.first && piece(&now->hole, k)->start > xi) k--;
+        const Piece *own = piece(&now->hole, k);
+        double Y = polynomial(own->x[LATERAL], (xi - own->start) * own->rate);
+        double offset = at.Y - Y - s[place] * at.theta + v[place];
         if (fabs(offset) > fabs(largest)) largest = offset, found = place;
     }
-    Sag sag = {largest * at.l1, body->s[found] * at.l1};
+    Sag sag = {largest * at.l1, s[found] * at.l1};
     return sag;
 }
 

@@ -5,6 +5,7 @@
 #define BOREPROP_STATE_H
 
 #include "drilling.h"
+#include <limits.h>
 
 #define ROUNDING_OF_XI 1e-15 /* relative, where ξ is a length over ℓ₁ or the length ξ times ℓ₁ */
 
@@ -12,8 +13,8 @@
 typedef struct {
     double *to;
     const double *from;
-    Count passed;
-    int sound; /* whether all whole numbers so far are whole and within their limits */
+    Count passed, most; /* how many numbers there are to read */
+    int sound;          /* whether all whole numbers so far are whole and within their limits */
 } Tape;
 
 enum { NUMBERS_OF_PIECE = sizeof(Piece) / sizeof(double), NUMBERS_OF_KINK = sizeof(Kink) / sizeof(double) };
@@ -22,11 +23,16 @@ enum { NUMBERS_OF_PIECE = sizeof(Piece) / sizeof(double), NUMBERS_OF_KINK = size
 typedef struct {
     double drilled_length;
     State now;
-    Count pieces, kinks, passed[MAX_STABILIZERS]; /* passed: how many of the kinks each stabilizer has passed */
+    Count pieces, kinks, passed[MAX_PLACES]; /* passed: how many of the kinks the support at each place has passed */
+    Surroundings around;
 } Snapshot;
 
 static inline void pass(Tape *tape, int count, double *values) {
     size_t size = (size_t)count * sizeof *values;
+    if (tape->from && count > tape->most - tape->passed) {
+        tape->sound = 0;
+        return;
+    }
     if (tape->to) memcpy(tape->to + tape->passed, values, size);
     if (tape->from) memcpy(values, tape->from + tape->passed, size);
     tape->passed += count;
@@ -46,26 +52,42 @@ static inline void pass_piece(Tape *tape, Piece *piece) { pass(tape, NUMBERS_OF_
 
 static inline void pass_kink(Tape *tape, Kink *kink) { pass(tape, NUMBERS_OF_KINK, (double *)kink); }
 
-/* All numbers but pieces and kinks, of a system of n stabilizers. Only the first one may be infinite. */
-static inline void pass_snapshot(Tape *tape, int n, Snapshot *snapshot) {
+/* The contacts, and which points of the body are watched, in their order. */
+static inline void pass_contact(Tape *tape, const Scaled *scaled, Contact *contact) {
+    int n = scaled->n, least = 0;
+    contact->watched = (unsigned char)pass_whole(
+        tape, contact->watched, 0, scaled->points < MAX_WATCHED ? scaled->points : MAX_WATCHED
+    );
+    for (int k = 0; k < contact->watched; k++) {
+        contact->point[k] = (unsigned char)pass_whole(tape, contact->point[k], least, scaled->points - 1);
+        least = contact->point[k] + 1;
+    }
+    for (int i = 0; i < place_count(*contact, n); i++)
+        contact->of[i] = (signed char)pass_whole(tape, contact->of[i], -1, 1);
+}
+
+/* All numbers but pieces and kinks. Only the first one may be infinite. */
+static inline void pass_snapshot(Tape *tape, const Scaled *scaled, Snapshot *snapshot) {
+    int n = scaled->n;
     State *now = &snapshot->now;
     Step *step = &now->step;
     pass(tape, 1, &step->next_h);
     snapshot->pieces = pass_whole(tape, snapshot->pieces, 1, MOST_PIECES);
     snapshot->kinks = pass_whole(tape, snapshot->kinks, 0, MOST_PIECES);
-    for (int i = 0; i < MAX_STABILIZERS; i++) {
-        signed char *contact = &now->regime.contact.of[i];
+    pass_contact(tape, scaled, &now->regime.contact);
+    for (int i = 0; i < place_count(now->regime.contact, n); i++)
         snapshot->passed[i] = pass_whole(tape, snapshot->passed[i], 0, snapshot->kinks);
-        *contact = (signed char)pass_whole(tape, *contact, -1, 1);
-    }
     now->regime.saturation = (int)pass_whole(tape, now->regime.saturation, -1, 1);
-    step->event = (int)pass_whole(tape, step->event, NONE, n - 1);
+    step->event = (int)pass_whole(tape, step->event, NONE, place_count(now->regime.contact, n) - 1);
     step->side = (int)pass_whole(tape, step->side, -1, 1);
     pass(tape, 1, &snapshot->drilled_length);
     pass(tape, 1, &now->xi);
     pass(tape, 1, &now->inputs.F_rss);
     pass(tape, 1, &now->inputs.F_rss_slope);
     pass(tape, 1, &now->inputs.eta_pi);
+    pass(tape, 1, &now->inputs.eta_pi_slope);
+    pass(tape, 1, &now->inputs.W);
+    pass(tape, 1, &now->cosine);
     pass(tape, 1, &now->inputs_xi);
     pass(tape, 2, now->path);
     pass(tape, DIRECTIONS, now->origin);
@@ -76,39 +98,42 @@ static inline void pass_snapshot(Tape *tape, int n, Snapshot *snapshot) {
     pass(tape, 1, &now->accepted);
     pass(tape, 1, &now->rejected);
     pass(tape, 1, &now->events);
+    pass(tape, scaled->points, snapshot->around.gap);
+    pass(tape, scaled->points, snapshot->around.change);
 }
 
 static inline Snapshot snapshot_of(const Drilling *d) {
     const State *now = &d->integrator.now;
-    int n = d->system.n;
+    int n = d->system.structure.n;
     Count oldest = first_kink(&now->kinks, n);
-    Snapshot snapshot = {d->drilled_length, *now, now->hole.end - now->hole.first, now->kinks.end - oldest, {0}};
-    for (int i = 0; i < n; i++) snapshot.passed[i] = now->kinks.ahead[i] - oldest;
+    Snapshot snapshot = {d->drilled_length,       *now, now->hole.end - now->hole.first,
+                         now->kinks.end - oldest, {0},  d->integrator.around};
+    for (int i = 0; i < now->places.count; i++) snapshot.passed[i] = now->kinks.ahead[i] - oldest;
     return snapshot;
 }
 
-/* How many numbers a state with so many pieces and kinks has. */
-static inline Count state_size(Count pieces, Count kinks) {
-    Tape count = {NULL, NULL, 0, 1};
-    Snapshot any = {0};
-    pass_snapshot(&count, 1, &any);
-    return count.passed + NUMBERS_OF_PIECE * pieces + NUMBERS_OF_KINK * kinks;
+/* How many numbers a state has that consists of a snapshot, pieces and kinks. */
+static inline Count state_size(const Scaled *scaled, const Snapshot *snapshot) {
+    Tape count = {NULL, NULL, 0, 0, 1};
+    Snapshot any = *snapshot;
+    pass_snapshot(&count, scaled, &any);
+    return count.passed + NUMBERS_OF_PIECE * any.pieces + NUMBERS_OF_KINK * any.kinks;
 }
 
 /* How many numbers `drilling_save` writes. */
 static inline Count drilling_state_size(const Drilling *d) {
     Snapshot snapshot = snapshot_of(d);
-    return state_size(snapshot.pieces, snapshot.kinks);
+    return state_size(&d->integrator.scaled, &snapshot);
 }
 
 /* Write everything that evolves. */
 static inline void drilling_save(const Drilling *d, double *state) {
     const State *now = &d->integrator.now;
     Snapshot snapshot = snapshot_of(d);
-    Tape tape = {state, NULL, 0, 1};
-    pass_snapshot(&tape, d->system.n, &snapshot);
+    Tape tape = {state, NULL, 0, 0, 1};
+    pass_snapshot(&tape, &d->integrator.scaled, &snapshot);
     for (Count k = now->hole.first; k < now->hole.end; k++) pass_piece(&tape, piece(&now->hole, k));
-    for (Count k = first_kink(&now->kinks, d->system.n); k < now->kinks.end; k++)
+    for (Count k = first_kink(&now->kinks, d->system.structure.n); k < now->kinks.end; k++)
         pass_kink(&tape, kink(&now->kinks, k));
 }
 
@@ -116,11 +141,14 @@ static inline void drilling_save(const Drilling *d, double *state) {
 static inline int is_consistent(const Drilling *d, const Snapshot *snapshot) {
     const State *now = &snapshot->now;
     const Step *step = &now->step;
-    double xi = now->xi, eta_pi = now->inputs.eta_pi;
+    double xi = now->xi, eta_pi = inputs_here(now).eta_pi;
     if (!(fabs(snapshot->drilled_length / length_scale(&d->system) - xi) <= ROUNDING_OF_XI * xi)) return 0;
     if (!(eta_pi > 0) || !isfinite(1 / eta_pi) || now->inputs_xi > xi) return 0;
+    if (d->system.structure.axial ? !(now->inputs.W > 0) || !(fabs(now->cosine) <= 1)
+                                  : now->inputs.W != 0 || now->cosine != 0)
+        return 0;
     if (step->xi > xi || xi > step->end || !(step->h > 0) || !(step->next_h > 0)) return 0;
-    return snapshot->passed[d->system.n - 1] == 0; /* the last stabilizer is the last to pass a kink */
+    return snapshot->passed[d->system.structure.n - 1] == 0; /* the last stabilizer is the last to pass a kink */
 }
 
 /* Whether the state at the end of a piece, at `end`, is where the next piece begins with `x`. */
@@ -156,9 +184,12 @@ static inline int is_hole(Snapshot *snapshot, Tape tape) {
 
 /* Read a state up to its pieces and kinks, before which the tape then stands; 0 if the numbers cannot be a state. */
 static inline int read_state(const Drilling *d, Count count, Tape *tape, Snapshot *snapshot) {
-    if (count < state_size(1, 0)) return 0;
-    pass_snapshot(tape, d->system.n, snapshot);
-    if (!tape->sound || state_size(snapshot->pieces, snapshot->kinks) != count) return 0;
+    const Scaled *scaled = &d->integrator.scaled;
+    Snapshot least = {0};
+    least.pieces = 1;
+    if (count < state_size(scaled, &least)) return 0;
+    pass_snapshot(tape, scaled, snapshot);
+    if (!tape->sound || state_size(scaled, snapshot) != count) return 0;
     for (Count k = 1; k < count; k++)
         if (!isfinite(tape->from[k])) return 0;
     return is_consistent(d, snapshot) && is_hole(snapshot, *tape);
@@ -180,21 +211,26 @@ static inline void become(Drilling *d, const Snapshot *snapshot, Tape tape) {
     for (Count k = 0; k < snapshot->pieces; k++) pass_piece(&tape, piece(&hole, k));
     for (Count k = 0; k < snapshot->kinks; k++) pass_kink(&tape, kink(&kinks, k));
     d->drilled_length = snapshot->drilled_length;
-    p->now = snapshot->now, p->now.hole = hole, p->now.kinks = kinks;
+    double cosine = p->now.cosine;
+    p->now = snapshot->now, p->now.hole = hole, p->now.kinks = kinks, p->around = snapshot->around;
+    find_places(&p->now, &p->scaled, p->now.step.xi);
+    memcpy(p->now.kinks.ahead, snapshot->passed, sizeof p->now.kinks.ahead);
     p->law_known = p->under_way = 0;
+    if (p->now.cosine != cosine) take_cosine(d, p->now.cosine);
+    bear(p, p->now.inputs.W);
 }
 
 /* Go back to a state that this run has saved itself. */
 static inline void drilling_return(Drilling *d, const double *state) {
-    Tape tape = {NULL, state, 0, 1};
+    Tape tape = {NULL, state, 0, LLONG_MAX, 1};
     Snapshot snapshot = {0};
-    pass_snapshot(&tape, d->system.n, &snapshot);
+    pass_snapshot(&tape, &d->integrator.scaled, &snapshot);
     become(d, &snapshot, tape);
 }
 
 /* Go to a state of a run with the same system, if the numbers can be one; FULL if that needs the capacity `wanted`. */
 static inline Status drilling_restore(Drilling *d, const double *state, Count count, Count *wanted, Problem *problem) {
-    Tape tape = {NULL, state, 0, 1};
+    Tape tape = {NULL, state, 0, count, 1};
     Snapshot snapshot = {0};
     if (!read_state(d, count, &tape, &snapshot)) {
         wrong(problem, NO_STATE, Q_STATE, 0, (double)count, NAN);

@@ -24,10 +24,11 @@ typedef struct {
 /* A step as the collocation gives it, before events cut it, with values at its points. */
 typedef struct {
     Step step;
-    double delayed[MAX_STABILIZERS][DIRECTIONS][POINTS]; /* the hole's lateral coordinate at ξ − s_i */
+    double delayed[MAX_PLACES][DIRECTIONS][POINTS]; /* the hole's lateral coordinate at ξ − s_i */
     double x[COMPONENTS][POINTS];
-    double sines[POINTS], ahead[POINTS]; /* sin⟨Θ⟩_1; distance from where the inputs were taken over */
-    double error;                        /* estimated, over the tolerance */
+    double sines[POINTS],
+        ahead[POINTS]; /* the sine that goes with the weight; distance from where the inputs were taken over */
+    double error;      /* estimated, over the tolerance */
 } Trial;
 
 static inline double polynomial(const double c[S + 1], double t) {

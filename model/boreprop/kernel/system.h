@@ -3,21 +3,70 @@
 #define BOREPROP_SYSTEM_H
 
 #include "checks.h"
+#include "linear.h"
 #include "quantities.h"
+
+/* What the wall may push: the stabilizers, of which it never pushes the last, and points of the body between them. */
+enum { MAX_SUPPORTS = MAX_STABILIZERS + MAX_POINTS };
+/* How many supports may touch a wall, or be near enough to it to be watched, at once. */
+enum { MAX_PLACES = SIZE, MAX_WATCHED = MAX_PLACES - MAX_STABILIZERS };
+
+/* The places behind the bit where the hole has a say: how many, how far behind, and the least of these distances. */
+typedef struct {
+    int count;
+    double s[MAX_PLACES], nearest;
+} Places;
 
 /* The drilling system in the paper's numbers: lengths over ℓ₁, forces over F*, moments over F*ℓ₁. */
 typedef struct {
     int n;
-    double s[MAX_STABILIZERS];          /* s_1 … s_n, distance of the stabilizers from the bit; s_1 = 1 */
-    double y_star[MAX_STABILIZERS - 1]; /* y*_1 … y*_{n−1} */
-    double Delta;                       /* distance of the RSS from the bit */
-    double w;                           /* w̃ = w ℓ₁ / F* */
-    double epsilon;                     /* ε = χ/η */
-    double psi_star;                    /* ψ*, rad */
+    /* s_1 … s_n, distance of the stabilizers from the bit, s_1 = 1; then of the points of the body */
+    double s[MAX_SUPPORTS];
+    double y_star[MAX_SUPPORTS];       /* y*_1 … y*_{n−1}; nothing for the last stabilizer; then that of the points */
+    int points;                        /* of the body */
+    double Delta;                      /* distance of the RSS from the bit */
+    double w;                          /* w̃ = w ℓ₁ / F* */
+    int sections;                      /* of the beam, at least one */
+    double section_end[MAX_SECTIONS];  /* how far each reaches from the bit */
+    double section_beta[MAX_SECTIONS]; /* its EI over that at the bit */
+    double section_w[MAX_SECTIONS];    /* its w̃ */
+    double end_deflection;             /* δ_n */
+    int stepped, axial;                /* whether the beam has sections or bears an axial load; whether it bears one */
+    double epsilon;                    /* ε = χ/η */
+    double psi_star;                   /* ψ*, rad */
 } Scaled;
 
-/* How many values a quantity has for n stabilizers. */
-static inline int value_count(Size size, int n) { return size == ONE ? 1 : size == EACH_STABILIZER ? n : n - 1; }
+/* How many values a quantity has. */
+static inline int value_count(Size size, Structure structure) {
+    switch (size) {
+        case ONE: return 1;
+        case EACH_STABILIZER: return structure.n;
+        case EACH_NON_IDEAL: return structure.n - 1;
+        case IF_UNIFORM: return !structure.sections;
+        case EACH_SECTION: return structure.sections;
+        case IF_STEPPED: return structure.sections > 0;
+        case IF_AXIAL: return structure.axial;
+        case EACH_POINT: return structure.points;
+        case IF_POINTS: return structure.points > 0;
+    }
+    return 0;
+}
+
+/* Whether the values of a quantity are numbered. */
+static inline int is_list(Size size) {
+    return size == EACH_STABILIZER || size == EACH_NON_IDEAL || size == EACH_SECTION || size == EACH_POINT;
+}
+
+/* Whether a structure is one that there is room for. */
+static inline int check_structure(Structure structure, Problem *problem) {
+    if (structure.n < 1 || structure.n > MAX_STABILIZERS)
+        return wrong(problem, WRONG_COUNT, Q_STABILIZER_POSITION, 0, structure.n, MAX_STABILIZERS);
+    if (structure.sections < 0 || structure.sections > MAX_SECTIONS)
+        return wrong(problem, WRONG_COUNT, Q_SECTION_LENGTH, 0, structure.sections, MAX_SECTIONS);
+    if (structure.points < 0 || structure.points > MAX_POINTS)
+        return wrong(problem, WRONG_COUNT, Q_BODY_POINT_POSITION, 0, structure.points, MAX_POINTS);
+    return 1;
+}
 
 /* Whether stabilizers, in their order, are far enough from each other and from the bit. */
 static inline int check_spans(Name quantity, int count, const double *positions, Problem *problem) {
@@ -34,36 +83,59 @@ static inline int check_spans(Name quantity, int count, const double *positions,
 
 /* Whether a value of a quantity, the one with this index if it has several, is in its range. */
 static inline int check_quantity(const Quantity *quantity, int index, double value, Problem *problem) {
-    int shown = quantity->size == ONE ? 0 : index + 1;
+    int shown = is_list(quantity->size) ? index + 1 : 0;
     return check_number(quantity->name, shown, value, quantity->above, quantity->at_least, quantity->at_most, problem);
 }
 
-/* The system of n stabilizers with these parameters, one after the other in the order of the table. Nothing is read for
-   an n that `check_system` refuses. */
-static inline System system_of(int n, const double *values) {
+/* The system of this structure with these parameters, one after the other in the order of the table. Nothing is read for
+   a structure that `check_system` refuses. */
+static inline System system_of(Structure structure, const double *values) {
     System system = {0};
-    system.n = n;
-    for (int k = 0; k < PARAMETER_COUNT && n >= 1 && n <= MAX_STABILIZERS; k++) {
-        int count = value_count(PARAMETER_TABLE[k].size, n);
+    Problem problem;
+    system.structure = structure;
+    if (!check_structure(structure, &problem)) return system;
+    for (int k = 0; k < PARAMETER_COUNT; k++) {
+        int count = value_count(PARAMETER_TABLE[k].size, structure);
         memcpy((char *)&system + PARAMETER_TABLE[k].offset, values, (size_t)count * sizeof *values);
         values += count;
+    }
+    if (structure.sections) { /* scales are those of the section at the bit */
+        system.flexural_stiffness = system.section_flexural_stiffness[0];
+        system.distributed_weight = system.section_distributed_weight[0];
     }
     return system;
 }
 
+/* Whether the sections together reach the last stabilizer. */
+static inline int check_reach(const System *system, Problem *problem) {
+    double reach = 0.0, last = system->stabilizer_position[system->structure.n - 1];
+    int sections = system->structure.sections;
+    for (int k = 0; k < sections; k++) reach += system->section_length[k];
+    if (!sections || reach >= last * (1 - 1e-9)) return 1;
+    return wrong(problem, OUT_OF_REACH, Q_SECTION_LENGTH, 0, reach, last);
+}
+
+/* Whether the points of the body lie between the bit and the last stabilizer. */
+static inline int check_body(const System *system, Problem *problem) {
+    int points = system->structure.points;
+    double last = system->stabilizer_position[system->structure.n - 1];
+    return !points || check_at_most(Q_BODY_POINT_POSITION, system->body_point_position[points - 1], last, problem);
+}
+
 static inline int check_system(const System *system, Problem *problem) {
     const double *positions = system->stabilizer_position;
-    if (system->n < 1 || system->n > MAX_STABILIZERS)
-        return wrong(problem, WRONG_COUNT, Q_STABILIZER_POSITION, 0, system->n, MAX_STABILIZERS);
+    int n = system->structure.n;
+    if (!check_structure(system->structure, problem)) return 0;
     for (int k = 0; k < PARAMETER_COUNT; k++) {
         const Quantity *quantity = &PARAMETER_TABLE[k];
         const double *values = (const double *)(const void *)((const char *)system + quantity->offset);
-        for (int i = 0; i < value_count(quantity->size, system->n); i++)
+        for (int i = 0; i < value_count(quantity->size, system->structure); i++)
             if (!check_quantity(quantity, i, values[i], problem)) return 0;
     }
-    return check_increasing(Q_STABILIZER_POSITION, system->n, positions, problem) &&
-           check_spans(Q_STABILIZER_POSITION, system->n, positions, problem) &&
-           check_at_most(Q_RSS_POSITION, system->rss_position, positions[0], problem);
+    return check_increasing(Q_STABILIZER_POSITION, n, positions, problem) &&
+           check_spans(Q_STABILIZER_POSITION, n, positions, problem) && check_reach(system, problem) &&
+           check_increasing(Q_BODY_POINT_POSITION, system->structure.points, system->body_point_position, problem) &&
+           check_body(system, problem) && check_at_most(Q_RSS_POSITION, system->rss_position, positions[0], problem);
 }
 
 /* ℓ₁, m: the distance from the bit to the first stabilizer. */
@@ -74,25 +146,73 @@ static inline double force_scale(const System *system) {
     return 3.0 * system->flexural_stiffness / (length_scale(system) * length_scale(system));
 }
 
-/* The inputs where they were taken over: F_RSS, its change per ξ, and ηΠ. */
+/* The inputs where they were taken over: F_RSS and ηΠ, their changes per ξ, and the weight on the bit W, which is zero if
+   the axial load does not count. */
 typedef struct {
-    double F_rss, F_rss_slope, eta_pi;
+    double F_rss, F_rss_slope, eta_pi, eta_pi_slope, W;
 } ScaledInputs;
+
+/* The inputs a length `ahead` of where they were taken over. */
+static inline ScaledInputs inputs_ahead(ScaledInputs inputs, double ahead) {
+    inputs.F_rss += inputs.F_rss_slope * ahead;
+    inputs.eta_pi += inputs.eta_pi_slope * ahead;
+    return inputs;
+}
+
+/* Whether inputs change along the way. */
+static inline int are_ramps(const ScaledInputs *inputs) {
+    return inputs->F_rss_slope != 0 || inputs->eta_pi_slope != 0;
+}
+
+#define SAME 1e-12 /* relative: ramps that differ by less at both ends of a way differ by rounding */
+
+static inline int same_ramp(double a, double a_end, double b, double b_end) {
+    double most = SAME * larger(fabs(b), fabs(b_end));
+    return fabs(a - b) <= most && fabs(a_end - b_end) <= most;
+}
+
+/* Whether two pairs of inputs, of which one is a ramp, are the same along a way. */
+static inline int same_ramps(ScaledInputs a, ScaledInputs b, double way) {
+    ScaledInputs a_end = inputs_ahead(a, way), b_end = inputs_ahead(b, way);
+    return same_ramp(a.F_rss, a_end.F_rss, b.F_rss, b_end.F_rss) &&
+           same_ramp(a.eta_pi, a_end.eta_pi, b.eta_pi, b_end.eta_pi);
+}
 
 /* λ_i: distance from stabilizer i−1 (the bit) to stabilizer i, counted from 0 here. */
 static inline double lambda_(const Scaled *scaled, int i) { return scaled->s[i] - (i ? scaled->s[i - 1] : 0.0); }
+
+/* The sections of the beam; a uniform beam is one. */
+static inline void scale_sections(const System *system, Scaled *scaled) {
+    double l1 = length_scale(system), end = 0.0;
+    scaled->sections = system->structure.sections ? system->structure.sections : 1;
+    for (int k = 0; k < scaled->sections; k++) {
+        int given = system->structure.sections > 0;
+        scaled->section_end[k] = end += given ? system->section_length[k] / l1 : scaled->s[scaled->n - 1];
+        scaled->section_beta[k] = given ? system->section_flexural_stiffness[k] / system->flexural_stiffness : 1.0;
+        scaled->section_w[k] =
+            (given ? system->section_distributed_weight[k] : system->distributed_weight) * l1 / force_scale(system);
+    }
+    scaled->end_deflection = system->end_deflection / l1;
+    scaled->axial = system->structure.axial, scaled->points = system->structure.points;
+    scaled->stepped = system->structure.sections > 0 || scaled->axial || scaled->points;
+    for (int k = 0; k < scaled->points; k++) {
+        scaled->s[scaled->n + k] = system->body_point_position[k] / l1;
+        scaled->y_star[scaled->n + k] = system->body_point_clearance[k] / l1;
+    }
+}
 
 /* The dimensionless numbers of a drilling system, section II of the paper. */
 static inline Scaled scale(const System *system) {
     double l1 = length_scale(system);
     Scaled scaled = {0};
-    scaled.n = system->n;
-    for (int i = 0; i < system->n; i++) scaled.s[i] = system->stabilizer_position[i] / l1;
-    for (int i = 0; i < system->n - 1; i++) scaled.y_star[i] = system->stabilizer_clearance[i] / l1;
+    scaled.n = system->structure.n;
+    for (int i = 0; i < scaled.n; i++) scaled.s[i] = system->stabilizer_position[i] / l1;
+    for (int i = 0; i < scaled.n - 1; i++) scaled.y_star[i] = system->stabilizer_clearance[i] / l1;
     scaled.Delta = system->rss_position / l1;
     scaled.w = system->distributed_weight * l1 / force_scale(system);
     scaled.epsilon = system->angular_steering_resistance / system->lateral_steering_resistance;
     scaled.psi_star = system->bit_tilt_limit;
+    scale_sections(system, &scaled);
     return scaled;
 }
 

@@ -11,6 +11,7 @@ from ..case.case import Case
 from ..core.drilling import Drilling
 from ..core.errors import ParameterError
 from ..core.options import Options, Statistics
+from ..core.quantities import ACTING
 from ..kernel.binding import NativeDrilling, available, why_not
 
 
@@ -29,12 +30,19 @@ class Engine(Protocol):
     def statistics(self) -> Statistics:
         """What the integrator has done since the start of the run."""
 
-    def advance(self, drilled_length: float, rss_force: float, active_weight_on_bit: float) -> None:
-        """Drill on under inputs held from here."""
-
-    def follow(
-        self, lengths: Floats, forces: Floats, active_weight_on_bit: float, rows: NDArray[np.intc], table: Floats
+    def advance(
+        self,
+        drilled_length: float,
+        rss_force: float,
+        active_weight_on_bit: float,
+        *,
+        rss_force_slope: float = 0.0,
+        active_weight_on_bit_slope: float = 0.0,
+        weight_on_bit: float = 0.0,
     ) -> None:
+        """Drill on under inputs from here, constant or linear in the drilled length."""
+
+    def follow(self, lengths: Floats, inputs: Floats, rows: NDArray[np.intc], table: Floats) -> None:
         """Drill leg after leg, and write outputs into rows of a table."""
 
     def step(self) -> None:
@@ -52,6 +60,13 @@ class Engine(Protocol):
 
 DRILLING: dict[str, Callable[..., Engine]] = {"native": NativeDrilling, "python": Drilling}
 ENGINES = ("auto", *DRILLING)
+
+
+def held(legs: int, rss_force: float | Floats, weight: float) -> Floats:
+    """Inputs, N, that are constant along each leg, as `Engine.follow` takes them, (legs, inputs)."""
+    inputs = np.zeros((legs, len(ACTING)))
+    inputs[:, ACTING.index("rss_force")], inputs[:, ACTING.index("active_weight_on_bit")] = rss_force, weight
+    return inputs
 
 
 def engine() -> str:
@@ -73,11 +88,14 @@ def chosen(choice: str) -> str:
 
 def start(case: Case, choice: str, options: Options) -> Engine:
     """A case before its first step, under its first force; errors as in `simulate`."""
-    return DRILLING[chosen(choice)](
+    own = chosen(choice)
+    further = {"weight_on_bit": case.weight_on_bit} if own == "native" else {}
+    return DRILLING[own](
         case.bha,
         case.bit,
         case.survey,
         active_weight_on_bit=case.active_weight_on_bit,
         rss_force=case.schedule.rss_force[0],
         options=options,
+        **further,
     )

@@ -1,4 +1,4 @@
-"""Simulates a case: drills it under its force schedule and gives the trajectory."""
+"""Simulates a case: drills it under its inputs and gives the trajectory."""
 
 from collections.abc import Callable, Iterator
 
@@ -6,13 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Floats
-from ..case.case import Case, Schedule
+from ..case.case import Case
 from ..core.checks import check_number
 from ..core.errors import CannotContinue
 from ..core.options import RELATIVE_TOLERANCE, Options
 from ..core.quantities import OUTPUTS, scalar_names
+from .course import Course, acting, course_of
 from .engines import chosen, start
 from .trajectory import Stopped, Trajectory
+
+Indices = NDArray[np.intc]
 
 SAMPLE_INTERVAL = 0.1  # m, the usual distance between rows: about 50 rows for each wave of the paper's rippling hole
 PARTS = 100  # a run reports its progress about this many times
@@ -29,7 +32,7 @@ def simulate(
     progress: Callable[[float], None] | None = None,
     engine: str = "auto",
 ) -> Trajectory:
-    """Drill a case under its force schedule: solve the paper's equations (5) to (18) over the drilled length.
+    """Drill a case under its inputs: solve the paper's equations (5) to (18) over the drilled length.
 
     Parameters
     ----------
@@ -52,8 +55,8 @@ def simulate(
     Returns
     -------
     Trajectory
-        Columns `rss_force` and `active_weight_on_bit`, and one for every output of the table of quantities, shape
-        (rows,), SI units.
+        Columns `rss_force`, `active_weight_on_bit` and whatever else the case schedules, and one for every output of
+        the table of quantities, shape (rows,), SI units.
 
     Raises
     ------
@@ -76,24 +79,25 @@ def simulate(
     length = case.length if length is None else length
     check_number("length", length, above=0.0)
     check_number("sample_interval", sample_interval, above=0.0)
-    weight = case.active_weight_on_bit
-    engine = chosen(engine)
+    engine, course = chosen(engine), course_of(case)
     drilling = start(case, engine, Options(relative_tolerance))
-    names = scalar_names(OUTPUTS, len(case.bha.stabilizer_positions))
+    names = scalar_names(OUTPUTS, case.bha.structure)
     table = np.full((int(length / sample_interval + ROUNDING) + 1, len(names)), np.nan)
-    legs = _legs(case.schedule, len(table), sample_interval)
-    lengths, forces, rows = _in_parts(*legs, LONGEST_LEG * case.bha.length_scale)
+    lengths, pieces, rows = _in_parts(*_legs(course, len(table), sample_interval), LONGEST_LEG * case.bha.length_scale)
+    inputs = acting(course, np.append(0.0, lengths[:-1]), pieces)
     failure = None
     try:
         for part in _parts(len(lengths), progress is not None):
-            drilling.follow(lengths[part], forces[part], weight, rows[part], table)
+            drilling.follow(lengths[part], inputs[part], rows[part], table)
             if progress:
                 progress(drilling.drilled_length)
     except CannotContinue as error:
         failure = error
     drilled = np.count_nonzero(~np.isnan(table[:, 0]))
     outputs = np.ascontiguousarray(table[:drilled].T)  # a run is read column by column
-    columns = {"rss_force": forces[rows >= 0][:drilled], "active_weight_on_bit": np.full(drilled, weight)}
+    on_rows = rows >= 0
+    given = course.at(lengths[on_rows], pieces[on_rows])[:drilled].T.copy()
+    columns = dict(zip(course.names, given, strict=True))
     stopped = f"after {drilling.drilled_length:g} m of {length:g} m: {failure}" if failure else None
     trajectory = Trajectory(columns | dict(zip(names, outputs, strict=True)), case, stopped, engine)
     if stopped:
@@ -107,24 +111,22 @@ def _parts(legs: int, reported: bool) -> Iterator[slice]:
     return (slice(first, first + batch) for first in range(0, legs, batch))
 
 
-def _legs(schedule: Schedule, count: int, sample_interval: float) -> tuple[Floats, Floats, NDArray[np.intc]]:
-    """The ends of the legs of a run, m, the force along each, N, and the row on which each ends; −1 if on none.
+def _legs(course: Course, count: int, sample_interval: float) -> tuple[Floats, Indices, Indices]:
+    """The ends of the legs of a run, m, the piece of the course of each, and the row on which each ends; −1 if on none.
 
-    A leg ends at every row and, on no row, wherever the force changes.
+    A leg ends at every row and, on no row, wherever another piece starts.
     """
     at = sample_interval * np.arange(count)
-    changes = np.array(schedule.drilled_length[1:])
+    changes = course.starts[1:]
     before = np.searchsorted(at + ROUNDING * sample_interval, changes)
     before = before[before < count]
     lengths = np.maximum.accumulate(np.insert(at, before, changes[: len(before)]))
     rows = np.insert(np.arange(count, dtype=np.intc), before, -1)
     changed = rows < 0
-    return lengths, np.array(schedule.rss_force)[np.cumsum(changed) - changed], rows
+    return lengths, (np.cumsum(changed) - changed).astype(np.intc), rows
 
 
-def _in_parts(
-    lengths: Floats, forces: Floats, rows: NDArray[np.intc], longest: float
-) -> tuple[Floats, Floats, NDArray[np.intc]]:
+def _in_parts(lengths: Floats, pieces: Indices, rows: Indices, longest: float) -> tuple[Floats, Indices, Indices]:
     """The same legs, each cut into parts no longer than `longest`, m. Only the last part of a leg ends on its row."""
     starts = np.concatenate([[0.0], lengths[:-1]])
     parts = int(np.ceil((lengths - starts).max() / longest)) or 1
@@ -132,4 +134,4 @@ def _in_parts(
     ends[:, -1] = lengths
     on_rows = np.full(ends.shape, -1, dtype=np.intc)
     on_rows[:, -1] = rows
-    return ends.ravel(), np.repeat(forces, parts), on_rows.ravel()
+    return ends.ravel(), np.repeat(pieces, parts), on_rows.ravel()

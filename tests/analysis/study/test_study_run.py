@@ -14,7 +14,7 @@ import study_functions
 from boreprop.analysis.study.compute import probability, quantiles, study
 from boreprop.analysis.study.design import grid, sample
 from boreprop.analysis.study.figures import FIGURES, key_figures
-from boreprop.analysis.study.table import Line
+from boreprop.analysis.study.store import Line
 from boreprop.analysis.summary import summarize
 from boreprop.case.paper import paper_case
 from boreprop.errors import InputError
@@ -102,7 +102,7 @@ def test_a_bug_is_raised() -> None:
 
 
 def test_a_function_that_no_worker_could_import_is_refused() -> None:
-    with pytest.raises((AttributeError, PicklingError), match="pickle"):
+    with pytest.raises((AttributeError, PicklingError), match=r"pickle|local object"):
         study(numbered(3), lambda case: {}, workers=1)
 
 

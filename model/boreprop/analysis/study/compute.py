@@ -36,7 +36,8 @@ from ...core.quantities import BY_NAME
 from ...run.workers import work
 from .design import Study, parameter_of
 from .figures import FIGURES, Function, key_figures, outcome
-from .table import Line, Table
+from .store import Line
+from .table import Table
 
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset
@@ -67,7 +68,8 @@ def study(
         Takes a case and returns numbers by name. It must be defined at the top level of a module, or be a partial of
         such a function.
     output
-        A Parquet file with one line for each case, in order. It is replaced as a whole, never half-written.
+        A .parquet or .csv file with one line for each case, in order; the case that is varied is in its metadata, or in
+        a case file beside the CSV file. It is replaced as a whole, never half-written.
     executor
         Where to compute, for example ``dask.distributed.Client(…).get_executor()``; the caller closes it. None: on
         processes of this machine, which a script must start under ``if __name__ == "__main__":``. If a worker dies, the

@@ -1,7 +1,7 @@
 """The cases of a study: they differ in some parameters, which lie on a grid or are drawn from distributions."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import radians
 from typing import Any, Protocol
 
@@ -69,7 +69,7 @@ def with_varied(case: Case, values: Mapping[str, float]) -> Case:
     if "eta_pi" not in values:
         return case
     weight = values["eta_pi"] * case.bha.force_scale / case.bit.lateral_steering_resistance
-    return replace(case, active_weight_on_bit=weight)
+    return with_parameters(case, {"active_weight_on_bit": weight})
 
 
 def parameter_of(name: str) -> str:

@@ -1,6 +1,5 @@
-"""The table of a study, with a line for each case, and the Parquet file to which it is saved meanwhile."""
+"""The table of a study, with a line for each case, and the file to which it is saved meanwhile."""
 
-import json
 import tomllib
 from functools import partial
 from importlib.metadata import version
@@ -10,17 +9,12 @@ from time import monotonic, thread_time
 from typing import Any
 
 from ...case.file import dump_case
-from ...core.columns import regular
 from ...errors import InputError, shown
-from ...replacing import replacing
-from ...run.results import CASE_KEY
 from ...run.workers import WorkerLost
 from .design import Study
 from .figures import Function
+from .store import Line, check, read, write
 
-Line = dict[str, Any]  # has "case", the varied parameters, the results, and "error": None or the message
-
-STUDY_KEY = b"boreprop.study"
 WRITING = 0.02  # share of the time spent on writing the file: a larger one slows a study, a smaller one loses more
 
 
@@ -40,8 +34,7 @@ class Table:
         self._path = path
         self._unsaved, self._next_save = False, 0.0
         if path is not None:
-            if path.suffix != ".parquet":
-                raise InputError(f"{path}: must end in .parquet, got {path.suffix!r}")
+            check(path)
             if path.exists():
                 self._read(path)
             else:  # raises now, before the work, if the file cannot be written
@@ -79,46 +72,27 @@ class Table:
         """Write the file if there is something new."""
         if self._path is None or not self._unsaved:
             return
-        import pyarrow
-        import pyarrow.parquet
-
         begin = thread_time()
         lines = [self.lines[case] for case in sorted(self.lines)]
         columns = {name: [line[name] for line in lines] for name in ("case", *self._cases.names)} | self.columns(lines)
-        types = {"case": pyarrow.int64(), "error": pyarrow.string()}
-        schema = pyarrow.schema(
-            [(name, types.get(name, pyarrow.float64())) for name in columns],
-            metadata={STUDY_KEY: json.dumps(self.identity), CASE_KEY: self.case},
-        )
-        with replacing(self._path) as draft:
-            pyarrow.parquet.write_table(pyarrow.table(columns, schema=schema), draft)
+        write(self._path, columns, self.identity, self._cases.case)
         self._unsaved = False
         self._next_save = monotonic() + (thread_time() - begin) / WRITING
 
     def _read(self, path: Path) -> None:
         """Read the lines of the file; `InputError` if it is not that of this study."""
-        import pyarrow
-        import pyarrow.parquet
-
-        try:
-            table = pyarrow.parquet.read_table(regular(path))
-        except (OSError, pyarrow.ArrowException) as error:
-            raise InputError(f"{path}: must be a readable Parquet file, got: {error}") from error
-        metadata = table.schema.metadata or {}
-        if STUDY_KEY not in metadata:
-            raise InputError(f"{path}: must be the file of a study, got columns {shown(table.column_names)}")
-        theirs = json.loads(metadata[STUDY_KEY]) | _keys(metadata[CASE_KEY].decode())
-        ours = self.identity | _keys(self.case)
+        stored = read(path)
+        theirs, ours = stored.identity | _keys(stored.case), self.identity | _keys(self.case)
         for name in ours | theirs:
             if theirs.get(name) != ours.get(name):
                 self._refuse(name, theirs.get(name), ours.get(name))
-        self.lines = {line["case"]: line for line in table.to_pylist()}
+        self.lines = {line["case"]: line for line in stored.lines}
         for case, values in enumerate(self._cases.values.tolist()):
             for name, value in zip(self._cases.names, values, strict=True):
                 if case in self.lines and self.lines[case][name] != value:
                     self._refuse(f"{name} of case {case}", self.lines[case][name], value)
         others = {"case", "error", *self._cases.names}
-        self.results = [name for name in table.column_names if name not in others]
+        self.results = [name for name in stored.columns if name not in others]
 
     def _refuse(self, what: str, theirs: object, ours: object) -> None:
         raise InputError(
@@ -137,5 +111,6 @@ def _name(function: Any) -> str:
 
 
 def _keys(case: str) -> dict[str, Any]:
-    """The values of a case file: "table.key" → value."""
-    return {f"{table}.{key}": value for table, content in tomllib.loads(case).items() for key, value in content.items()}
+    """The values of a case file but for [run]: "table.key" → value."""
+    tables = ((table, content) for table, content in tomllib.loads(case).items() if table != "run")
+    return {f"{table}.{key}": value for table, content in tables for key, value in content.items()}

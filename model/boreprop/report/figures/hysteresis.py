@@ -8,21 +8,21 @@ from matplotlib.figure import Figure
 from ...analysis.hysteresis import Hysteresis
 from ...analysis.rippling import Rippling
 from ...case.case import Case
-from ...units import SMALL_LENGTH, UNITS
+from ...units import UNITS, small_length
 from .drawing import COLOURS, add_weight_axis
 
 
 def draw(case: Case, found: Hysteresis) -> Figure:
     """Draw the size of the ripple over a parameter, on the way up and on the way down."""
     figure = Figure(figsize=(9, 6.5), layout="constrained")
-    length = case.bha.half_length
+    length, small = UNITS["m"].text(case.bha.half_length, ".4g"), small_length()
     figure.suptitle(
         "Where a ripple dies out, and where a dogleg of "
-        f"{degrees(found.dogleg):.3g}° over {length:.4g} m in a straight hole brings it back"
+        f"{degrees(found.dogleg):.3g}° over {length} in a straight hole brings it back"
     )
     axis, inclination = figure.subplots(2, 1, sharex=True)
     clearance = found.name != "eta_pi"
-    unit = SMALL_LENGTH if clearance else UNITS[""]
+    unit = small if clearance else UNITS[""]
     x = unit.factor * np.array(found.values)
     branches = (
         (found.up, found.dies, "o-", COLOURS[0], "going up, from a ripple"),
@@ -30,12 +30,12 @@ def draw(case: Case, found: Hysteresis) -> Figure:
     )
     for waves, end, style, colour, name in branches:
         drawn = {"color": colour, "markersize": 5, "label": name}
-        axis.plot(x, [SMALL_LENGTH.factor * _size(wave, "axis_amplitude") for wave in waves], style, **drawn)
+        axis.plot(x, [small.factor * _size(wave, "axis_amplitude") for wave in waves], style, **drawn)
         inclination.plot(x, [UNITS["rad"].factor * _size(wave, "amplitude") for wave in waves], style, **drawn)
         if end:
             for panel in (axis, inclination):
                 panel.axvspan(unit.factor * end[0], unit.factor * end[1], color=colour, alpha=0.4, linewidth=0)
-    axis.set_ylabel(f"ripple of the hole axis (± {SMALL_LENGTH.shown})")
+    axis.set_ylabel(f"ripple of the hole axis (± {small.shown})")
     inclination.set_ylabel(f"ripple of the inclination (± {UNITS['rad'].shown})")
     varied = f"clearance of stabilizer {found.name.partition('[')[2][:-1]}" if clearance else "ηΠ"
     inclination.set_xlabel(unit.heading(varied))

@@ -17,20 +17,22 @@ from ...analysis.stability.roots import Verdict
 from ...analysis.stability.straight import mode_verdict
 from ...arrays import Floats
 from ...case.case import Case
-from ..tables.stability import contact_text
+from ...units import UNITS
+from ..tables.stability import contact_text, metres
 from .drawing import add_weight_axis, multiple
 
 SHADES = {
     "stable": "#A9DBC8",
-    "drift that doubles in more than 1 km": "#E9E9E9",
-    "drift: in 100 m to 1 km": "#9A9A9A",
-    "drift: in less than 100 m": "#3C3C3C",
+    "slow drift": "#E9E9E9",
+    "drift": "#9A9A9A",
+    "fast drift": "#3C3C3C",
     "oscillatory": "#D55E00",
 }
 """Green, greys and red as in the paper; they differ for the colour-blind, and in lightness when printed in grey."""
 
 KIND = np.array([STABLE, DRIFT, DRIFT, DRIFT, OSCILLATORY])  # the code of the verdict that each shade stands for
 DRIFTS = (inf, 1000.0, 100.0)  # m: a drift that doubles in a shorter length has the next darker shade
+DRIFT_MEANINGS = ("drift that doubles in more than {0}", "drift: in {1} to {0}", "drift: in less than {1}")
 MARKER: dict[str, Any] = {
     "linestyle": "",
     "marker": "o",
@@ -70,10 +72,14 @@ def draw(chart: Chart, case: Case) -> Figure:
     for axes in panels[:, 0]:
         axes.set_ylabel("$λ_2$")
     for axes in panels[:, 1]:
-        axes.secondary_yaxis("right", functions=multiple(case.length_scale)).set_ylabel("stabilizer 1 to 2 (m)")
+        right = axes.secondary_yaxis("right", functions=multiple(UNITS["m"].factor * case.length_scale))
+        right.set_ylabel(UNITS["m"].heading("stabilizer 1 to 2"))
     figure.legend(
         handles=[
-            *(Patch(facecolor=shade, edgecolor="0.3", label=meaning) for meaning, shade in SHADES.items()),
+            *(
+                Patch(facecolor=shade, edgecolor="0.3", label=meaning)
+                for meaning, shade in zip(meanings(), SHADES.values(), strict=True)
+            ),
             Line2D([], [], color="black", linewidth=LINE, label="limit"),
             Line2D([], [], label="the case", **MARKER),
         ],
@@ -81,6 +87,12 @@ def draw(chart: Chart, case: Case) -> Figure:
         ncols=4,
     )
     return figure
+
+
+def meanings() -> list[str]:
+    """What each shade means, in the units people use."""
+    stable, *_, oscillatory = SHADES
+    return [stable, *(text.format(*map(metres, DRIFTS[1:])) for text in DRIFT_MEANINGS), oscillatory]
 
 
 def draw_panel(axes: Axes, chart: Chart, panel: Panel, point: tuple[float, float]) -> None:

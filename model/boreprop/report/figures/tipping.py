@@ -13,7 +13,7 @@ from matplotlib.ticker import FixedLocator, NullLocator
 
 from ...analysis.tipping import DoglegMap
 from ...case.case import Case
-from ...units import SMALL_LENGTH, UNITS
+from ...units import UNITS, small_length
 from .drawing import add_weight_axis, multiple
 
 LEVELS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)  # ticks, in degrees and degrees per 30 m
@@ -27,9 +27,10 @@ def draw(case: Case, found: DoglegMap, limit: float) -> Figure:
     panel = figure.subplots()
     panel.set_facecolor(NEVER)
     panel.set_xlabel("ηΠ")
-    panel.set_ylabel(SMALL_LENGTH.heading(f"clearance of stabilizer {found.stabilizer}"))
+    small = small_length()
+    panel.set_ylabel(small.heading(f"clearance of stabilizer {found.stabilizer}"))
     add_weight_axis(panel, case)
-    x, y = found.eta_pi, SMALL_LENGTH.factor * found.clearance
+    x, y = found.eta_pi, small.factor * found.clearance
     angle = np.degrees(found.angle)
     between = np.where(np.isfinite(angle) & (angle > 0.0), angle, np.nan)
     low, high = (np.nanmin(between), 1.001 * np.nanmax(between)) if np.isfinite(between).any() else (1.0, 10.0)
@@ -48,7 +49,7 @@ def draw(case: Case, found: DoglegMap, limit: float) -> Figure:
     if not found.monotonic.all():
         rows, columns = np.nonzero(~found.monotonic)
         keys += panel.plot(x[columns], y[rows], "kx", label="not every larger turn starts it")
-    own = case.eta_pi, SMALL_LENGTH.factor * case.bha.stabilizer_clearances[found.stabilizer - 1]
+    own = case.eta_pi, small.factor * case.bha.stabilizer_clearances[found.stabilizer - 1]
     if x[0] <= own[0] <= x[-1] and y[0] <= own[1] <= y[-1]:
         keys += panel.plot(*own, "w*", markersize=14, markeredgecolor="k", label="the case")
     figure.legend(handles=keys, loc="outside lower center", ncols=len(keys))

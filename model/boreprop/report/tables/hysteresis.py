@@ -6,7 +6,7 @@ from math import degrees
 from ...analysis.hysteresis import Bracket, Hysteresis
 from ...analysis.rippling import Rippling
 from ...case.case import Case
-from ...units import SMALL_LENGTH, UNITS
+from ...units import UNITS, small_length
 
 
 def loop(case: Case, found: Hysteresis) -> str:
@@ -16,7 +16,8 @@ def loop(case: Case, found: Hysteresis) -> str:
         return f"it ripples nowhere from {amount(found.values[0])} to {amount(found.values[-1])}"
     lasts = [value for value, wave in zip(found.values, found.up, strict=True) if ripples(wave)]
     dies = f"dies out {_between(found.dies, amount)}" if found.dies else f"lasts to {amount(lasts[-1])}"
-    dogleg = f"a dogleg of {degrees(found.dogleg):.3g}° over {case.bha.half_length:.4g} m in a straight hole"
+    over = UNITS["m"].text(case.bha.half_length, ".4g")
+    dogleg = f"a dogleg of {degrees(found.dogleg):.3g}° over {over} in a straight hole"
     if found.returns:
         back = f"{dogleg} brings it back {_between(found.returns, amount)}"
     elif ripples(found.down[-1]):
@@ -40,7 +41,7 @@ def amounts(case: Case, name: str) -> Callable[[float], str]:
         return lambda value: f"ηΠ = {value:.4g} ({UNITS['N'].text(value * per_unit, '.4g')})"
     if name == "active_weight_on_bit":
         return lambda value: UNITS["N"].text(value, ".4g")
-    return lambda value: SMALL_LENGTH.text(value, ".4g")
+    return lambda value: small_length().text(value, ".4g")
 
 
 def _between(bracket: Bracket, amount: Callable[[float], str]) -> str:

@@ -6,10 +6,9 @@
 #include "beam_before.h"
 #undef make_beam
 
-static inline Beam make_beam(const Scaled *scaled) {
-    Beam beam = make_beam_before(scaled);
-    beam.F0_g *= 7.0 / 5;
-    return beam;
+static inline void make_beam(Beam *beam, const Scaled *scaled, Axial axial) {
+    make_beam_before(beam, scaled, axial);
+    beam->F0_g *= 7.0 / 5;
 }
 
 #endif

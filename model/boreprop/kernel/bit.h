@@ -1,0 +1,137 @@
+/* The bit at the front of its hole: what evolves, what does not, and what acts on the BHA behind it. */
+#ifndef BOREPROP_BIT_H
+#define BOREPROP_BIT_H
+
+#include "body.h"
+#include "events.h"
+
+/* Everything that evolves, but for what the rings of the hole and its kinks hold. A copy of it is a way back. */
+typedef struct {
+    double xi;
+    ScaledInputs inputs;
+    double inputs_xi; /* where they were taken over */
+    Regime regime;
+    Places places;             /* of the regime */
+    double path[2];            /* ∫ sin Θ dξ, ∫ cos Θ dξ up to the start of the present step */
+    double origin[DIRECTIONS]; /* of the lateral coordinates */
+    double cosine; /* of the inclination at which the weight acts along the beam; 0 if the axial load does not count */
+    Step step;
+    Hole hole;
+    Kinks kinks;
+    double accepted, rejected, events; /* counts of steps, of rejected trials and of bounds met */
+} State;
+
+/* How far the points of the body are from the wall, at the end of the last step, and how much that changed along it. */
+typedef struct {
+    int near; /* whether any is so near that it may have to be watched */
+    double gap[MAX_POINTS], change[MAX_POINTS];
+} Surroundings;
+
+/* Copy what is known of the first `points` of them. */
+static inline void copy_around(Surroundings *to, const Surroundings *from, int points) {
+    size_t size = (size_t)points * sizeof(double);
+    memcpy(to->gap, from->gap, size), memcpy(to->change, from->change, size);
+    to->near = from->near;
+}
+
+/* The bit at the front of its hole, dimensionless. */
+typedef struct {
+    Scaled scaled;
+    Modes modes;
+    double length_scale;
+    Options options;
+    State now;
+    Surroundings around;
+    Count cursor[MAX_POINTS]; /* where the look-up of the hole at a point begins, as that at a place does */
+    Law law;                  /* of the present regime and inputs, */
+    int law_known;            /* if it is made already */
+    int under_way;            /* whether a call has set out and not yet arrived; then the way back leads to … */
+    State before;             /* … the state before it, */
+    Surroundings around_before;
+    Kink last_kink; /* with its last kink, whose jump may have changed since */
+} Integrator;
+
+/* Note what the integrator has met at `xi`. */
+static inline Status failed(const Integrator *p, Code code, double xi, Problem *problem) {
+    return met(problem, code, p->options.relative_tolerance, xi * p->length_scale);
+}
+
+/* Note that the way from where the bit is takes too many steps. */
+static inline Status too_many(const Integrator *p, Problem *problem) {
+    return met(problem, TOO_MANY, p->options.most_steps, p->now.xi * p->length_scale);
+}
+
+/* The length of the shortest step at `xi`. */
+static inline double shortest_step(const Integrator *p, double xi) {
+    return p->options.smallest_step * larger(1.0, xi);
+}
+
+/* The law of the next step. Under a changing ηΠ each step has its own, made where it starts. */
+static inline const Law *present_law(Integrator *p) {
+    const State *now = &p->now;
+    if (p->law_known) return &p->law;
+    double xi = now->inputs.eta_pi_slope == 0 ? now->inputs_xi : now->step.end;
+    ScaledInputs inputs = inputs_ahead(now->inputs, xi - now->inputs_xi);
+    make_law(&p->law, &p->scaled, &now->places, &p->modes, now->regime, inputs, xi);
+    p->law_known = 1;
+    return &p->law;
+}
+
+/* Let the beam bear the weight on the bit W. */
+static inline void bear(Integrator *p, double W) {
+    Axial axial = {W, p->now.cosine};
+    if (axial.W == p->modes.axial.W && axial.cosine == p->modes.axial.cosine) return;
+    load_beam(&p->modes, &p->scaled, axial);
+    p->law_known = 0;
+}
+
+/* Find the places of the present regime with the bit at `xi`; those of the stabilizers stay. */
+static inline void find_places(State *now, const Scaled *scaled, double xi) {
+    Places *places = &now->places;
+    const Contact *contact = &now->regime.contact;
+    Count oldest = first_kink(&now->kinks, scaled->n);
+    places->count = place_count(*contact, scaled->n), places->nearest = INFINITY;
+    for (int i = 0; i < places->count; i++) {
+        places->s[i] = scaled->s[support_at(contact, scaled->n, i)];
+        places->nearest = smaller(places->nearest, places->s[i]);
+        if (i < scaled->n) continue;
+        Count *ahead = &now->kinks.ahead[i];
+        for (*ahead = oldest; *ahead < now->kinks.end; ++*ahead)
+            if (kink(&now->kinks, *ahead)->xi + places->s[i] > xi + MERGE) break;
+        now->hole.cursor[i] = find(&now->hole, xi - places->s[i]);
+    }
+}
+
+static inline void change_regime(Integrator *p, Regime regime) {
+    p->now.regime = regime;
+    p->law_known = 0;
+}
+
+/* Let points of the body have other places, with the bit at `xi`. */
+static inline void change_places(Integrator *p, Contact contact, double xi) {
+    p->now.regime.contact = contact;
+    find_places(&p->now, &p->scaled, xi);
+    p->law_known = 0;
+}
+
+/* What bends the beam with the bit at `xi` in the state `x`. */
+static inline Loads loads_at(const Integrator *p, double xi, const double x[COMPONENTS], double F_rss) {
+    const Places *places = &p->now.places;
+    double delayed[MAX_PLACES][DIRECTIONS] = {{0}};
+    Loads loads;
+    loads.count = places->count, loads.F_rss = F_rss;
+    hole_at_places(&p->now.hole, places, xi, delayed);
+    for (int i = 0; i < places->count; i++) loads.e[i] = x[LATERAL] - delayed[i][0] - places->s[i] * x[ANGLE];
+    loads.g = sin(p->scaled.axial ? x[ANGLE] : x[LATERAL] - delayed[0][0]);
+    return loads;
+}
+
+/* The steering force with the bit at `xi`, ahead of where the inputs were taken over. */
+static inline double force_at(const State *now, double xi) {
+    return inputs_ahead(now->inputs, xi - now->inputs_xi).F_rss;
+}
+
+/* The inputs where the bit is. */
+static inline ScaledInputs inputs_here(const State *now) { return inputs_ahead(now->inputs, now->xi - now->inputs_xi); }
+
+#endif

@@ -1,0 +1,79 @@
+"""The course of the inputs of a case over the drilled length: where they change, and how they go on in between.
+
+`simulate` and the drivers of FMUs have it from here, so that both drill the same hole.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Floats
+from ..case.case import Case, Profile
+from ..core.quantities import ACTING
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """Inputs on pieces of the drilled length, on each of which every one is constant or linear.
+
+    Parameters
+    ----------
+    names
+        The inputs.
+    starts
+        Drilled length at which each piece starts, m, increasing from 0, shape (pieces,).
+    values
+        The inputs at the start of each piece, in SI units, shape (pieces, inputs).
+    slopes
+        Their changes per metre drilled, shape (pieces, inputs).
+    """
+
+    names: tuple[str, ...]
+    starts: Floats
+    values: Floats
+    slopes: Floats
+
+    @classmethod
+    def of(cls, profiles: dict[str, Profile]) -> "Course":
+        """The course of some inputs, each with its own entries."""
+        starts = np.unique(np.concatenate([profile.drilled_length for profile in profiles.values()]))
+        values, slopes = np.empty((2, len(starts), len(profiles)))
+        for i, profile in enumerate(profiles.values()):
+            entry = np.searchsorted(profile.drilled_length, starts, side="right") - 1
+            length, value = np.array(profile.drilled_length), np.array(profile.values)
+            slope = np.zeros(len(value))
+            if profile.linear:
+                slope[:-1] = np.diff(value) / np.diff(length)
+            values[:, i] = value[entry] + slope[entry] * (starts - length[entry])
+            slopes[:, i] = slope[entry]
+        return cls(tuple(profiles), starts, values, slopes)
+
+    def at(self, length: Floats, piece: NDArray[np.intc]) -> Floats:
+        """The inputs at drilled lengths, m, each on the piece of that number; shape (lengths, inputs)."""
+        values: Floats = np.take(self.values, piece, axis=0)
+        if self.slopes.any():
+            values += self.slopes[piece] * (length - self.starts[piece])[:, None]
+        return values
+
+
+def course_of(case: Case) -> Course:
+    """The course of all inputs that a case gives."""
+    return Course.of(case.profiles())
+
+
+def acting(course: Course, length: Floats, piece: NDArray[np.intc]) -> Floats:
+    """What an engine is given for legs that start at some lengths, each on a piece; (legs, inputs) as of `ACTING`."""
+    on_pieces = np.zeros((len(course.starts), len(ACTING)))
+    for i, name in enumerate(course.names):
+        if name in ACTING:
+            on_pieces[:, ACTING.index(name)] = course.values[:, i]
+            if f"{name}_slope" in ACTING:
+                on_pieces[:, ACTING.index(f"{name}_slope")] = course.slopes[:, i]
+    inputs: Floats = np.take(on_pieces, piece, axis=0)
+    if course.slopes.any():
+        values = course.at(length, piece)
+        for i, name in enumerate(course.names):
+            if name in ACTING:
+                inputs[:, ACTING.index(name)] = values[:, i]
+    return inputs

@@ -1,0 +1,73 @@
+"""BHAs as they are built, for the tests: the references of tests/reference_bha, and random ones."""
+
+import json
+from collections.abc import Iterator
+from itertools import accumulate
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from hypothesis import strategies as st
+
+from boreprop.core.system import BottomHoleAssembly
+
+FOLDER = Path(__file__).parent / "reference_bha"
+CASES: dict[str, dict[str, Any]] = json.loads((FOLDER / "cases.json").read_text(encoding="utf-8"))["cases"]
+
+
+def reference_bha(name: str) -> BottomHoleAssembly:
+    """The BHA of a reference trajectory."""
+    case = CASES[name]
+    lengths, stiffnesses, weights, diameters = map(tuple, zip(*case["sections"], strict=True))
+    ends = list(accumulate(lengths))
+    body = [diameters[int(np.searchsorted(ends, s - 1e-9))] for s in case["body_points"]]
+    return BottomHoleAssembly(
+        tuple(case["stabilizers"]),
+        tuple(case["clearances"]),
+        case["rss"],
+        weights[0],
+        stiffnesses[0],
+        section_lengths=lengths,
+        section_distributed_weights=weights,
+        section_flexural_stiffnesses=stiffnesses,
+        section_outer_diameters=diameters,
+        body_point_positions=tuple(case["body_points"]),
+        body_point_clearances=tuple((case["hole_diameter"] - diameter) / 2 for diameter in body),
+        end_deflection=case["end_offset"],
+        axial_load=case["axial"],
+    )
+
+
+def rows(name: str) -> Iterator[dict[str, float]]:
+    """The rows of a reference trajectory."""
+    table = np.genfromtxt(FOLDER / f"{name}.csv", delimiter=",", names=True, deletechars="")
+    for row in table:
+        yield dict(zip(table.dtype.names or (), map(float, row), strict=True))
+
+
+@st.composite
+def built(draw: st.DrawFn, *, axial: bool = False, points: int = 0) -> BottomHoleAssembly:
+    """Up to four stabilizers on one to four sections, with as many points on the body as asked for."""
+    spans = draw(st.lists(st.floats(0.5, 20.0), min_size=1, max_size=4))
+    stabilizers = tuple(accumulate(spans))
+    reach = stabilizers[-1]
+    count = draw(st.integers(1, 4))
+    shares = np.array(draw(st.lists(st.floats(0.2, 1.0), min_size=count, max_size=count)))
+    lengths = tuple((shares / shares.sum() * reach * 1.001).tolist())
+    stiffnesses = tuple(draw(st.lists(st.floats(2e6, 5e7), min_size=count, max_size=count)))
+    weights = tuple(draw(st.lists(st.floats(300.0, 3000.0), min_size=count, max_size=count)))
+    places = tuple((reach * (np.arange(points) + 0.5) / points).tolist())
+    return BottomHoleAssembly(
+        stabilizers,
+        tuple(draw(st.lists(st.floats(0.0, 5e-3), min_size=len(spans) - 1, max_size=len(spans) - 1))),
+        draw(st.floats(0.1, 1.0)) * min(stabilizers[0], 3.0),
+        weights[0],
+        stiffnesses[0],
+        section_lengths=lengths,
+        section_distributed_weights=weights,
+        section_flexural_stiffnesses=stiffnesses,
+        section_outer_diameters=(0.0,) * count,
+        body_point_positions=places,
+        body_point_clearances=(draw(st.floats(5e-3, 5e-2)),) * points,
+        axial_load=axial,
+    )

@@ -1,0 +1,210 @@
+"""How a BHA lies in a given hole: against finite elements, closed forms and the definition of the contact problem."""
+
+from dataclasses import replace
+from itertools import pairwise
+from math import cos, pi, sin
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.linalg import solveh_banded
+from scipy.optimize import brentq
+
+from beams_as_built import built
+from boreprop.arrays import Floats
+from boreprop.core.beam import Beam
+from boreprop.core.errors import ParameterError
+from boreprop.core.system import BitRock, BottomHoleAssembly, scale
+from boreprop.kernel.binding import Lie, lie
+
+pytestmark = pytest.mark.usefixtures("kernel")
+
+
+def one(bha: BottomHoleAssembly, offsets: Floats, force: float = 0.0, sine: float = 0.0, **more: object) -> Lie:
+    """How a BHA lies in one hole."""
+    return lie(bha, offsets[None], np.array([force]), np.array([sine]), **more)  # type: ignore[arg-type]
+
+
+def loose(bha: BottomHoleAssembly) -> BottomHoleAssembly:
+    """The same with so much clearance that nothing touches."""
+    return replace(bha, stabilizer_clearances=(1e6,) * len(bha.stabilizer_clearances))
+
+
+def supports(bha: BottomHoleAssembly) -> Floats:
+    """Distances of stabilizers and points of the body from the bit, m."""
+    return np.array([*bha.stabilizer_positions, *bha.body_point_positions])
+
+
+class Elements:
+    """An independent beam: cubic Hermite elements, stiffened or softened by the tension in the middle of each."""
+
+    def __init__(self, bha: BottomHoleAssembly, weight_on_bit: float, inclination: float, sine: float) -> None:
+        reach, ends = bha.stabilizer_positions[-1], np.cumsum(bha.section_lengths)
+        marks = np.unique([0.0, bha.rss_position, *supports(bha), *ends[ends < reach]])
+        marks = marks[np.append(True, np.diff(marks) > 1e-6)]
+        parts = [np.linspace(a, b, max(int((b - a) / 0.25), 1), endpoint=False) for a, b in pairwise(marks)]
+        self.s = np.concatenate([*parts, [reach]])
+        middle, h = (self.s[1:] + self.s[:-1]) / 2, np.diff(self.s)
+        section = np.minimum(np.searchsorted(ends, middle), len(ends) - 1)
+        EI, w = np.array(bha.section_flexural_stiffnesses)[section], np.array(bha.section_distributed_weights)[section]
+        above = np.append(0.0, np.cumsum(w * h))
+        N = (-weight_on_bit + cos(inclination) * (above[1:] + above[:-1]) / 2) * bha.axial_load
+        self.size = 2 * self.s.size
+        self.K, self.f = np.zeros((4, self.size)), np.zeros(self.size)  # lower band
+        for k in range(h.size):
+            L = h[k]
+            bend = [
+                [12, 6 * L, -12, 6 * L],
+                [0, 4 * L * L, -6 * L, 2 * L * L],
+                [0, 0, 12, -6 * L],
+                [0, 0, 0, 4 * L * L],
+            ]
+            pull = [[36, 3 * L, -36, 3 * L], [0, 4 * L * L, -3 * L, -L * L], [0, 0, 36, -3 * L], [0, 0, 0, 4 * L * L]]
+            own = EI[k] / L**3 * np.array(bend) + N[k] / (30 * L) * np.array(pull)
+            for i in range(4):
+                for j in range(i, 4):
+                    self.K[j - i, 2 * k + i] += own[i, j]
+            self.f[2 * k : 2 * k + 4] -= w[k] * sine * np.array([L / 2, L * L / 12, L / 2, -L * L / 12])
+
+    def push(self, s: float, force: float) -> None:
+        self.f[2 * int(np.argmin(abs(self.s - s)))] += force
+
+    def solve(self, e_n: float) -> Floats:
+        """Deflections at the nodes, clamped to the bit and hinged at −e_n."""
+        K, f = self.K.copy(), self.f.copy()
+        for held, value in ((0, 0.0), (1, 0.0), (self.size - 2, -e_n)):
+            for d in range(4):
+                if held + d < self.size:
+                    f[held + d] -= K[d, held] * value
+                    K[d, held] = 0.0
+                if d and held - d >= 0:
+                    f[held - d] -= K[d, held - d] * value
+                    K[d, held - d] = 0.0
+            K[0, held], f[held] = 1.0, value
+        deflections: Floats = solveh_banded(K, f, lower=True)
+        return deflections
+
+
+@given(bha=built(), e_n=st.floats(-0.1, 0.1), force=st.floats(-3e4, 3e4), sine=st.floats(-1.0, 1.0))
+def test_a_uniform_beam_in_sections_is_the_closed_form(
+    bha: BottomHoleAssembly, e_n: float, force: float, sine: float
+) -> None:
+    same = (bha.flexural_stiffness,) * len(bha.section_lengths), (bha.distributed_weight,) * len(bha.section_lengths)
+    stepped = replace(loose(bha), section_flexural_stiffnesses=same[0], section_distributed_weights=same[1])
+    uniform = BottomHoleAssembly(*(getattr(bha, name) for name in list(bha.__dataclass_fields__)[:5]))
+    scaled, l1, F_star = scale(uniform, BitRock(1.0, 1.0, 0.1)), bha.length_scale, bha.force_scale
+    beam, none = Beam(scaled), [0.0] * (len(scaled.s) - 1)
+    places = np.linspace(0.0, bha.stabilizer_positions[-1], 9)
+    offsets = np.zeros(len(scaled.s))
+    offsets[-1] = e_n
+    found = one(stepped, offsets, force, sine, places=places)
+    loads = e_n / l1, none, force / F_star, sine
+    shape = [l1 * beam.shape(s / l1, *loads) for s in places]
+    assert found.bit_force[0] == pytest.approx(F_star * beam.bit_force(*loads), rel=1e-12, abs=1e-12 * F_star)
+    assert found.bit_moment[0] == pytest.approx(F_star * l1 * beam.bit_moment(*loads), rel=1e-12, abs=1e-12 * F_star)
+    np.testing.assert_allclose(found.shape[0], shape, atol=1e-12 * max(map(abs, [*shape, 1.0])))
+
+
+@given(
+    bha=built(axial=True, points=3),
+    e_n=st.floats(-0.1, 0.1),
+    force=st.floats(-3e4, 3e4),
+    weight=st.floats(0.0, 0.5),
+    inclination=st.floats(0.0, pi / 2),
+)
+def test_sections_under_axial_load_are_those_of_finite_elements(
+    bha: BottomHoleAssembly, e_n: float, force: float, weight: float, inclination: float
+) -> None:
+    free = replace(loose(bha), body_point_clearances=(1e6,) * 3)
+    # a fraction of the Euler load of the whole, so that the beam stands without its stabilizers too
+    weight *= pi**2 * min(bha.section_flexural_stiffnesses) / bha.stabilizer_positions[-1] ** 2
+    offsets = np.zeros(supports(bha).size)
+    offsets[len(bha.stabilizer_positions) - 1] = e_n
+    elements = Elements(free, weight, inclination, sin(inclination))
+    elements.push(bha.rss_position, force)
+    expected = elements.solve(e_n)[::2]
+    found = one(
+        free, offsets, force, sin(inclination), weight_on_bit=weight, inclination=inclination, places=elements.s
+    )
+    assert np.abs(found.shape[0] - expected).max() <= 2e-5 * np.abs(expected).max() + 1e-9
+
+
+@given(bha=built(axial=True), inclination=st.floats(0.0, 1.5), place=st.floats(0.05, 1.0))
+def test_the_force_at_the_bit_is_what_equilibrium_and_reciprocity_ask_for(
+    bha: BottomHoleAssembly, inclination: float, place: float
+) -> None:
+    """F_0 under a unit force at s is −(1 + E(s)), E(s) the deflection there where the end is off by one."""
+    free = replace(loose(bha), rss_position=place * min(bha.stabilizer_positions[0], 3.0))
+    offsets = np.zeros(len(bha.stabilizer_positions))
+    more = {"weight_on_bit": 1e4, "inclination": inclination, "places": (free.rss_position,)}
+    pushed = one(free, offsets, 1.0, 0.0, **more)
+    offsets[-1] = 1.0
+    off = one(free, offsets, 0.0, 0.0, **more)
+    assert pushed.bit_force[0] == pytest.approx(-(1 + off.shape[0, 0]), abs=1e-9)
+
+
+@given(
+    bha=built(points=12),
+    sine=st.floats(-1.0, 1.0),
+    force=st.floats(-3e4, 3e4),
+    bow=st.floats(-3e-3, 3e-3),
+    tilt=st.floats(-0.01, 0.01),
+)
+def test_contacts_satisfy_the_complementarity_problem(
+    bha: BottomHoleAssembly, sine: float, force: float, bow: float, tilt: float
+) -> None:
+    s = supports(bha)
+    offsets, n = -tilt * s - bow * s**2 / 2, len(bha.stabilizer_positions)
+    order = np.argsort(s)
+    found = one(bha, offsets, force, sine, places=s[order])
+    shape = np.empty_like(s)
+    shape[order] = found.shape[0]
+    delta, F = offsets + shape, found.forces[0]
+    y_star = np.array([*bha.stabilizer_clearances, 0.0, *bha.body_point_clearances])
+    assert F[n - 1] == 0.0
+    assert abs(delta[n - 1]) <= 1e-9
+    tolerated = 1e-9 * max(1.0, np.abs(F).max())
+    for i in set(range(s.size)) - {n - 1}:
+        assert abs(delta[i]) <= y_star[i] + 1e-9
+        if abs(F[i]) > tolerated:
+            assert delta[i] == pytest.approx(-np.sign(F[i]) * y_star[i], abs=1e-9)
+
+
+def test_a_string_that_lies_on_the_low_side_is_held_there() -> None:
+    bha = replace(
+        BottomHoleAssembly((10.0,), (), 0.5, 1000.0, 1e7),
+        section_lengths=(10.0,),
+        section_distributed_weights=(1000.0,),
+        section_flexural_stiffnesses=(1e7,),
+        section_outer_diameters=(0.17,),
+        end_deflection=-0.03,
+    )
+    found = one(bha, np.zeros(1), places=(10.0,))
+    assert found.shape[0, 0] == pytest.approx(-0.03, rel=1e-12)
+    assert found.bit_force[0] == pytest.approx(3 * 1e7 * 0.03 / 10.0**3, rel=1e-12)
+
+
+def test_beyond_its_buckling_load_a_bha_is_refused_with_the_load() -> None:
+    """A clamped and hinged beam without weight buckles under 4.4934² EI/ℓ², the root of tan x = x."""
+    bha = replace(BottomHoleAssembly((10.0,), (), 0.5, 0.0, 1e7), axial_load=True)
+    critical = brentq(lambda x: sin(x) - x * cos(x), 4.0, 4.6, xtol=1e-14) ** 2 * 1e7 / 10.0**2
+    one(bha, np.zeros(1), weight_on_bit=critical * (1 - 1e-6))
+    with pytest.raises(ParameterError, match=r"^weight_on_bit: must be < .*, where the BHA buckles") as refused:
+        one(bha, np.zeros(1), weight_on_bit=critical * (1 + 1e-6))
+    assert refused.value.problem
+    assert refused.value.problem.limit == pytest.approx(critical, rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("stabilizers", "EI", "weight", "critical"),
+    [((1.2192, 28.6512), 1.704e7, 1850.0, 480e3), ((13.716, 22.86, 50.292), 9.575e6, 1332.9, 264e3)],
+)
+def test_between_held_stabilizers_known_bhas_buckle_where_finite_elements_say(
+    stabilizers: tuple[float, ...], EI: float, weight: float, critical: float
+) -> None:
+    bha = BottomHoleAssembly(stabilizers, (1e-3,) * (len(stabilizers) - 1), 0.3, weight, EI, axial_load=True)
+    with pytest.raises(ParameterError) as refused:
+        one(bha, np.zeros(len(stabilizers)), weight_on_bit=1e7, inclination=np.radians(20.0))
+    assert refused.value.problem
+    assert refused.value.problem.limit == pytest.approx(critical, rel=2e-3)
