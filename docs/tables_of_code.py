@@ -24,7 +24,9 @@ PROGRAMS: dict[str, Any] = {
     "boreprop-fmu": boreprop_fmu.cli,
     "boreprop-view": boreprop_viz.cli,
 }
-SIZES = {"n": "[1…n]", "n-1": "[1…n−1]"}
+NUMBERS = {"n": "[1…n]", "n-1": "[1…n−1]", "sections": "[1…]", "points": "[1…]"}
+ONLY = dict.fromkeys(("sections", "stepped"), "only with sections")
+ONLY |= dict.fromkeys(("points", "body"), "only with body_contact") | {"axial": "only with axial_load"}
 
 
 def variables(role: str) -> str:
@@ -33,7 +35,7 @@ def variables(role: str) -> str:
     return _table(
         head,
         (
-            [f"`{q.name}{SIZES.get(q.size, '')}`", _unit(q), q.symbol, q.equation, q.meaning, q.kind, q.range]
+            [f"`{q.name}{NUMBERS.get(q.size, '')}`", _unit(q), q.symbol, q.equation, _meaning(q), q.kind, q.range]
             for q in QUANTITIES
             if q.role == role
         ),
@@ -43,7 +45,8 @@ def variables(role: str) -> str:
 def case_keys() -> str:
     """The table of all keys of a case file, with the units that they have there."""
     head = ["key", "unit", "symbol", "what it is", "accepted"]
-    keys = sorted((q for q in map(_as_in_files, QUANTITIES) if q.key), key=lambda q: TABLES.index(q.key.split(".")[0]))
+    chosen = [_as_in_files(quantity) for quantity in QUANTITIES if quantity.key]
+    keys = sorted(chosen, key=lambda quantity: TABLES.index(quantity.key.partition(".")[0]))
     return _table(head, ([f"`{q.key}`", _unit(q), q.symbol, q.meaning, q.range] for q in keys))
 
 
@@ -66,8 +69,15 @@ def _unit(quantity: Quantity) -> str:
     return quantity.unit.replace(".", "·").replace("m2", "m²")
 
 
+def _meaning(quantity: Quantity) -> str:
+    """What it is, and of which drilling systems only."""
+    only = ONLY.get(quantity.size)
+    return f"{quantity.meaning} ({only})" if only else quantity.meaning
+
+
 def _as_in_files(quantity: Quantity) -> Quantity:
-    """A quantity as case files have it: angles are in degrees there."""
+    """A quantity as case files have it: sections are below [bha] there, and angles in degrees."""
+    quantity = replace(quantity, key=re.sub(r"^section\.", "bha.section.", quantity.key))
     if not quantity.key.endswith("_deg"):
         return quantity
     above, at_least, at_most = map(degrees, (quantity.above, quantity.at_least, quantity.at_most))
