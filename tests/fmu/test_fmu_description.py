@@ -24,7 +24,7 @@ from boreprop.core.drilling import Drilling
 from boreprop.core.quantities import INPUTS, OUTPUTS, RELATIVE_TOLERANCE, VARIABLES, quantity_of, scalar_names
 from boreprop.core.system import BottomHoleAssembly
 from boreprop.errors import InputError
-from flavours import Flavour, both_flavours, build_to_read
+from flavours import PYTHON, Flavour, both_flavours, build_to_read
 from places import ROOT
 
 SCHEMA = Path(fmpy.__file__).parent / "schema" / "fmi2" / "fmi2ModelDescription.xsd"
