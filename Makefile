@@ -5,7 +5,7 @@ BIN = .venv/bin
 C = $(wildcard model/boreprop/kernel/*.[ch] fmu_build/boreprop_fmu/native/*.[ch] fmu_build/boreprop_fmu/native/*/*.h)
 
 .PRECIOUS: .venv/%.installed
-.PHONY: demo binaries wheels test soak lint bench clean
+.PHONY: demo binaries wheels test soak lint docs bench clean
 
 demo: .venv/all.compiled  # the main job: case file, FMU, run, viewer recording, figures, summary; results in out/
 	mkdir -p out
@@ -45,6 +45,10 @@ lint: .venv/dev.installed  # style, types and the import contract; style and fau
 	$(BIN)/lint-imports
 	$(BIN)/python tests/lint_c.py
 	$(BIN)/python tests/lint_yaml.py
+
+docs: .venv/docs.compiled  # the documentation, with its tutorials executed: out/docs/index.html
+	rm -rf out/docs
+	$(BIN)/sphinx-build --fail-on-warning --keep-going docs out/docs
 
 bench: .venv/bench.compiled  # speed, side by side with something else
 	$(BIN)/python benchmarks/integrator.py

@@ -1,4 +1,4 @@
-"""Draw the README's pictures of the viewer anew: ``python docs/make_pictures.py``.
+"""Draw the pictures of the viewer anew: ``python docs/make_pictures.py``.
 
 Needs the extra ``viz``, and on a machine without a graphics card Mesa's software Vulkan driver (Debian:
 mesa-vulkan-drivers and libvulkan1).

@@ -30,6 +30,6 @@ def replacing(path: Path) -> Iterator[Path]:
             yield draft
             os.replace(draft, path)
         except OSError as error:
-            if error.filename is None:  # of a write, as to a full disk
+            if error.errno and error.filename is None:  # of a write, as to a full disk
                 error.filename = str(path)
             raise

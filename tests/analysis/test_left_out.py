@@ -1,4 +1,4 @@
-"""The tables of how much it matters what is not well known, or what the model leaves out: in docs/model.md and FMUs."""
+"""The tables of how much it matters what is not known, or what the model leaves out: in docs/limits.md and FMUs."""
 
 import re
 from collections.abc import Callable
@@ -14,7 +14,7 @@ from boreprop_fmu.pack.documentation import LEFT_OUT, page
 from built_beam import Built
 from places import EXAMPLES, ROOT
 
-PAGE = (ROOT / "docs" / "model.md").read_text()
+PAGE = (ROOT / "docs" / "limits.md").read_text()
 FORCE = 20e3
 CHANGES: dict[str, Callable[[Case], Case]] = {
     "active weight on bit 30 kN": lambda case: replace(case, active_weight_on_bit=30e3),

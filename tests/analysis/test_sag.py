@@ -111,7 +111,7 @@ def test_the_pages_say_how_fast_such_an_assembly_drops(case: Case) -> None:
     said = f"drops {-rate:.1f} °/30 m"
     assert said == "drops 6.0 °/30 m"
     assert 2.952 / 100 / 0.3048 * 30 == pytest.approx(2.9, abs=0.05)
-    assert f"{said}, where 2.9 °/30 m are published" in (ROOT / "docs" / "model.md").read_text(encoding="utf-8")
+    assert f"{said}, where 2.9 °/30 m are published" in (ROOT / "docs" / "limits.md").read_text(encoding="utf-8")
     assert f"{said} here for 2.9 °/30 m" in page(case, "Borehole", "native", {})
 
 

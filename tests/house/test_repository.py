@@ -49,14 +49,6 @@ def test_versions_agree() -> None:
     assert re.fullmatch(version, next(heading for heading in headings if heading != "Unreleased"))
 
 
-def test_readme_gives_the_commands_of_make_demo() -> None:
-    recipe = text("Makefile").partition("\ndemo:")[2].partition("\n\n")[0]
-    commands = re.findall(r"\$\(BIN\)/(boreprop\S* .+)", recipe)
-    assert len(commands) >= 5
-    readme = text("README.md")
-    assert not [command for command in commands if command not in readme]
-
-
 def test_links_between_documents_lead_somewhere(files: list[Path]) -> None:
     links = [
         (document, target)

@@ -69,7 +69,7 @@ ${identifier}_fmi2DoStep.""",
         "limits": "",
     },
 }
-LEFT_OUT = {  # docs/model.md, whose numbers are tested
+LEFT_OUT = {  # docs/limits.md, whose numbers are tested
     "active weight on bit 30 kN": "+23 %",
     "active weight on bit 90 kN": "−18 %",
     "η halved": "+20 %",
