@@ -36,7 +36,11 @@ def test_nothing_is_described_twice(of: str) -> None:
 @pytest.mark.parametrize(("part", "made"), PARTS.items())
 def test_every_field_of_a_case_is_in_the_table(part: str, made: type) -> None:
     ours = {quantity.attribute for quantity in QUANTITIES if quantity.field and quantity.part == part}
-    assert ours == {field.name for field in fields(made)} - {*PARTS, "inputs", "formations"}  # which hold inputs by their names
+    assert ours == {field.name for field in fields(made)} - {
+        *PARTS,
+        "inputs",
+        "formations",
+    }  # which hold inputs by their names
 
 
 def test_every_quantity_has_a_unit_that_can_be_shown() -> None:

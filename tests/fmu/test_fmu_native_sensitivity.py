@@ -32,7 +32,15 @@ def modes(row: dict[str, float]) -> list[float]:
 
 
 @pytest.mark.parametrize("force", FORCES)
-@pytest.mark.parametrize(("name", "step"), [("rss_force", 1.0), ("active_weight_on_bit", 0.1)])
+@pytest.mark.parametrize(
+    ("name", "step"),
+    [
+        ("rss_force", 1.0),
+        ("active_weight_on_bit", 0.1),
+        ("lateral_steering_resistance", 1e-3),
+        ("bit_tilt_limit", 1e-6),
+    ],
+)
 def test_by_an_input_it_is_the_difference_quotient_within_the_regime(
     one: Instance, force: float, name: str, step: float
 ) -> None:

@@ -94,6 +94,21 @@ def test_a_state_goes_on_after_a_reset_with_other_parameters_inputs_and_survey(o
     assert one.get("survey_file").decode() == str(tmp_path / "survey.csv")
 
 
+def test_a_state_goes_on_in_the_rock_that_it_was_saved_in(one: Instance) -> None:
+    one.initialize(rss_force=2e3)
+    one.steps(3, 0.9)
+    one.set(lateral_steering_resistance=25.0, angular_steering_resistance=0.7, bit_tilt_limit=0.005)
+    one.steps(2, 0.9)
+    state, time = one.state(), one.time
+    rows = one.steps(5, 1.1)
+    one.set(lateral_steering_resistance=6.0, bit_tilt_limit=0.03)
+    one.steps(2, 0.9)
+    one.set_state(state)
+    one.time = time
+    assert one.steps(5, 1.1) == rows
+    assert one.get("lateral_steering_resistance") == 25.0
+
+
 def test_a_kept_state_may_be_taken_over_again_and_freed_twice(one: Instance) -> None:
     one.initialize()
     kept = fmi2FMUstate()
