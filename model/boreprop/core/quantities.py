@@ -35,7 +35,13 @@ class Structure(NamedTuple):
     @property
     def is_of_the_paper(self) -> bool:
         """Whether it is a uniform beam without a load along it, the paper's."""
-        return self == Structure(self.stabilizers)
+        return not self.beyond_the_paper
+
+    @property
+    def beyond_the_paper(self) -> str:
+        """What it has that the paper's beam has not, by the names in case files; empty if nothing."""
+        has = {"section": self.sections, "axial_load": self.axial_load, "body_contact": self.body_points}
+        return ", ".join(name for name, count in has.items() if count)
 
 
 @cache

@@ -62,10 +62,14 @@ DRILLING: dict[str, Callable[..., Engine]] = {"native": NativeDrilling, "python"
 ENGINES = ("auto", *DRILLING)
 
 
-def held(legs: int, rss_force: float | Floats, weight: float) -> Floats:
-    """Inputs, N, that are constant along each leg, as `Engine.follow` takes them, (legs, inputs)."""
+def held(legs: int, rss_force: float | Floats, weight: float, weight_on_bit: float = 0.0) -> Floats:
+    """Inputs, N, that are constant along each leg, as `Engine.follow` takes them, (legs, inputs).
+
+    `weight` is the active weight on bit, `weight_on_bit` all of it, for a BHA with `axial_load`; 0: the active one.
+    """
     inputs = np.zeros((legs, len(ACTING)))
     inputs[:, ACTING.index("rss_force")], inputs[:, ACTING.index("active_weight_on_bit")] = rss_force, weight
+    inputs[:, ACTING.index("weight_on_bit")] = weight_on_bit
     return inputs
 
 
