@@ -223,6 +223,11 @@ def scalar_names(quantities: tuple[Quantity, ...], structure: int | Structure) -
     return [name for quantity in quantities for name in quantity.names(structure)]
 
 
+def names_of_runs(n: int) -> list[str]:
+    """The scalar names of all inputs and outputs that a run with `n` stabilizers may have, whatever its beam."""
+    return scalar_names(INPUTS + OUTPUTS, Structure(n, axial_load=1, body_points=1))
+
+
 def quantity_of(scalar_name: str) -> Quantity:
     """The quantity that a scalar name, ``name`` or ``name[i]``, is a value of; `KeyError` if there is none."""
     return BY_NAME[scalar_name.partition("[")[0]]
