@@ -71,9 +71,11 @@ def test_at_the_stabilizers_it_is_the_deflection_of_the_model() -> None:
     response = steady_response(case, 5000.0, 0.5)
     beam = BeamInHole(case)
     e = -beam.s * response.bit_tilt - beam.s**2 * response.build_rate / 2
-    bent = beam.bent(e[-1:], np.array([response.stabilizer_force]), np.array([5000.0]), np.array([np.sin(0.5)]))[0]
+    forces = {f"stabilizer_force[{i}]": np.array([force]) for i, force in enumerate(response.stabilizer_force, 1)}
+    loads = {"rss_force": np.array([5000.0]), "average_inclination[1]": np.array([0.5])} | forces
+    bent, _ = beam.bent(Trajectory(loads, case), e[None])
     at = np.searchsorted(beam.s, beam.stabilizer)
-    np.testing.assert_allclose((e + bent)[at], [*response.stabilizer_deflection, 0.0], atol=1e-9)
+    np.testing.assert_allclose((e + bent[0])[at], [*response.stabilizer_deflection, 0.0], atol=1e-9)
 
 
 def test_a_hole_that_turns_evenly_hangs_as_the_steering_response_says() -> None:
@@ -89,7 +91,8 @@ def test_a_hole_that_turns_evenly_hangs_as_the_steering_response_says() -> None:
     response, beam = steady_response(case, 9000.0, 0.0), BeamInHole(case)
     last = Trajectory({name: values[-1:] for name, values in run.columns.items()}, run.case)
     hole = hole_of(run, case.survey, beam.stabilizer[-1])
-    found = (beam.bha_axis(last) - beam.hole_axis(last, hole, beam.s))[0]
+    hole_axis = beam.hole_axis(last, hole, beam.s)
+    found = (beam.bha_axis(last, hole_axis)[0] - hole_axis)[0]
     assert last["bit_tilt"][0] == pytest.approx(response.bit_tilt, rel=1e-3)
     assert found[np.argmax(np.abs(found))] == pytest.approx(steady_sag(case, response, 0.0).offset, rel=2e-3)
 

@@ -113,23 +113,42 @@ def table(names: Sequence[str], facts: Sequence[dict[str, str]]) -> str:
 def case_facts(case: Case) -> dict[str, str]:
     """The facts about a case: name → value in the units people use."""
     bha, bit = case.bha, case.bit
-    contact = can_touch(bha, bit, case.survey.inclination[-1], case.schedule.rss_force)
+    paper = bha.structure.is_of_the_paper
     straight = straight_drilling(case)
     return {
         "active weight on bit": UNITS["N"].text(case.active_weight_on_bit),
         "**ηΠ**": f"**{eta_pi(bha, bit, case.active_weight_on_bit):.4g}**",
         "drilling straight, contact": touching(straight.response) + ", tilt at its limit" * straight.saturated,
         "drilling straight, roots": BY_THE_ROOTS[straight.verdict],
-        "its critical ηΠ": _limit(straight.critical),
-        "critical ηΠ, all touching": _limit(critical_eta_pi(case, contact=contact)),
+        "its critical ηΠ": _limit(straight.critical) if paper else BY_THE_ROOTS[None],
+        "critical ηΠ, all touching": _limit_of_all(case) if paper else BY_THE_ROOTS[None],
         "stabilizers": f"{', '.join(f'{s:.4g}' for s in bha.stabilizer_positions)} m",
         "clearances": f"{', '.join(map(SMALL_LENGTH.number, bha.stabilizer_clearances)) or '–'} {SMALL_LENGTH.shown}",
+        "beam": _beam(case),
         "weight": UNITS["N/m"].text(bha.distributed_weight),
         "stiffness EI": UNITS["N.m2"].text(bha.flexural_stiffness, ".0f"),
         "η, χ": f"{bit.lateral_steering_resistance:g}, {bit.angular_steering_resistance:g}",
         "tilt limit ψ*": UNITS["rad"].text(bit.tilt_limit),
         "pads, hole": f"{UNITS['m'].text(bha.rss_position, '.3g')}, {SMALL_LENGTH.text(case.bit_diameter, '.4g')}",
     }
+
+
+def _beam(case: Case) -> str:
+    """What the beam is made of, and what loads it besides its weight."""
+    bha = case.bha
+    sections = len(bha.section_lengths)
+    parts = [f"{sections} section{'s' * (sections > 1)}, weight and EI at the bit" if sections else "uniform"]
+    if bha.axial_load:
+        parts.append(f"{UNITS['N'].text(case.weight_on_bit or case.active_weight_on_bit)} along it")
+    if bha.body_point_positions:
+        parts.append(f"on the wall at up to {len(bha.body_point_positions)} points")
+    return "; ".join(parts)
+
+
+def _limit_of_all(case: Case) -> str:
+    """The critical ηΠ with all stabilizers touching that can touch."""
+    contact = can_touch(case.bha, case.bit, case.survey.inclination[-1], case.schedule.rss_force)
+    return _limit(critical_eta_pi(case, contact=contact))
 
 
 def _limit(critical: CriticalEtaPi | None) -> str:

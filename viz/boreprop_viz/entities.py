@@ -39,6 +39,22 @@ def log_bha(track: Track, shapes: Shapes) -> None:
     send_strips(track, "bit_frame/bha", moments(shapes.rows), strips)
 
 
+def log_body(track: Track, shapes: Shapes) -> None:
+    """Both sides of the body of the BHA, where its diameter is known, and the wall where it pushes, with the forces."""
+    at, sides, frame = moments(shapes.rows), shapes.body, shapes.frame
+    if sides is not None:
+        strips = points(track.scales.lateral * sides, -frame.s[frame.along_bha])
+        send_strips(track, "bit_frame/body", at, strips)
+    if frame.body.size:
+        touching = shapes.body_force != 0.0
+        count = touching.sum(axis=1)
+        places = points(track.scales.lateral * shapes.body_contact_points, -frame.body)[touching]
+        vectors = points(shapes.body_force[touching] / track.scales.newtons_per_metre, 0.0)
+        send(track, "bit_frame/body_contact_point", at, rr.Points2D.columns(positions=places).partition(count))
+        arrows = rr.Arrows2D.columns(vectors=vectors, origins=places - vectors)
+        send(track, "bit_frame/body_contact_force", at, arrows.partition(count))
+
+
 def log_bit(track: Track, shapes: Shapes) -> None:
     """The bit: as wide as the hole at s = 0, and tapering ahead along its own axis."""
     ahead = BIT_LENGTH * shapes.frame.stabilizer[-1]

@@ -17,6 +17,7 @@ from .scales import Scales, round_down
 from .scene import Array
 from .style import (
     BIT,
+    BODY,
     BY_STABILIZER,
     FAINT,
     FURNITURE,
@@ -64,6 +65,9 @@ def log_styles(track: Track) -> None:
     for i, colour in enumerate(track.shades(BY_STABILIZER[: n - 1]), 1):
         rec.log(track.entity(f"bit_frame/contact_point/{i}"), _dots(colour, 5.0), static=True)
         forces[f"contact_force/{i}"] = colour
+    if track.case.bha.body_point_positions:
+        rec.log(track.entity("bit_frame/body_contact_point"), _dots(track.colour or BODY, 3.0), static=True)
+        rec.log(track.entity("bit_frame/body_contact_force"), _arrows(track.colour or BODY), static=True)
     text = _text(mixed(track.colour or WHITE, WHITE, PALE))
     for force, colour in forces.items():
         rec.log(track.entity(f"bit_frame/{force}"), _arrows(colour), static=True)

@@ -11,7 +11,7 @@ import numpy as np
 import rerun as rr
 
 from .furniture import log_labels
-from .style import BIT, BY_STABILIZER, GREY, HOLE, OLIVE, PLAN, RSS, Colour
+from .style import BIT, BODY, BY_STABILIZER, GREY, HOLE, OLIVE, PLAN, RSS, Colour
 from .track import Track
 
 KEY = "key"
@@ -29,7 +29,9 @@ def entries(tracks: Sequence[Track], planned: bool) -> list[Entry]:
     plan = [("plan", PLAN)] if planned else []
     if len(tracks) == 1:
         stabilizers = [(f"stabilizer {i}", colour) for i, colour in enumerate(BY_STABILIZER[: n - 1], 1)]
-        return [("hole", HOLE), ("BHA, bit", BIT), *plan, ("RSS", RSS), *stabilizers, ("dogleg severity", OLIVE)]
+        body = [("body on the wall", BODY)] if tracks[0].case.bha.body_point_positions else []
+        own = [("RSS", RSS), *stabilizers, *body, ("dogleg severity", OLIVE)]
+        return [("hole", HOLE), ("BHA, bit", BIT), *plan, *own]
     runs = [(shortened(track.name), track.colour or GREY) for track in tracks]
     numbers = [f"stabilizer {i}" for i in range(1, n)]
     firsts = zip_longest(("hole, build rate", "bit, dogleg severity"), numbers, ("low, +", "high, −"))

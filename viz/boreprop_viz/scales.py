@@ -32,6 +32,7 @@ EDGE = 0.1  # of such a power, between a number and the edge of the plot
 TILTS = 1.15  # tilt limits to either side in the plot of the tilt, so that a tilt at its limit does not lie on the edge
 RIPPLES = 1.15  # ripples to either side in their plot
 WALLS_APART = 0.6  # lengths of the BHA at most, in the bit frame: the factor that enlarges them is rounded down
+CURVED = 0.4  # lengths of the BHA, at most, from the axis of the frame to the walls of a hole that curves
 LONGEST_ARROW = 7  # parts into which the BHA is divided for the longest arrow to be one
 ARROWS = ("stabilizer_force", "bit_lateral_force", "rss_force")
 
@@ -136,7 +137,7 @@ def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) ->
         section=section_bounds(section, around=2 * reach),
         strip=strip_scales((start or 0.0) + begin, length, start or 0.0, max(ripples), len(runs)),
         frame=frame_bounds(reach),
-        lateral=max(1.0, round_down(WALLS_APART * reach / max(case.bit_diameter for case in cases))),
+        lateral=max(1.0, round_down(reach / max(map(lateral_room, runs)))),
         newtons_per_metre=max(largest, 1.0) / (reach / LONGEST_ARROW),
         severities=severities(cases),
         window=min(WAVES * wavelength, max(length, wavelength)),
@@ -196,6 +197,19 @@ def strip_scales(begin: float, length: float, start: float, ripple: float, count
         lateral=max(1.0, first_digit(0.45 * lane / ripple)),
         lanes=tuple(lane * (0.5 + place) for place in range(count)),
     )
+
+
+def lateral_room(run: Trajectory) -> float:
+    """The length of a BHA that the bit frame shows beside its hole, m: more, where the hole curves along a long BHA."""
+    case = case_of(run)
+    straight = case.bit_diameter / WALLS_APART
+    if any(name not in run for name in BY_NAME["average_inclination"].names(run.n)):
+        return straight
+    spans = np.diff(case.bha.stabilizer_positions, prepend=0.0)
+    averages = run.stack("average_inclination")
+    mean = averages @ spans / spans.sum()
+    bend = float(np.abs(np.cumsum((averages - mean[:, None]) * spans, axis=1)).max(initial=0.0))
+    return max(straight, (bend + case.bit_diameter / 2) / CURVED)
 
 
 def plot_range(plot: Plot, curves: Sequence[Array]) -> tuple[float, float]:

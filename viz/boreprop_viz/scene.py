@@ -55,8 +55,14 @@ class BitFrame:
         Distances from the bit at which the BHA, (k,), and the hole, (k',), are computed; the first k are the same.
     at_stabilizer, at_rss
         Indices of the stabilizers, (n,), and of the pads in `s` and `s_hole`.
+    body
+        Distances of the points at which the body may touch the wall, (points,).
+    at_body
+        Indices of these points in `s` and `s_hole`.
     along_bha
         Indices of the points in `s` through which the BHA, which bends less than the hole, is drawn.
+    body_radius
+        Radius of the body at each of these, that behind a step of the diameter; None if the case does not say it.
     """
 
     def __init__(self, case: Case) -> None:
@@ -70,13 +76,20 @@ class BitFrame:
         self.s_hole = np.append(self.s, np.arange(reach, REACH_ABOVE_BHA * reach, reach / (POINTS_ALONG_BHA - 1))[1:])
         self.at_stabilizer = np.searchsorted(self.s, self.stabilizer)
         self.at_rss = int(np.searchsorted(self.s, self.rss))
+        self.body: Array = np.array(bha.body_point_positions)
+        self.at_body = np.searchsorted(self.s, self.body)
         self.along_bha = np.union1d(np.arange(0, self.s.size, 2), np.append(self.at_stabilizer, self.at_rss))
+        self.body_radius: Array | None = None
+        if bha.section_lengths and min(bha.section_outer_diameters) > 0.0:
+            section = np.searchsorted(np.cumsum(bha.section_lengths)[:-1], self.s[self.along_bha], side="right")
+            self.body_radius = np.array(bha.section_outer_diameters)[section] / 2
 
     def shapes(self, rows: Trajectory, hole: HoleAxis) -> "Shapes":
         """The shapes at each row; `hole` must reach from the bit of the last row to the top of the first row's BHA."""
         beam = self.beam
         hole_axis = beam.hole_axis(rows, hole, self.s_hole)
-        return Shapes(self, rows, beam.mean_inclination(rows), hole_axis, beam.bha_axis(rows))
+        bha_axis, body_force = beam.bha_axis(rows, hole_axis[:, : self.s.size])
+        return Shapes(self, rows, beam.mean_inclination(rows), hole_axis, bha_axis, body_force)
 
 
 @dataclass(frozen=True)
@@ -88,6 +101,7 @@ class Shapes:
     mean_inclination: Array  # inclination of the frame's axis, (m,)
     hole_axis: Array  # lateral offset of the hole at frame.s_hole, (m, k')
     bha_axis: Array  # lateral offset of the BHA at frame.s, (m, k)
+    body_force: Array  # force of the wall on each point of the body, N, (m, points)
 
     @property
     def walls(self) -> Array:
@@ -106,6 +120,20 @@ class Shapes:
         force = self.rows.stack("stabilizer_force")
         wall = self.hole_axis[:, self.frame.at_stabilizer[:-1]] - np.sign(force) * self.frame.radius
         return np.where(force == 0.0, np.nan, wall)
+
+    @property
+    def body_contact_points(self) -> Array:
+        """The wall where it pushes on each point of the body, (m, points); nan where it does not."""
+        wall = self.hole_axis[:, self.frame.at_body] - np.sign(self.body_force) * self.frame.radius
+        return np.where(self.body_force == 0.0, np.nan, wall)
+
+    @property
+    def body(self) -> Array | None:
+        """Both sides of the body, (m, 2, drawn points); None if the case does not say its diameter."""
+        if self.frame.body_radius is None:
+            return None
+        axis = self.bha_axis[:, None, self.frame.along_bha]
+        return axis + np.multiply.outer((-1.0, 1.0), self.frame.body_radius)
 
     @property
     def outside(self) -> dict[str, Array]:

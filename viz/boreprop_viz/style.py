@@ -19,7 +19,7 @@ OLIVE, VIOLET, BROWN = (150, 145, 50), (140, 115, 220), (165, 115, 90)
 CRIMSON, TEAL = (200, 60, 110), (0, 150, 160)
 WHITE, GREY, FAINT, GROUND = (240, 240, 240), (150, 155, 160), (52, 58, 66), (20, 23, 28)
 # one colour, one meaning, in all views
-HOLE, BIT, PLAN, RSS = ORANGE, SKY_BLUE, PURPLE, GREEN
+HOLE, BIT, PLAN, RSS, BODY = ORANGE, SKY_BLUE, PURPLE, GREEN, WHITE
 BY_STABILIZER = (VERMILION, VIOLET, BROWN, CRIMSON, TEAL)
 # from the smallest to the largest dogleg severity, lighter and lighter, so that they can be told apart with any vision
 BY_SEVERITY = ((140, 92, 10), (176, 116, 0), (208, 142, 8), (234, 170, 34), (250, 204, 90), (255, 240, 180))
@@ -65,6 +65,7 @@ STROKES = {
     "strip/hole": Stroke(HOLE, 1.0, 1.0),
     "bit_frame/walls": Stroke(HOLE, 3.0, 2.0),
     "bit_frame/bha": Stroke(BIT, 4.0, 3.0, lightness=0.4),
+    "bit_frame/body": Stroke(BIT, 1.0, 3.0, lightness=0.4),
     "bit_frame/stabilizers": Stroke(BIT, 6.0, 4.0, lightness=0.4),
     "bit_frame/bit": Stroke(BIT, 3.0, 5.0, lightness=0.7),
     "bit_frame/tilt/limits": Stroke(GREY, 1.0, 1.0),

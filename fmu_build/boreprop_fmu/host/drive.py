@@ -13,7 +13,7 @@ from fmpy.fmi1 import FMICallException
 from boreprop.case.case import RATE, InputSchedule, Schedule
 from boreprop.case.packed import read_packed_case
 from boreprop.core.checks import check_number
-from boreprop.core.quantities import INPUTS, OUTPUTS
+from boreprop.core.quantities import names_of_runs
 from boreprop.errors import InputError
 from boreprop.run.course import Course
 from boreprop.run.trajectory import Stopped, Trajectory
@@ -95,7 +95,7 @@ class FmuRun:
             if name not in self._variables:
                 raise InputError(f"{fmu}: must have a variable {name!r}, got {', '.join(self._variables) or 'none'}")
         n = sum(name.startswith("average_inclination[") for name in self._variables)
-        own = [name for quantity in INPUTS + OUTPUTS for name in quantity.names(n) if name in self._variables]
+        own = [name for name in names_of_runs(n) if name in self._variables]
         self.columns = ["time", *own]
 
     def __len__(self) -> int:

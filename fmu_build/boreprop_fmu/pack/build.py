@@ -63,7 +63,7 @@ def build_fmu(
     if runtime == "python" and platforms is not None:
         raise InputError(f"platforms: must be left out for the runtime python, got {', '.join(platforms) or 'none'}")
     if runtime == "python" and not case.bha.structure.is_of_the_paper:
-        raise InputError("runtime: must be native for a BHA with sections or axial_load, got 'python'")
+        raise InputError(f"runtime: must be native for a BHA with {case.bha.structure.beyond_the_paper}, got 'python'")
     if runtime == "native" or (runtime == "auto" and (platforms is not None or is_native_here(binaries))):
         write_archive(pack_native(case, name, binaries, platforms), output)
     else:

@@ -26,9 +26,11 @@ as constant. That is exact without weight and where κ = 0; otherwise `build_rat
 neglected.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from math import cos, inf, sin
+from math import cos, inf, nan, sin
+
+import numpy as np
 
 from ..case.case import Case
 from ..core.checks import check_number
@@ -36,6 +38,7 @@ from ..core.errors import ParameterError
 from ..core.linear import dot
 from ..core.modes import ROUNDING, Bound, Loads, Mode, Modes, Regime, Row, wall
 from ..core.system import BottomHoleAssembly, Scaled, scale
+from .lying import CLOSE, steady_lie, supports_of
 
 MOST_PIECES = 1000  # of the curve, so that the way along it ends: there are at most 729 regimes, few of them met twice
 
@@ -52,7 +55,7 @@ class SteadyResponse:
         Change of inclination per drilled length, rad/m.
     build_rate_error
         Leading term of the difference between the true build rate at the bit and `build_rate`, rad/m. It arises since
-        gravity changes along the arc.
+        gravity changes along the arc. nan for a beam that is not the paper's.
     bit_tilt
         ψ, rad.
     bit_tilt_saturation
@@ -64,6 +67,8 @@ class SteadyResponse:
         Force of the wall on each non-ideal stabilizer, N, shape (n − 1,), positive from the lower wall.
     stabilizer_deflection
         Deflection of each non-ideal stabilizer from the hole axis, m, shape (n − 1,), positive to the high side.
+    body_contact_force, body_contact_position
+        The largest force of the wall on the body of the BHA, N, and where it acts, m from the bit; 0 if there is none.
     """
 
     rss_force: float
@@ -74,6 +79,8 @@ class SteadyResponse:
     stabilizer_contact: tuple[int, ...]
     stabilizer_force: tuple[float, ...]
     stabilizer_deflection: tuple[float, ...]
+    body_contact_force: float = 0.0
+    body_contact_position: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -123,7 +130,9 @@ def steady_response(case: Case, rss_force: float, inclination: float, *, gravity
     Raises
     ------
     ParameterError
-        If a value is not finite.
+        If a value is not finite, or the BHA buckles under its axial load.
+    KernelError
+        If the BHA is not the paper's uniform beam, and the native engine cannot be used.
 
     Examples
     --------
@@ -136,8 +145,43 @@ def steady_response(case: Case, rss_force: float, inclination: float, *, gravity
     ((-1,), 0)
     """
     check_number("rss_force", rss_force)
+    if not case.bha.structure.is_of_the_paper:
+        [response] = responses_as_built(case, (rss_force,), inclination, gravity=gravity)
+        return response
     steady = _steady(case, inclination, gravity)
     return _in_si(case.bha, steady.line_at(rss_force / case.bha.force_scale), rss_force)
+
+
+def responses_as_built(
+    case: Case, rss_forces: Sequence[float], inclination: float, *, gravity: bool = True
+) -> tuple[SteadyResponse, ...]:
+    """`steady_response` to each of some forces, with whatever the BHA has of sections, axial load and body contact."""
+    check_number("inclination", inclination)
+    forces, count = np.array(rss_forces), len(case.bha.stabilizer_positions) - 1
+    found = steady_lie(case, forces, inclination, gravity=gravity)
+    s = supports_of(case.bha)
+    offsets = -np.outer(found.tilt, s) - np.outer(found.curvature, s**2 / 2)
+    deflections = (offsets[:, : count + 1] + found.lie.shape)[:, :count]
+    responses = []
+    for row, force in enumerate(forces.tolist()):
+        on_stabilizers, on_body = found.lie.forces[row, :count], found.lie.forces[row, count + 1 :]
+        most = int(np.argmax(np.abs(on_body))) if on_body.any() else None
+        tilt = float(found.tilt[row])
+        responses.append(
+            SteadyResponse(
+                rss_force=force,
+                build_rate=float(found.curvature[row]),
+                build_rate_error=nan,
+                bit_tilt=tilt,
+                bit_tilt_saturation=wall(tilt) if abs(tilt) >= case.bit.tilt_limit - CLOSE else 0,
+                stabilizer_contact=tuple(map(wall, on_stabilizers.tolist())),
+                stabilizer_force=tuple(on_stabilizers.tolist()),
+                stabilizer_deflection=tuple(deflections[row].tolist()),
+                body_contact_force=0.0 if most is None else float(on_body[most]),
+                body_contact_position=0.0 if most is None else float(s[count + 1 + most]),
+            )
+        )
+    return tuple(responses)
 
 
 def build_rate_curve(case: Case, inclination: float, force_limit: float, *, gravity: bool = True) -> tuple[Piece, ...]:

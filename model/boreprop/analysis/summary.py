@@ -1,5 +1,7 @@
 """Sums up a run in about a dozen numbers."""
 
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import ceil, pi
 
@@ -18,6 +20,28 @@ from .rippling import Rippling, State, find_rippling, visible_waves
 from .sag import Sag, largest_sag
 
 SHORT_WAVE, LONG_WAVE = 0.25, 1.8  # half lengths of the BHA: the usual wavelengths of ripples lie in between
+
+
+@dataclass(frozen=True)
+class BodyContact:
+    """How the body of a BHA, between the stabilizers, touches the wall in a run.
+
+    Parameters
+    ----------
+    share
+        Share of the drilled length over which it does.
+    largest_force
+        Largest magnitude of the force on any point of the body, N; 0 if it never touches.
+    position
+        Where that acts, m from the bit.
+    drilled_length
+        At which drilled length of the bit, m.
+    """
+
+    share: float
+    largest_force: float
+    position: float
+    drilled_length: float
 
 
 @dataclass(frozen=True)
@@ -49,7 +73,10 @@ class Summary:
     stopped
         The reason why the run ended early; None if it reached its end.
     sag
-        Where the axis of the BHA is farthest from that of the hole; None if the run does not say.
+        Where the axis of the BHA is farthest from that of the hole; None if the run does not say, or the wall bears the
+        body of the BHA.
+    body_contact
+        How the body of the BHA touches the wall; None if it cannot, or the run does not say.
     """
 
     drilled_length: float
@@ -65,6 +92,7 @@ class Summary:
     hidden_waves: str = ""
     stopped: str | None = None
     sag: Sag | None = None
+    body_contact: BodyContact | None = None
 
 
 def summarize(trajectory: Trajectory) -> Summary:
@@ -93,10 +121,10 @@ def summarize(trajectory: Trajectory) -> Summary:
     (True, 0.81)
     """
     hidden = hidden_waves(trajectory["drilled_length"], case_of(trajectory).bha)
-    try:
-        sag = largest_sag(trajectory)
-    except MissingColumn:  # the other figures need fewer columns
-        sag = None
+    sag = None
+    if not case_of(trajectory).bha.body_point_positions:
+        with suppress(MissingColumn):  # the other figures need fewer columns
+            sag = largest_sag(trajectory)
     return replace(sum_up(trajectory, find_rippling(trajectory)), hidden_waves=hidden, sag=sag)
 
 
@@ -127,7 +155,18 @@ def sum_up(trajectory: Trajectory, rippling: Rippling) -> Summary:
         saturation_share=share(trajectory["bit_tilt_saturation"] != 0),
         rippling=rippling,
         stopped=trajectory.stopped,
+        body_contact=_body_contact(trajectory, share),
     )
+
+
+def _body_contact(run: Trajectory, share: Callable[[NDArray[np.bool_]], float]) -> BodyContact | None:
+    """How the body touches the wall, with the share of the length over which something happens."""
+    if "body_contact_force" not in run or "body_contact_position" not in run:
+        return None
+    force = np.abs(run["body_contact_force"])
+    most = int(np.argmax(force))
+    position, length = float(run["body_contact_position"][most]), float(run["drilled_length"][most])
+    return BodyContact(share(force > 0.0), float(force[most]), position, length)
 
 
 def averaging_length(bha: BottomHoleAssembly, wave: Rippling) -> float:

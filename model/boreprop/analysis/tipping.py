@@ -107,7 +107,7 @@ class _OpenEndedRun:
 
     @classmethod
     def of(cls, case: Case, relative_tolerance: float) -> "_OpenEndedRun":
-        names = scalar_names(OUTPUTS, len(case.bha.stabilizer_positions))
+        names = scalar_names(OUTPUTS, case.bha.structure)
         interval = min(case.bha.half_length / ROWS, LARGEST_INTERVAL)
         return cls(case, start(case, engine(), Options(relative_tolerance)), interval, names, np.empty((0, len(names))))
 
@@ -116,7 +116,8 @@ class _OpenEndedRun:
         more = np.empty((int(length / self.interval) + 1 - len(self.rows), len(self.names)))
         lengths = self.interval * np.arange(len(self.rows), len(self.rows) + len(more), dtype=np.float64)
         case = self.case
-        inputs = held(len(more), case.schedule.rss_force[0], case.active_weight_on_bit, case.bit)
+        force, weight = case.schedule.rss_force[0], case.active_weight_on_bit
+        inputs = held(len(more), force, weight, case.bit, case.weight_on_bit)
         each = np.arange(len(more), dtype=np.intc)
         try:
             self.drilling.follow(lengths, inputs, each, more)
@@ -290,7 +291,8 @@ def usual_map(case: Case) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     own = case.eta_pi
     inclination = case.survey.inclination[-1]
     contact = can_touch(case.bha, case.bit, inclination, case.schedule.rss_force)
-    critical = critical_eta_pi(case, contact=contact, inclination=inclination)
+    paper = case.bha.structure.is_of_the_paper  # of no other beam the critical ηΠ is computed
+    critical = critical_eta_pi(case, contact=contact, inclination=inclination) if paper else None
     highest = max(1.1 * critical.eta_pi if critical else 0.0, 1.5 * own)
     clearance = (*case.bha.stabilizer_clearances, 0.0)[first_that_touches(case) - 1]
     smallest, largest = CLEARANCES

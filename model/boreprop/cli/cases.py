@@ -28,7 +28,8 @@ def open_case(path: Path) -> Case:
     """Read a case file; warn, once and in one line, of what is far from any assembly, and of a hole made longer."""
     case, notes = read_case(path)
     try:
-        scale(case.bha, case.bit)
+        if case.bha.structure.is_of_the_paper:  # others are checked by the native engine
+            scale(case.bha, case.bit)
     except ParameterError as error:  # of a number that no key has, so the case is not refused for a key
         raise InputError(f"{path}: {error}") from error
     found = notes + unusual(case)

@@ -7,7 +7,8 @@ from typing import Annotated
 import typer
 
 from ..core.checks import check_number
-from ..report.tables.steering import headings, lines, piece_lines, summarize
+from ..report.tables import steering_as_built as as_built
+from ..report.tables.steering import SteeringSummary, headings, lines, piece_lines, summarize
 from ..run.files import files_read
 from . import console
 from .cases import open_case
@@ -38,16 +39,23 @@ def steering_command(
     if inclination_deg is not None:
         check_number("--inclination-deg", inclination_deg)
     case = open_case(case_file)
-    summary = summarize(case, None if inclination_deg is None else radians(inclination_deg), force_limit)
+    inclination = None if inclination_deg is None else radians(inclination_deg)
+    summary: SteeringSummary | as_built.SteeringAsBuilt
+    if case.bha.structure.is_of_the_paper:
+        summary = summarize(case, inclination, force_limit)
+        about, table, heads = lines(summary), piece_lines(summary.curve), headings()
+    else:
+        summary = as_built.summarize_as_built(case, inclination, force_limit)
+        about, table, heads = as_built.lines(summary), as_built.response_lines(summary), as_built.headings()
     if as_json:
         print_json(summary)
     else:
-        print_table(lines(summary), (str(case_file), ""))
-        print_table(piece_lines(summary.curve), headings())
+        print_table(about, (str(case_file), ""))
+        print_table(table, heads)
     if output is not None:
         from ..report.figures.drawing import save  # imported here, since only a picture needs matplotlib
-        from ..report.figures.steering import draw
+        from ..report.figures.steering import draw, draw_as_built
 
-        save(draw(summary), output)
+        save(draw(summary) if isinstance(summary, SteeringSummary) else draw_as_built(summary), output)
         if not as_json:
             print(f"{output}: build rate and bit tilt over the steering force")

@@ -35,7 +35,13 @@ class Structure(NamedTuple):
     @property
     def is_of_the_paper(self) -> bool:
         """Whether it is a uniform beam without a load along it, the paper's."""
-        return self == Structure(self.stabilizers)
+        return not self.beyond_the_paper
+
+    @property
+    def beyond_the_paper(self) -> str:
+        """What it has that the paper's beam has not, by the names in case files; empty if nothing."""
+        has = {"section": self.sections, "axial_load": self.axial_load, "body_contact": self.body_points}
+        return ", ".join(name for name, count in has.items() if count)
 
 
 @cache
@@ -217,6 +223,11 @@ VARIABLES = INPUTS + OUTPUTS + PARAMETERS  # what an FMU has
 def scalar_names(quantities: tuple[Quantity, ...], structure: int | Structure) -> list[str]:
     """The scalar names of `quantities`, in the order of the table; the structure is as in `Quantity.names`."""
     return [name for quantity in quantities for name in quantity.names(structure)]
+
+
+def names_of_runs(n: int) -> list[str]:
+    """The scalar names of all inputs and outputs that a run with `n` stabilizers may have, whatever its beam."""
+    return scalar_names(INPUTS + OUTPUTS, Structure(n, axial_load=1, body_points=1))
 
 
 def quantity_of(scalar_name: str) -> Quantity:

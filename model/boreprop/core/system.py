@@ -204,8 +204,9 @@ def scale(bha: BottomHoleAssembly, bit: BitRock) -> Scaled:
     if not bha.structure.is_of_the_paper:
         raise ParameterError(
             "bha",
-            "must be the paper's, a uniform beam without axial_load or body_contact, for what Python computes",
-            bha,
+            "must be the paper's uniform beam here; for others there are simulate with the native engine, summary, "
+            "steering, dogleg, hysteresis, study and boreprop-view",
+            bha.structure.beyond_the_paper,
         )
     l1 = bha.length_scale
     check_number(DERIVED["force_scale"], bha.force_scale, above=0.0)

@@ -1,13 +1,15 @@
 """Computes the columns that a run lacks from those that it has.
 
-A file of another tool may hold few columns, and the viewer draws many. There are two tables of formulas. Those of
-`ROW_BY_ROW` are exact, so the result of one may enter another. Those of `ALONG_THE_HOLE` integrate or difference over
+A file of another tool may hold few columns, and the viewer draws many. There are three tables of formulas. Those of
+`ROW_BY_ROW` and `OF_THE_BEAM` are exact, so the result of one may enter another; the latter are those of the paper's
+beam, and left out for any other. Those of `ALONG_THE_HOLE` integrate or difference over
 the rows, so their error depends on the spacing of the rows. Their results enter no other formula: an error of 0.01° in
 ⟨Θ⟩_i would be tens of newtons at the bit.
 """
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cached_property
 from math import floor, log10
 from typing import Any, NamedTuple
 
@@ -18,7 +20,7 @@ from ..case.case import Case
 from ..core.beam import Beam
 from ..core.modes import Loads, Modes
 from ..core.quantities import BY_NAME
-from ..core.system import scale
+from ..core.system import Scaled, scale
 from ..errors import InputError
 from .trajectory import Trajectory
 
@@ -94,10 +96,18 @@ class Columns:
     """
 
     def __init__(self, run: Trajectory, case: Case) -> None:
-        self.by_name, self.row_count = dict(run), run.row_count
-        self.case, self.scaled = case, scale(case.bha, case.bit)
-        self.beam = Beam(self.scaled)
+        self.by_name, self.row_count, self.case = dict(run), run.row_count, case
         self.length, self.force = case.bha.length_scale, case.bha.force_scale  # ℓ₁, F*
+
+    @cached_property
+    def scaled(self) -> Scaled:
+        """The paper's numbers of the drilling system; `ParameterError` if its beam is not the paper's."""
+        return scale(self.case.bha, self.case.bit)
+
+    @cached_property
+    def beam(self) -> Beam:
+        """The paper's beam."""
+        return Beam(self.scaled)
 
     def __contains__(self, name: str) -> bool:
         return all(scalar in self.by_name for scalar in self._scalars(name))
@@ -109,7 +119,7 @@ class Columns:
         return np.column_stack(values) if values else np.empty((self.row_count, 0))
 
     def _scalars(self, name: str) -> list[str]:
-        return [name] if name == "time" else BY_NAME[name].names(len(self.scaled.s))
+        return [name] if name == "time" else BY_NAME[name].names(len(self.case.bha.stabilizer_positions))
 
     def add(self, formulas: "tuple[Formula, ...]") -> bool:
         """Add every missing quantity for which a formula has all that it needs. Returns whether any was added."""
@@ -124,7 +134,8 @@ class Columns:
 
     def add_row_by_row(self) -> None:
         """Add all that the formulas of `ROW_BY_ROW` give, one from another."""
-        while self.add(ROW_BY_ROW):
+        paper = self.case.bha.structure.is_of_the_paper
+        while self.add(ROW_BY_ROW + (OF_THE_BEAM if paper else ())):
             pass
 
 
@@ -166,14 +177,14 @@ def bit_tilt(columns: Columns) -> Array:
 
 def bit_tilt_from_force(columns: Columns) -> Array:
     """ψ = clip(F_0/(ηΠ), −ψ*, ψ*), (10) and (11)."""
-    psi_star = columns.scaled.psi_star
+    psi_star = columns.case.bit.tilt_limit
     return np.clip(columns["bit_lateral_force"] / columns.force / columns["eta_pi"], -psi_star, psi_star)
 
 
 def bit_tilt_saturation(columns: Columns) -> Array:
     """1 where ψ is at +ψ*, −1 where it is at −ψ*, 0 in between, (11)."""
     psi = columns["bit_tilt"]
-    return np.where(np.abs(psi) >= (1 - AT_LIMIT) * columns.scaled.psi_star, np.sign(psi), 0.0)
+    return np.where(np.abs(psi) >= (1 - AT_LIMIT) * columns.case.bit.tilt_limit, np.sign(psi), 0.0)
 
 
 class LoadColumns(NamedTuple):
@@ -346,10 +357,13 @@ ROW_BY_ROW = (
     Formula("bit_tilt", ("bit_inclination", "borehole_inclination"), bit_tilt),
     Formula("bit_tilt", ("bit_lateral_force", "eta_pi"), bit_tilt_from_force),
     Formula("bit_tilt_saturation", ("bit_tilt",), bit_tilt_saturation),
+    Formula("stabilizer_contact", ("stabilizer_force",), lambda k: np.sign(k["stabilizer_force"])),  # (7)
+)
+
+OF_THE_BEAM = (
     Formula("rss_force", (*BENDING, "bit_lateral_force"), rss_force_from_force),
     Formula("rss_force", (*BENDING, "bit_moment"), rss_force_from_moment),
     Formula("stabilizer_force", (*ANGLES, "rss_force"), stabilizer_force),
-    Formula("stabilizer_contact", ("stabilizer_force",), lambda k: np.sign(k["stabilizer_force"])),  # (7)
     Formula("stabilizer_deflection", (*BENDING, "rss_force"), stabilizer_deflection),
     Formula("bit_lateral_force", (*BENDING, "rss_force"), lambda k: bit_lateral_force(k, k["rss_force"])),
     Formula("bit_moment", (*BENDING, "rss_force"), lambda k: bit_moment(k, k["rss_force"])),

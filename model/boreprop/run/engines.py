@@ -66,11 +66,14 @@ DRILLING: dict[str, Callable[..., Engine]] = {"native": NativeDrilling, "python"
 ENGINES = ("auto", *DRILLING)
 
 
-def held(legs: int, rss_force: float | Floats, weight: float, bit: BitRock) -> Floats:
-    """Inputs, N, that are constant along each leg, as `Engine.follow` takes them, (legs, inputs)."""
+def held(legs: int, rss_force: float | Floats, weight: float, bit: BitRock, weight_on_bit: float = 0.0) -> Floats:
+    """Inputs, N, that are constant along each leg, as `Engine.follow` takes them, (legs, inputs).
+
+    `weight` is the active weight on bit, `weight_on_bit` all of it, for a BHA with `axial_load`; 0: the active one.
+    """
     inputs = np.zeros((legs, len(ACTING)))
-    acting = {"rss_force": rss_force, "active_weight_on_bit": weight, **values_of("bit", bit)}
-    for name, value in acting.items():
+    acting = {"rss_force": rss_force, "active_weight_on_bit": weight, "weight_on_bit": weight_on_bit}
+    for name, value in (acting | values_of("bit", bit)).items():
         inputs[:, ACTING.index(name)] = value
     return inputs
 

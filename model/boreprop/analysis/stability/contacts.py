@@ -97,7 +97,12 @@ def _clipped(corners: list[complex], value: Callable[[complex], float], bound: B
 
 
 def can_touch(bha: BottomHoleAssembly, bit: BitRock, inclination: float, rss_forces: Iterable[float] = ()) -> Contact:
-    """The stabilizers that touch in any of `contacts_met`: all whose clearance some hole uses up."""
+    """The stabilizers that touch in any of `contacts_met`: all whose clearance some hole uses up.
+
+    Of a beam that is not the paper's that is not computed: there it is every stabilizer.
+    """
+    if not bha.structure.is_of_the_paper:
+        return tuple(numbers(bha))
     return tuple(sorted(set().union(*contacts_met(bha, bit, inclination, rss_forces))))
 
 

@@ -24,9 +24,10 @@ class StraightDrilling:
     contact, saturated
         Its mode: the stabilizers that touch, and whether the bit tilt is saturated.
     verdict
-        What becomes of a small disturbance in this mode; None where ηΠ is below 1e-4, with too many roots to tell.
+        What becomes of a small disturbance in this mode; None where ηΠ is below 1e-4, with too many roots to tell, and
+        for a beam that is not the paper's.
     critical
-        The largest ηΠ at which this mode oscillates; None if there is none.
+        The largest ηΠ at which this mode oscillates; None if there is none, or the beam is not the paper's.
     """
 
     response: SteadyResponse
@@ -40,6 +41,8 @@ def straight_drilling(case: Case) -> StraightDrilling:
     """How a case drills on in a straight hole. Roots are counted, not found, so it takes milliseconds."""
     force, inclination = case.schedule.rss_force[0], case.survey.inclination[-1]
     contact, saturated = steady_mode(case, force, inclination)
+    if not case.bha.structure.is_of_the_paper:
+        return StraightDrilling(steady_response(case, force, inclination), contact, saturated, None, None)
     verdict = mode_verdict(case, contact, saturated, inclination)
     critical = critical_eta_pi(case, contact=contact, saturated=saturated)
     return StraightDrilling(steady_response(case, force, inclination), contact, saturated, verdict, critical)

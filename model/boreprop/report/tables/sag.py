@@ -10,7 +10,12 @@ from ...units import UNITS, small_length
 
 
 def steadily_outside(case: Case) -> str:
-    """The warning, if there is one, for drilling on steadily under the first force, at the inclination of the bit."""
+    """The warning, if there is one, for drilling on steadily under the first force, at the inclination of the bit.
+
+    There is none where the wall bears the body of the BHA.
+    """
+    if case.bha.body_point_positions:
+        return ""
     inclination = case.survey.inclination[-1]
     response = steady_response(case, case.schedule.rss_force[0], inclination)
     return outside_the_hole(steady_sag(case, response, inclination))

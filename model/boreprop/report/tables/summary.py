@@ -1,7 +1,7 @@
 """The summary of a run in a table."""
 
 from ...analysis.rippling import Rippling, State, Stretch
-from ...analysis.summary import Summary
+from ...analysis.summary import BodyContact, Summary
 from ...units import BUILD_LENGTH, UNITS, small_length
 from .sag import outside_the_hole
 
@@ -28,12 +28,23 @@ def lines(summary: Summary) -> list[tuple[str, str]]:
                 (f"stabilizer {i}: in contact", f"{share:.0%} of the length"),
             )
         ),
+        *_body_lines(summary.body_contact),
         ("bit tilt saturated", f"{summary.saturation_share:.0%} of the length"),
         *_wave_lines(summary.rippling),
         ("waves that would not show", summary.hidden_waves),
         ("warning", outside_the_hole(summary.sag) if summary.sag else ""),
     ]
     return [(what, amount) for what, amount in table if amount]
+
+
+def _body_lines(body: BodyContact | None) -> list[tuple[str, str]]:
+    if body is None:
+        return []
+    touching = ("body: in contact", f"{body.share:.0%} of the length")
+    if not body.largest_force:
+        return [touching]
+    at = f"{length_text(body.position, '.1f')} behind the bit, after {length_text(body.drilled_length, '.1f')}"
+    return [("body: largest contact force", f"{UNITS['N'].text(body.largest_force)}, {at}"), touching]
 
 
 def _wave_lines(wave: Rippling) -> list[tuple[str, str]]:
