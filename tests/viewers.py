@@ -4,13 +4,14 @@ Most viewers here are the command `rerun --save`, which takes what a viewer take
 """
 
 import os
+import random
 import socket
 import subprocess
 import sys
 import time
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from textwrap import dedent
 from typing import TypeVar
@@ -24,7 +25,7 @@ from rerun.chunk import RrdReader
 from boreprop_viz import feeder
 from boreprop_viz.feeder import PROGRAM
 from boreprop_viz.picture import SOFTWARE_DRIVERS
-from boreprop_viz.ports import LOOPBACK, free_port
+from boreprop_viz.ports import LOOPBACK, bound
 from places import TESTS
 
 T = TypeVar("T")
@@ -84,12 +85,24 @@ def listens(port: int) -> bool:
         return probe.connect_ex((LOOPBACK, port)) == 0
 
 
+def own_port() -> int:
+    """A free port that no other process of the suite takes, not even when the viewer at it has ended.
+
+    Systems give out ports from 32768 on, or higher, to whoever asks for any.
+    """
+    worker = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
+    for port in random.sample(range(20000 + 500 * worker, 20500 + 500 * worker), 100):
+        with suppress(OSError):
+            return bound(port)
+    raise OSError("no free port for a viewer")
+
+
 @contextmanager
 def rerun(
     *options: str | Path, env: dict[str, str] | None = None, port: int | None = None
 ) -> Iterator[tuple[Process, str]]:
     """Run a viewer that is there already, at a port or any; yields its process and its address."""
-    port = port or free_port()
+    port = port or own_port()
     where = ["--bind", LOOPBACK, "--port", str(port)]
     process = subprocess.Popen([PROGRAM, *where, *options], stderr=subprocess.DEVNULL, env=env)
     try:
