@@ -168,6 +168,11 @@ def test_the_summary_says_where_the_body_touches(drilled: Trajectory) -> None:
     assert "warning" not in table
 
 
+def test_a_table_says_nothing_of_what_too_few_waves_do_not_show(drilled: Trajectory) -> None:
+    """The pendulum's waves die out so soon that there is no spread of their lengths."""
+    assert not [line for line in lines(summarize(drilled)) if "nan" in line[1]]
+
+
 def test_where_the_wall_bears_the_body_there_is_no_warning_of_sag() -> None:
     case = pendulum()
     bare = replace(case, bha=replace(case.bha, body_point_positions=(), body_point_clearances=()))

@@ -1,5 +1,7 @@
 """The summary of a run in a table."""
 
+from math import isnan
+
 from ...analysis.rippling import Rippling, State, Stretch
 from ...analysis.summary import BodyContact, Summary
 from ...units import BUILD_LENGTH, UNITS, small_length
@@ -54,7 +56,7 @@ def _wave_lines(wave: Rippling) -> list[tuple[str, str]]:
         ("rippling", whether_it_ripples(wave)),
         ("ripple of the inclination", f"±{UNITS['rad'].text(wave.amplitude, '.3g')}"),
         ("ripple of the hole axis", f"±{small_length().text(wave.axis_amplitude)}"),
-        ("ripple, from wave to wave", f"length ±{length_text(wave.spread, '.2f')}"),
+        *([] if isnan(wave.spread) else [("ripple, from wave to wave", f"length ±{length_text(wave.spread, '.2f')}")]),
         (
             "ripple, from stand to stand",
             f"amplitude {100 * wave.growth_over(BUILD_LENGTH):+.1f} %/{length_text(BUILD_LENGTH, '.3g')}",
