@@ -1,13 +1,14 @@
 """What is asked of BHAs as they are built, outside of the kernel: steering, shape in the hole, summary, completion."""
 
 from dataclasses import replace
-from math import degrees, radians
+from math import degrees, nan, radians
 
 import numpy as np
 import pytest
 
 from boreprop.analysis.hole import hole_of
 from boreprop.analysis.lying import _Steady, steady_lie
+from boreprop.analysis.rippling import State
 from boreprop.analysis.sag import BeamInHole, largest_sag, steady_sag
 from boreprop.analysis.stability.roots import find_roots
 from boreprop.analysis.steering import build_rate_curve, responses_as_built, steady_response
@@ -168,9 +169,12 @@ def test_the_summary_says_where_the_body_touches(drilled: Trajectory) -> None:
     assert "warning" not in table
 
 
-def test_a_table_says_nothing_of_what_too_few_waves_do_not_show(drilled: Trajectory) -> None:
-    """The pendulum's waves die out so soon that there is no spread of their lengths."""
-    assert not [line for line in lines(summarize(drilled)) if "nan" in line[1]]
+def test_a_table_says_nothing_of_a_spread_that_too_few_waves_have_not(drilled: Trajectory) -> None:
+    summary = summarize(drilled)
+    wave = replace(summary.rippling, state=State.DYING, spread=nan)
+    table = dict(lines(replace(summary, rippling=wave)))
+    assert "ripple of the hole axis" in table
+    assert "ripple, from wave to wave" not in table
 
 
 def test_where_the_wall_bears_the_body_there_is_no_warning_of_sag() -> None:
