@@ -19,6 +19,8 @@ from boreprop.run.results import read_trajectory
 from boreprop.run.simulate import simulate
 from conftest import Command, Pack, assert_refused
 from flavours import NATIVE
+from fmu_host import instance
+from native_fmu import refused
 
 pytestmark = pytest.mark.usefixtures("kernel")
 NAME = "fulcrum_20deg"
@@ -72,6 +74,14 @@ def test_too_much_weight_discards_the_step(fulcrum: Case, pack: Pack, command: C
     assert done.returncode != 0
     assert "weight_on_bit: must be < 480" in done.stderr
     assert "buckles" in done.stderr
+
+
+def test_derivatives_by_the_load_along_the_bha_are_refused(fulcrum: Case, pack: Pack) -> None:
+    with instance(str(pack(fulcrum, NATIVE))) as one:
+        one.initialize()
+        tilt, weight = (one.variables[name].valueReference for name in ("bit_tilt", "weight_on_bit"))
+        with refused(one, "weight_on_bit: must not be given here: derivatives by the load along the BHA are not known"):
+            one.slave.getDirectionalDerivative([tilt], [weight], [1.0])
 
 
 def test_the_python_flavour_is_refused_with_the_one_that_has_it(

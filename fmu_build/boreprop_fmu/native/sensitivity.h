@@ -74,8 +74,12 @@ static fmi2Status directional_derivatives(
     for (size_t i = 0; i < unknowns; i++) value[i] = 0.0;
     for (size_t i = 0; i < unknowns; i++)
         if (!is_real(c, unknown[i], OUTPUT)) return fmi2Error;
-    for (size_t k = 0; k < givens; k++)
+    for (size_t k = 0; k < givens; k++) {
         if (!is_real(c, given[k], INPUT)) return fmi2Error;
+        if (given[k] != IN_WEIGHT_ON_BIT) continue;
+        explain(why, "weight_on_bit: must not be given here: derivatives by the load along the BHA are not known");
+        return fail(c, fmi2Error, why);
+    }
     if (!take_inputs(c, &before, why)) return fail(c, fmi2Error, why);
     Present at = present(&c->run->drilling);
     for (size_t i = 0; i < unknowns; i++)

@@ -34,6 +34,8 @@ modelDescription.xml (4.2.3, 2.2.4). Once a step was discarded, fmi2Terminated s
 <li>In a host that is not Python, the interpreter ignores SIGPIPE and SIGXFSZ and takes LC_CTYPE from the environment,
 for the whole process (2.1). Ctrl-C is given back to the host.</li>
 <li>stepFinished is not called (2.1.5).</li>
+<li>When the host's process ends, pythonfmu 0.7.0 reads memory that is freed already; where that lies badly the
+process is aborted, with all results written.</li>
 <li>Each instance leaves 1 kB of memory behind when it is freed (2.1.5); fmi2Reset leaves nothing.</li>
 </ul>
 """
