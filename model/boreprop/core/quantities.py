@@ -139,8 +139,12 @@ class Quantity:
         return ", ".join(f"{sign} {bound:g}" for sign, bound in bounds if isfinite(bound))
 
 
-SHAPE = ("stabilizer_position", "stabilizer_clearance", "rss_position", "distributed_weight", "flexural_stiffness")
-FORCE = ("rss_force", "survey_file", *SHAPE)
+SHAPE = (
+    *("stabilizer_position", "stabilizer_clearance", "rss_position", "distributed_weight", "flexural_stiffness"),
+    *("section_length", "section_distributed_weight", "section_flexural_stiffness", "end_deflection"),
+    *("body_point_position", "body_point_clearance"),
+)
+FORCE = ("rss_force", "weight_on_bit", "survey_file", *SHAPE)
 FORCE_AND_WEIGHT = (*FORCE, "active_weight_on_bit", "lateral_steering_resistance", "bit_tilt_limit")
 
 QUANTITIES: tuple[Quantity, ...] = (
