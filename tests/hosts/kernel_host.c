@@ -1,10 +1,10 @@
 /* A host of the kernel's shared library, without Python and without its headers: drills one leg, and prints the outputs
    at its end, one a line.
 
-   kernel_host LIBRARY STABILIZERS FORCE WEIGHT LENGTH LIST LIST LIST LIST LIST
+   kernel_host LIBRARY LENGTH LIST LIST LIST LIST LIST LIST
 
-   A LIST is a count and as many numbers: the parameters, the options, the measured depths, the inclinations, and the
-   inputs, as boreprop.h takes them. Runs on Linux, macOS and Windows; on Windows without start-up code, as native_host.c. */
+   A LIST is a count and as many numbers: the structure, the parameters, the options, the measured depths, the
+   inclinations, and the inputs, as boreprop.h takes them. Runs on Linux, macOS and Windows; on Windows without start-up code, as native_host.c. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -21,7 +21,7 @@ static void *find(const char *name) { return dlsym(library, name); }
 #endif
 
 enum { MOST = 256 };
-enum { PARAMETERS, OPTIONS, DEPTHS, INCLINATIONS, INPUTS, LISTS };
+enum { STRUCTURE, PARAMETERS, OPTIONS, DEPTHS, INCLINATIONS, INPUTS, LISTS };
 
 static char **argument; /* the next one */
 
@@ -39,13 +39,13 @@ static double number(void) {
 
 static int lead(char **arguments) {
     void *(*start)(
-        int, const double *, const double *, long long, const double *, const double *, const double *, void *
+        const int *, const double *, const double *, long long, const double *, const double *, const double *, void *
     );
-    long long (*follow)(void *, long long, const double *, const double *, double, const int *, double *, void *);
+    long long (*follow)(void *, long long, const double *, const double *, const int *, double *, void *);
     int (*outputs)(void *, double *);
     void (*end)(void *);
     static double list[LISTS][MOST], out[MOST], problem[MOST];
-    int count[LISTS];
+    int count[LISTS], structure[MOST];
     must(arguments[1] != NULL, "the first argument must be a library");
     load(arguments[1]);
     must(library != NULL, "the library must load");
@@ -54,19 +54,20 @@ static int lead(char **arguments) {
     must(start && follow && outputs && end, "the library must have the functions of boreprop.h");
 
     argument = arguments + 2;
-    int n = (int)number();
-    double force = number(), weight = number(), length = number();
+    double length = number();
     for (int k = 0; k < LISTS; k++) {
         count[k] = (int)number();
         must(count[k] <= MOST, "lists: must not be longer");
         for (int i = 0; i < count[k]; i++) list[k][i] = number();
     }
+    for (int i = 0; i < count[STRUCTURE]; i++) structure[i] = (int)list[STRUCTURE][i];
     void *run = start(
-        n, list[PARAMETERS], list[OPTIONS], count[DEPTHS], list[DEPTHS], list[INCLINATIONS], list[INPUTS], problem
+        structure, list[PARAMETERS], list[OPTIONS], count[DEPTHS], list[DEPTHS], list[INCLINATIONS], list[INPUTS],
+        problem
     );
     must(run != NULL, "the run must start");
-    must(follow(run, 1, &length, &force, weight, (const int[]){-1}, NULL, problem) == 1, "the leg must be drilled");
-    n = outputs(run, out);
+    must(follow(run, 1, &length, list[INPUTS], (const int[]){-1}, NULL, problem) == 1, "the leg must be drilled");
+    int n = outputs(run, out);
     for (int k = 0; k < n; k++) {
         char line[64];
         snprintf(line, sizeof line, "%.17g\n", out[k]);

@@ -14,7 +14,7 @@ import pytest
 
 from boreprop.case.case import Case
 from boreprop.core.options import Options
-from boreprop.core.quantities import scalar_names, values_of
+from boreprop.core.quantities import ACTING, scalar_names, values_of
 from boreprop.kernel.compiler import PLATFORMS, library_path
 from boreprop.kernel.generate import SYSTEM
 from boreprop.run.engines import start
@@ -43,16 +43,17 @@ def drill(case: Case, command: Sequence[str | Path], environment: Mapping[str, s
     options = Options()
     given = values_of("bha", case.bha) | values_of("bit", case.bit)
     given["relative_tolerance"] = options.relative_tolerance
-    n, weight = len(case.bha.stabilizer_positions), case.active_weight_on_bit
     (force,) = case.schedule.rss_force
+    given |= {"rss_force": force, "active_weight_on_bit": case.active_weight_on_bit}
     lists = (
-        [given[name] for name in scalar_names(SYSTEM, n)],
+        case.bha.structure,
+        [given[name] for name in scalar_names(SYSTEM, case.bha.structure)],
         astuple(options),
         case.survey.measured_depth,
         case.survey.inclination,
-        [force, 0.0, weight],
+        [given.get(name, 0.0) for name in ACTING],
     )
-    numbers = [n, force, weight, LENGTH, *(number for values in lists for number in (len(values), *values))]
+    numbers = [LENGTH, *(number for values in lists for number in (len(values), *values))]
     with TemporaryFile("w+") as printed:  # wine's server would hold a pipe open for long
         words = [*command, *map(repr, map(float, numbers))]
         subprocess.run(words, env={**os.environ, **environment}, stdout=printed, timeout=120, check=True)

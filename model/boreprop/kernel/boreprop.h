@@ -21,17 +21,18 @@ EXPORT const char *boreprop_quantities_digest(void);
 /* The sentence that says what a problem is. */
 EXPORT void boreprop_sentence(const Problem *problem, char line[MESSAGE]);
 
-/* A run of this structure (its members one after the other) at the end of its survey, with parameters in the order of the table of quantities; NULL, and
-   the problem, if a value is out of range. The caller ends it with `boreprop_end`. The tolerance is that of the
-   parameters; the other options are not checked. */
+/* A run of this structure (its members one after the other) at the end of its survey, with parameters in the order of the
+   table of quantities; NULL, and the problem, if a value is out of range. The caller ends it with `boreprop_end`. The
+   tolerance is that of the parameters; the other options are not checked. */
 EXPORT Run *boreprop_start(
     const int structure[4], const double *parameters, const Options *options, Count count, const double *measured_depth,
     const double *inclination, const Inputs *inputs, Problem *problem
 );
 EXPORT void boreprop_end(Run *run);
 
-/* Drill leg after leg, to lengths[k] under inputs[k], which are those where the leg starts. Unless rows[k] is negative, the outputs there become that row of
-   the table. Returns how many legs are drilled; if not all are, the problem is that of the next one. */
+/* Drill leg after leg, to lengths[k] under inputs[k], which are those where the leg starts. Unless rows[k] is negative,
+   the outputs there become that row of the table. Returns how many legs are drilled; if not all are, the problem is that
+   of the next one. */
 EXPORT Count boreprop_follow(
     Run *run, Count count, const double *lengths, const Inputs *inputs, const int *rows, double *table, Problem *problem
 );
