@@ -66,6 +66,8 @@ def started(
         len(depths),
         depths,
         inclinations,
+        0,
+        None,
         binding.Inputs(rss_force=0.0, active_weight_on_bit=1e3),
         problem,
     )

@@ -219,6 +219,7 @@ static inline void go_back(Integrator *p) {
     *kink(&p->now.kinks, p->now.kinks.end - 1) = p->last_kink;
     p->law_known = p->under_way = 0;
     bear(p, p->now.inputs.W);
+    clear(p);
 }
 
 /* Remember the state where a call sets out; 0 if the rings have no room. */
