@@ -71,7 +71,10 @@ def test_a_parameter_takes_the_place_of_what_formations_say_of_it() -> None:
     ("text", "message"),
     [
         ("[formation]\nmeasured_depth = 1.0", "formation: must be tables [[formation]], got"),
-        ("[[formation]]\ntilt_limit_deg = 1.0", "formation[1].measured_depth: must be given, got nothing"),
+        (
+            "[[formation]]\ntilt_limit_deg = 1.0",
+            "formation[1].measured_depth: must be given, or true_vertical_depth, and not both, got nothing",
+        ),
         (
             "[[formation]]\nmeasured_depth = 1.0",
             "formation[1].lateral_steering_resistance: must be given, or another of",

@@ -255,16 +255,8 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
             open_log(self._log_switch)  # else few would hear of it: hosts leave logging off
 
     def _advance(self, drilling: Drilling, length: float, weight: float) -> None:
-        """Drill on under the inputs and clearances as they are given; if that fails, nothing has moved."""
         clearances = fields_of("bha", self._given, self._structure)["stabilizer_clearances"]
-        before = drilling.save() if clearances != drilling.clearances else None
-        try:
-            drilling.change_clearances(clearances)
-            drilling.advance(length, self._given["rss_force"], weight, bit=self._bit())
-        except BorepropError:
-            if before:
-                drilling.restore(before)
-            raise
+        drilling.advance_with(clearances, length, self._given["rss_force"], weight, bit=self._bit())
 
     def _refresh(self) -> None:
         """Outputs of the present hole under the present inputs.

@@ -6,7 +6,7 @@ from math import nan
 from typing import Any
 
 from .checks import check_number, check_quantity
-from .errors import CannotContinue, ParameterError, error_of
+from .errors import BorepropError, CannotContinue, ParameterError, error_of
 from .ground import Ground, check_step
 from .inputs import Inputs
 from .integrator import Integrator
@@ -174,6 +174,17 @@ class Drilling:
             raise ParameterError("stabilizer_clearance", f"must hold {len(self.clearances)} values", clearances)
         self.integrator.change_clearances(tuple(clearance / self._length for clearance in clearances))
         self.clearances = clearances
+
+    def advance_with(self, clearances: tuple[float, ...], *given: Any, bit: BitRock) -> None:
+        """Drill on as by `advance`, with stabilizers that have these clearances, m. If that fails, nothing has changed."""
+        before = self.save() if clearances != self.clearances else None
+        try:
+            self.change_clearances(clearances)
+            self.advance(*given, bit=bit)
+        except BorepropError:
+            if before:
+                self.restore(before)
+            raise
 
     def follow(self, lengths: Iterable[float], inputs: Iterable[Any], rows: Iterable[int], table: Any) -> None:
         """Drill leg after leg, each as by `advance`.

@@ -203,7 +203,7 @@ class Integrator:
         hole = self.hole
         k = hole.find(xi + MERGE)
         drilled = hole.drilled[k]
-        if drilled is None or xi < self.cleared:  # with other clearances its law was another
+        if drilled is None or xi + MERGE < self.cleared:  # with other clearances its law was another
             return hole.Theta(xi)
         xi = max(xi, hole.starts[k])
         theta = drilled.at((xi - hole.starts[k]) * hole.rates[k])

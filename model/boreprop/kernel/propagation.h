@@ -24,7 +24,7 @@ static inline double inclination_under(Integrator *p, double theta, const Loads 
 static inline double earlier_inclination(Integrator *p, double xi) {
     const Hole *hole = &p->now.hole;
     const Piece *at = piece(hole, find(hole, xi + MERGE));
-    if (at->inputs.eta_pi == 0 || p->scaled.points || xi < p->now.cleared) { /* Θ is the slope of the hole */
+    if (at->inputs.eta_pi == 0 || p->scaled.points || xi + MERGE < p->now.cleared) { /* Θ is the slope of the hole */
         const Piece *own = piece(hole, find(hole, xi));
         return polynomial_slope(own->x[LATERAL], (xi - own->start) * own->rate) * own->rate;
     }
