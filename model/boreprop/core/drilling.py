@@ -176,7 +176,7 @@ class Drilling:
         self.clearances = clearances
 
     def advance_with(self, clearances: tuple[float, ...], *given: Any, bit: BitRock) -> None:
-        """Drill on as by `advance`, with stabilizers that have these clearances, m. If that fails, nothing has changed."""
+        """Drill on as by `advance`, with stabilizers that have these clearances, m; all of it or nothing."""
         before = self.save() if clearances != self.clearances else None
         try:
             self.change_clearances(clearances)

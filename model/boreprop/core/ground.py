@@ -16,6 +16,7 @@ from .system import BitRock
 STAY = 0.01  # m: a bit that has met a layer drills so far in it at least. Along a boundary between rocks of which each
 # turns it into the other it would else go to and fro without end
 ROUNDING = 1e-12  # relative: a length so little before that of a change is at it
+LEAST_SHARE = 1e-3  # of the weight that wear flats bear is left as active weight, at least
 LOOKS = 8  # of a step, at whose ends the depth is looked at: between them it is smooth
 
 
@@ -125,9 +126,9 @@ class Ground:
         until = self.wear.length if length < self.wear.length * (1 - ROUNDING) else inf
         blunt = self.wear.weight(length)
         weight, slope = weight - blunt, slope - (self.wear.weight_per_metre if until < inf else 0.0)
-        way = min(end, until) - length
-        if weight <= 0 or weight + slope * way <= 0:
-            place = length if weight <= 0 else length - weight / slope
+        least, way = LEAST_SHARE * blunt, min(end, until) - length
+        if not weight > least or not weight + slope * way > least:
+            place = length if weight <= least else length - weight / slope
             raise CannotContinue(Problem("worn out", limit=blunt, place=place))
         return weight, slope, until
 

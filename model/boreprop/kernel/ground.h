@@ -4,11 +4,12 @@
 
 #include "events.h"
 
-#define STAY 0.01     /* m: a bit that has met a layer drills so far in it at least */
-#define AT_TOP 1e-9   /* m: a bit this little beyond the bound of a layer, by rounding, is at it */
-#define ROUNDED 1e-12 /* relative: a length so little before that of a change is at it */
-enum { LOOKS = 8 };   /* of a step, at whose ends the depth is looked at */
-enum { ROCK = 3 };    /* η, χ, ψ* */
+#define STAY 0.01       /* m: a bit that has met a layer drills so far in it at least */
+#define AT_TOP 1e-9     /* m: a bit this little beyond the bound of a layer, by rounding, is at it */
+#define LEAST_LEFT 1e-3 /* of the weight that wear flats bear is left as active weight, at least */
+#define ROUNDED 1e-12   /* relative: a length so little before that of a change is at it */
+enum { LOOKS = 8 };     /* of a step, at whose ends the depth is looked at */
+enum { ROCK = 3 };      /* η, χ, ψ* */
 
 /* Layers are numbered from the top; the first one, 0, has no top of its own. Without numbers there is nothing of this. */
 typedef struct {
@@ -67,9 +68,11 @@ static inline int wear_off(
     *until = INFINITY;
     if (per_metre == 0) return 1;
     if (length < worn * (1 - ROUNDED)) *until = worn, *slope -= per_metre;
-    *weight -= smaller(blunt, ground->largest_weight);
-    if (*weight > 0 && *weight + *slope * (smaller(end, *until) - length) > 0) return 1;
-    met(problem, WORN_OUT, blunt, *weight <= 0 ? length : length - *weight / *slope);
+    blunt = smaller(blunt, ground->largest_weight);
+    *weight -= blunt;
+    double least = LEAST_LEFT * blunt;
+    if (*weight > least && *weight + *slope * (smaller(end, *until) - length) > least) return 1;
+    met(problem, WORN_OUT, blunt, *weight <= least ? length : length - *weight / *slope);
     return 0;
 }
 
