@@ -34,11 +34,11 @@ def layer(depth: float, eta: float = 10.0, chi: float | None = None, tilt: float
     return Formation(None, eta, chi, tilt, true_vertical_depth=AT_START + depth)
 
 
-def assert_same(one: Trajectory, other: Trajectory, every: int = 1) -> None:
+def assert_same(one: Trajectory, other: Trajectory, every: int = 1, within: float = 1e-9) -> None:
     """All columns are the same, but for rounding."""
     for name in one:
         scale = max(1.0, float(np.abs(one[name]).max()))
-        np.testing.assert_allclose(one[name], other[name][::every], rtol=0, atol=1e-9 * scale, err_msg=name)
+        np.testing.assert_allclose(one[name], other[name][::every], rtol=0, atol=within * scale, err_msg=name)
 
 
 LAYERED = inclined(
@@ -93,7 +93,7 @@ def test_a_bit_that_goes_straight_meets_a_layer_where_its_measured_depth_says(en
 def test_engines_agree_on_layers_and_wear() -> None:
     native, python = (simulate(LAYERED, engine=engine, sample_interval=0.25) for engine in ("native", "python"))
     assert set(native["formation"]) == {1.0, 2.0, 3.0}
-    assert_same(native, python)
+    assert_same(native, python, within=2e-8)  # rounding moves a boundary by 1e-13 m, and with it the ends of steps
 
 
 def test_rows_lie_anywhere_in_layers(engine: str) -> None:
@@ -138,11 +138,11 @@ def test_a_worn_bit_without_weight_stops_where_nothing_is_left(engine: str) -> N
 
 def test_along_a_boundary_the_bit_changes_layers_only_now_and_then(engine: str) -> None:
     """A bit that each rock turns into the other one would go to and fro without end."""
-    case = inclined(90.0, formations=(layer(0.0, 1.0),), schedule=Schedule((0.0,), (-2e3,)))
-    above = replace(case, bit=replace(case.bit, lateral_steering_resistance=50.0))
-    run = simulate(above, engine=engine, length=3.0, sample_interval=0.001)
-    changes = np.flatnonzero(np.diff(run["formation"]))
-    assert np.diff(changes).min(initial=10) >= 10
+    case = inclined(88.571, formations=(layer(0.01821, 50.0),), schedule=Schedule((0.0,), (12858.0,)))
+    soft_above = replace(case, bit=replace(case.bit, lateral_steering_resistance=1.0))
+    run = simulate(soft_above, engine=engine, length=8.0, sample_interval=0.001)
+    ways = np.diff(np.flatnonzero(np.diff(run["formation"])))
+    assert ways.min() in (10, 11)  # rows: it leaves again as soon as it may
 
 
 @settings(max_examples=10)

@@ -3,6 +3,7 @@
 from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import repeat
 from operator import attrgetter
 from typing import NamedTuple
@@ -295,18 +296,19 @@ class Case:
                 clearances[i] = values[0]
             elif quantity.field and not quantity.part:
                 object.__setattr__(self, quantity.attribute, values[0])
+        start = self._depth + CLOSE
         for formation in self.formations:
             for name, value in formation.values.items():
                 if name in scheduled:
                     raise ParameterError(name, "must be given by formations or a schedule, not by both", value)
-                if formation.depth <= self._depth + CLOSE:
+                if formation.depth <= start:
                     bit[BY_NAME[name].attribute] = value
         if bit:
             object.__setattr__(self, "bit", replace(self.bit, **bit))
         if tuple(clearances) != self.bha.stabilizer_clearances:
             object.__setattr__(self, "bha", replace(self.bha, stabilizer_clearances=tuple(clearances)))
 
-    @property
+    @cached_property
     def in_layers(self) -> bool:
         """Whether formations begin at true vertical depths."""
         return any(formation.true_vertical_depth is not None for formation in self.formations)
@@ -321,12 +323,13 @@ class Case:
         """How the drilling system is made up, and whether rock comes in layers."""
         return self.bha.structure._replace(layered=int(self.in_layers))
 
-    @property
+    @cached_property
     def ground(self) -> Ground | None:
         """Layers and wear as an engine takes them; None if there are neither."""
         if not self.in_layers:
             return Ground(self.bit, wear=self.wear) if self.wear else None
-        tops = tuple(formation.depth - self._depth for formation in self.formations)
+        start = self._depth
+        tops = tuple(formation.depth - start for formation in self.formations)
         tops = tuple(0.0 if 0.0 < top <= CLOSE else top for top in tops)
         rock = [(0.0,) * len(ROCK)]
         for formation in self.formations:
@@ -336,12 +339,13 @@ class Case:
     def _in_formations(self) -> dict[str, Profile]:
         """What bit and rock are like over the drilled length, by name, as far as formations say it."""
         found: dict[str, Profile] = {}
+        start = self._depth
         if self.in_layers:  # where they are met shows along the way
             return found
         for name in {name: 0 for formation in self.formations for name in formation.values}:
             entries = {0.0: float(attrgetter(BY_NAME[name].field)(self))}
             for formation in self.formations:
-                ahead = formation.depth - self._depth
+                ahead = formation.depth - start
                 if ahead > CLOSE and name in formation.values:
                     entries[ahead] = formation.values[name]
             found[name] = Profile(tuple(entries), tuple(entries.values()))

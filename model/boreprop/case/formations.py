@@ -1,6 +1,7 @@
 """What the bit meets: formations, [[formation]] in a case file, and its wear, [bit.wear]."""
 
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from math import degrees, radians
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,9 @@ from ..errors import InputError, shown
 DEPTHS = ("measured_depth", "true_vertical_depth")
 KEYS = {BY_NAME[name].key.partition(".")[2]: name for name in ROCK}
 """The keys of a formation besides its depth → the inputs that they give."""
+
+
+ATTRIBUTES = {name: BY_NAME[name].attribute for name in ROCK}
 
 
 @dataclass(frozen=True)
@@ -58,10 +62,10 @@ class Formation:
         assert depth is not None
         return depth
 
-    @property
+    @cached_property
     def values(self) -> dict[str, float]:
         """The inputs that it gives, by name."""
-        given = {name: getattr(self, BY_NAME[name].attribute) for name in ROCK}
+        given = {name: getattr(self, attribute) for name, attribute in ATTRIBUTES.items()}
         return {name: value for name, value in given.items() if value is not None}
 
     def without(self, name: str) -> "Formation | None":
@@ -70,7 +74,7 @@ class Formation:
             return self
         if len(self.values) == 1:
             return None
-        nothing: dict[str, Any] = {BY_NAME[name].attribute: None}
+        nothing: dict[str, Any] = {ATTRIBUTES[name]: None}
         return replace(self, **nothing)
 
 
@@ -95,7 +99,7 @@ def _formation(table: dict[str, Any], where: str) -> Formation:
         constraint = f"must be given, or {DEPTHS[1]}, and not both"
         raise InputError(f"{where}.{DEPTHS[0]}: {constraint}, got {shown(depths) if depths else 'nothing'}")
     values = {
-        BY_NAME[name].attribute: radians(table[key]) if key.endswith("_deg") else float(table[key])
+        ATTRIBUTES[name]: radians(table[key]) if key.endswith("_deg") else float(table[key])
         for key, name in KEYS.items()
         if key in table
     }

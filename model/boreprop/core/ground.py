@@ -17,7 +17,7 @@ STAY = 0.01  # m: a bit that has met a layer drills so far in it at least. Along
 # turns it into the other it would else go to and fro without end
 ROUNDING = 1e-12  # relative: a length so little before that of a change is at it
 LEAST_SHARE = 1e-3  # of the weight that wear flats bear is left as active weight, at least
-LOOKS = 8  # of a step, at whose ends the depth is looked at: between them it is smooth
+LOOKS = 4  # of a step, at whose ends the depth is looked at: between them it is smooth
 
 
 @dataclass(frozen=True)

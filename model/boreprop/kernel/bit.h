@@ -46,11 +46,13 @@ typedef struct {
     Options options;
     State now;
     Surroundings around;
-    Count cursor[MAX_POINTS]; /* where the look-up of the hole at a point begins, as that at a place does */
-    Law law;                  /* of the present regime and inputs, */
-    int law_known;            /* if it is made already */
-    int under_way;            /* whether a call has set out and not yet arrived; then the way back leads to … */
-    State before;             /* … the state before it, */
+    Count cursor[MAX_POINTS];  /* where the look-up of the hole at a point begins, as that at a place does */
+    Law law;                   /* of the present regime and inputs, */
+    int law_known;             /* if it is made already */
+    double exit;               /* where the bit leaves its layer of the ground in the present step, … */
+    int exit_side, exit_known; /* … on this side, if it does, and if that is known already */
+    int under_way;             /* whether a call has set out and not yet arrived; then the way back leads to … */
+    State before;              /* … the state before it, */
     Surroundings around_before;
     Kink last_kink; /* with its last kink, whose jump may have changed since */
 } Integrator;

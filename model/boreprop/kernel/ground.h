@@ -8,7 +8,7 @@
 #define AT_TOP 1e-9     /* m: a bit this little beyond the bound of a layer, by rounding, is at it */
 #define LEAST_LEFT 1e-3 /* of the weight that wear flats bear is left as active weight, at least */
 #define ROUNDED 1e-12   /* relative: a length so little before that of a change is at it */
-enum { LOOKS = 8 };     /* of a step, at whose ends the depth is looked at */
+enum { LOOKS = 4 };     /* of a step, at whose ends the depth is looked at */
 enum { ROCK = 3 };      /* η, χ, ψ* */
 
 /* Layers are numbered from the top; the first one, 0, has no top of its own. Without numbers there is nothing of this. */
@@ -83,14 +83,21 @@ static inline double way_down(const Step *step, double xi) {
     return z;
 }
 
-/* Where in [a, b] the bit passes a depth below the start of a step on `side`, beyond which it is at b. */
-static inline double pass_depth(const Step *step, double limit, int side, double a, double b) {
-    while (b - a > CLOSE) {
-        double c = (a + b) / 2;
-        if (c <= a || c >= b) break;
-        *(side * (way_down(step, c) - limit) > 0 ? &b : &a) = c;
+/* Where in [a, b] the bit passes a depth below the start of a step on `side`, f_b beyond it at b, as `crossing` does. */
+static inline double pass_depth(const Step *step, double limit, int side, double a, double b, double f_b) {
+    double f_a = side * (way_down(step, a) - limit), c = b;
+    if (f_a >= 0) return a;
+    for (int k = 0; k < MOST_TRIES; k++) {
+        c = (a * f_b - b * f_a) / (f_b - f_a);
+        double f_c = side * (way_down(step, c) - limit);
+        if (fabs(f_c) < CLOSE_ENOUGH || fabs(b - a) < CLOSE) break;
+        if ((f_c > 0) == (f_b > 0)) {
+            double weight = 1 - f_c / f_b;
+            f_a *= weight > 0 ? weight : 0.5;
+        } else a = b, f_a = f_b;
+        b = c, f_b = f_c;
     }
-    return b;
+    return c;
 }
 
 /* Where the bit first is outside of its layer along a step, from `begin` on; on which side, 1 below, −1 above, or 0 if
@@ -115,8 +122,9 @@ static inline int first_exit(const Step *step, double depth, double top, double 
     for (int k = 0; k < count; k++) {
         int side = samples[k].value > bottom ? 1 : samples[k].value < top ? -1 : 0;
         if (!side) continue;
+        double limit = side > 0 ? bottom : top, beyond = side * (samples[k].value - limit);
         *where = samples[k].xi;
-        if (k) *where = pass_depth(step, side > 0 ? bottom : top, side, samples[k - 1].xi, samples[k].xi);
+        if (k) *where = pass_depth(step, limit, side, samples[k - 1].xi, samples[k].xi, beyond);
         return side;
     }
     return 0;

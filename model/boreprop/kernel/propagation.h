@@ -54,6 +54,7 @@ static inline Status restart(
     State *now = &p->now;
     now->inputs = inputs, now->inputs_xi = now->xi;
     now->step = standstill(now->xi, x);
+    p->exit_known = 0;
     bear(p, inputs.W);
     if (p->scaled.points && touch_down(p, now->xi, x, problem) != DONE) return FAILED;
     Loads loads = loads_at(p, now->xi, x, inputs.F_rss);
@@ -149,25 +150,27 @@ static inline Status change_clearances(Integrator *p, const double *y_star, Prob
    After FULL the same call goes on. */
 static inline Status drill_in_layer(Integrator *p, const Ground *ground, double end, int *left, Problem *problem) {
     State *now = &p->now;
-    double last = p->before.accepted + p->options.most_steps, l1 = p->length_scale, x, z, where;
+    double last = p->before.accepted + p->options.most_steps, l1 = p->length_scale, x, z;
     double top = layer_top(ground, now->layer) / l1, bottom = layer_bottom(ground, now->layer) / l1;
     for (;;) {
         double begin = larger(now->step.xi, now->stay);
-        *left = first_exit(&now->step, now->path[1], top, bottom, begin, &where);
-        if (*left && where <= end) break;
-        *left = 0;
+        if (!p->exit_known) p->exit_side = first_exit(&now->step, now->path[1], top, bottom, begin, &p->exit);
+        p->exit_known = 1;
+        *left = p->exit <= end ? p->exit_side : 0;
+        if (*left) break;
         if (end <= now->step.end) return DONE;
         if (end - now->xi > p->options.most_steps * p->options.largest_step || now->accepted >= last)
             return too_many(p, problem);
         Status status = take_step(p, problem);
         if (status != DONE) return status;
     }
-    now->xi = where, now->layer += *left;
+    now->xi = p->exit, now->layer += *left;
     position(now, &x, &z);
     while (*left > 0 ? z * l1 - layer_bottom(ground, now->layer) > AT_TOP /* through a thin layer */
                      : layer_top(ground, now->layer) - z * l1 > AT_TOP)
         now->layer += *left;
     now->stay = now->xi + STAY / l1;
+    p->exit_known = 0;
     return DONE;
 }
 
@@ -186,7 +189,7 @@ static inline Status drill_step(Integrator *p, Problem *problem) {
 static inline void prepare(Integrator *p, const Scaled *scaled, double length_scale, Options options) {
     Axial unloaded = {0.0, 0.0};
     memset(&p->now, 0, sizeof p->now);
-    p->law_known = p->under_way = 0;
+    p->law_known = p->exit_known = p->under_way = 0;
     p->scaled = *scaled;
     load_beam(&p->modes, scaled, unloaded);
     memcpy(p->modes.y_star, scaled->y_star, sizeof p->modes.y_star);

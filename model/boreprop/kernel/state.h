@@ -225,7 +225,7 @@ static inline void become(Drilling *d, const Snapshot *snapshot, Tape tape) {
     p->now = snapshot->now, p->now.hole = hole, p->now.kinks = kinks, p->around = snapshot->around;
     find_places(&p->now, &p->scaled, p->now.step.xi);
     memcpy(p->now.kinks.ahead, snapshot->passed, sizeof p->now.kinks.ahead);
-    p->law_known = p->under_way = 0;
+    p->law_known = p->exit_known = p->under_way = 0;
     if (p->now.cosine != cosine) take_cosine(d, p->now.cosine);
     bear(p, p->now.inputs.W);
     clear(p);
