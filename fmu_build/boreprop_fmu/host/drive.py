@@ -16,7 +16,7 @@ from boreprop.core.checks import check_number
 from boreprop.core.quantities import CLEARANCES, names_of_runs
 from boreprop.errors import InputError
 from boreprop.run.course import Course
-from boreprop.run.simulate import rock_in_layers
+from boreprop.run.ground import rock_in_layers
 from boreprop.run.trajectory import Stopped, Trajectory
 
 from .instance import interruptions, open_instance, read_description, uninterrupted

@@ -11,9 +11,10 @@ from ..case.case import Case
 from ..core.checks import check_number
 from ..core.errors import CannotContinue
 from ..core.options import RELATIVE_TOLERANCE, Options
-from ..core.quantities import CLEARANCES, OUTPUTS, ROCK, scalar_names, values_of
+from ..core.quantities import CLEARANCES, OUTPUTS, ROCK, scalar_names
 from .course import Course, acting, course_of
 from .engines import Engine, chosen, start
+from .ground import rock_in_layers
 from .trajectory import Stopped, Trajectory
 
 Indices = NDArray[np.intc]
@@ -134,18 +135,6 @@ def _change_clearances(drilling: Engine, case: Case, course: Course, piece: int)
     given = dict(zip(course.names, course.values[piece].tolist(), strict=True))
     own = zip(CLEARANCES, case.bha.stabilizer_clearances, strict=False)
     drilling.change_clearances(tuple(given.get(name, clearance) for name, clearance in own))
-
-
-def rock_in_layers(case: Case, formation: Floats) -> dict[str, Floats]:
-    """The rock of rows in these formations by true vertical depth, by name: what is not the same in all of them."""
-    ground, columns = case.ground, dict[str, Floats]()
-    assert ground is not None
-    own, layer = values_of("bit", ground.bit), formation.astype(np.intp)
-    for name, values in zip(ROCK, np.array(ground.rock).T, strict=True):
-        rock = np.where(values == 0.0, own[name], values)
-        if (rock != rock[0]).any():
-            columns[name] = rock[layer]
-    return columns
 
 
 def _legs(course: Course, count: int, sample_interval: float) -> tuple[Floats, Indices, Indices]:
