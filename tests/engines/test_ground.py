@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import cos, nan, pi, radians
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,7 +24,7 @@ COLUMNS = ("bit_inclination", "borehole_inclination", "bit_tilt", "stabilizer_fo
 AT_START = 1000.0  # m of true vertical depth
 
 
-def inclined(degrees: float, **changed: object) -> Case:
+def inclined(degrees: float, **changed: Any) -> Case:
     """The paper's case at an inclination."""
     survey = Survey((0.0, 20.0), (radians(degrees), radians(degrees)))
     return replace(PAPER, survey=survey, true_vertical_depth=AT_START, length=20.0, **changed)

@@ -116,8 +116,9 @@ class Shapes:
         for i, name in enumerate(CLEARANCES):  # which may change along a run
             if name in self.rows:
                 radius[:, i] = np.maximum(self.frame.radius - self.rows[name], 0.0)
-        reach = np.multiply.outer(radius, (-1.0, 1.0))
-        return self.bha_axis[:, self.frame.at_stabilizer, None] + reach
+        reach: Array = np.multiply.outer(radius, (-1.0, 1.0))
+        ends: Array = self.bha_axis[:, self.frame.at_stabilizer, None] + reach
+        return ends
 
     @property
     def contact_points(self) -> Array:

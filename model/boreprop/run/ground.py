@@ -39,9 +39,10 @@ def on_rows(case: Case, run: Mapping[str, Floats], name: str) -> Floats:
     if case.in_layers and name in ROCK and case.ground is not None:
         number = run.get("formation")
         if number is None and "true_vertical_depth" in run:
-            number = np.searchsorted(case.ground.tops, run["true_vertical_depth"] + CLOSE, side="right")
+            tops = np.array(case.ground.tops)
+            number = np.searchsorted(tops, run["true_vertical_depth"] + CLOSE, side="right").astype(float)
         if number is not None:
-            rock = rock_in_layers(case, np.asarray(number))
+            rock = rock_in_layers(case, number)
             if name in rock:
                 return rock[name]
     course = course_of(case)
@@ -59,7 +60,7 @@ def blunt_weight(case: Case, length: Floats) -> Floats:
     return np.minimum(case.wear.weight_per_metre * length, case.wear.largest_weight)
 
 
-def largest(case: Case, name: str) -> float:
+def largest_along(case: Case, name: str) -> float:
     """The largest value that one of η, χ, ψ* has anywhere along a case."""
     scheduled = dict(case.inputs.inputs).get(name, ()) if case.inputs else ()
     in_formations = [formation.values[name] for formation in case.formations if name in formation.values]
