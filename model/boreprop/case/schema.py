@@ -348,6 +348,6 @@ def _written(document: Document, where: str) -> Any:
     """The value that the file has under "table.key" or "table.key[i]"; a key may itself end in an index."""
     value: Any = document
     for key in where.split("."):
-        name, _, index = key.partition("[")
+        name, _, index = key.rpartition("[")
         value = value[key] if key in value else value[name][int(index[:-1]) - 1]
     return value
