@@ -129,6 +129,14 @@ def test_wear_is_a_weight_that_falls_evenly_and_then_stays(engine: str) -> None:
         np.testing.assert_allclose(one[name], other[name], rtol=0, atol=1e-9 * scale, err_msg=name)
 
 
+@settings(max_examples=15)
+@given(rate=st.floats(10.0, 200.0), worn=st.floats(0.3, 9.0))
+def test_rows_lie_anywhere_before_and_after_the_bit_is_worn(engine: str, rate: float, worn: float) -> None:
+    case = replace(PAPER, wear=Wear(rate, rate * worn / 1.5), schedule=Schedule((0.0, 3.0), (4e3, 0.0)))
+    few, many = (simulate(case, engine=engine, length=8.0, sample_interval=interval) for interval in (2.0, 0.5))
+    assert_same(few, many, 4)
+
+
 def test_a_worn_bit_without_weight_stops_where_nothing_is_left(engine: str) -> None:
     weight = PAPER.active_weight_on_bit
     with pytest.raises(Stopped, match="from 8 m on the flats of the worn bit bear all of the active weight") as stopped:

@@ -18,7 +18,8 @@ from boreprop.run.results import read_trajectory
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
 from conftest import Command, Pack
-from flavours import Flavour, both_flavours
+from flavours import NATIVE, Flavour, both_flavours
+from fmu_host import instance
 from places import HOSTS
 
 LENGTH = 21.0
@@ -163,3 +164,23 @@ def test_a_state_keeps_layer_and_clearance(layered: Case, flavour: Flavour, pack
     first, second = (answer for answer in answers if isinstance(answer, dict))
     assert first == second
     assert first["formation"] == 3
+
+
+def test_sensitivities_are_those_of_the_layer_and_of_the_blunt_bit(layered: Case, pack: Pack) -> None:
+    """Of ηΠ = η (W − G)/F*; of a rock input that a layer stands in for outputs are independent."""
+    with instance(str(pack(layered, NATIVE))) as one:
+        one.initialize()
+        assert one.step(8.0) == "ok"
+
+        def gain(output: str, given: str) -> float:
+            references = [[one.variables[name].valueReference] for name in (output, given)]
+            return float(one.slave.getDirectionalDerivative(*references, [1.0])[0])
+
+        scale, blunt = layered.bha.force_scale, 30.0 * 8.0
+        assert gain("eta_pi", "active_weight_on_bit") == pytest.approx(20.0 / scale, rel=1e-12)
+        assert gain("eta_pi", "lateral_steering_resistance") == 0.0
+        assert gain("borehole_inclination", "lateral_steering_resistance") == 0.0
+        one.set(lateral_steering_resistance=12.0)
+        weight = layered.active_weight_on_bit - blunt
+        assert gain("eta_pi", "lateral_steering_resistance") == pytest.approx(weight / scale, rel=1e-12)
+        assert gain("eta_pi", "active_weight_on_bit") == pytest.approx(12.0 / scale, rel=1e-12)

@@ -51,10 +51,6 @@ class Wear:
         """Drilled length at which G is the largest, m."""
         return self.largest_weight / self.weight_per_metre
 
-    def weight(self, drilled_length: float) -> float:
-        """G, N."""
-        return min(self.weight_per_metre * drilled_length, self.largest_weight)
-
 
 @dataclass(frozen=True)
 class Ground:
@@ -124,7 +120,7 @@ class Ground:
         if self.wear is None:
             return weight, slope, inf
         until = self.wear.length if length < self.wear.length * (1 - ROUNDING) else inf
-        blunt = self.wear.weight(length)
+        blunt = self.wear.weight_per_metre * length if until < inf else self.wear.largest_weight
         weight, slope = weight - blunt, slope - (self.wear.weight_per_metre if until < inf else 0.0)
         least, way = LEAST_SHARE * blunt, min(end, until) - length
         if not weight > least or not weight + slope * way > least:

@@ -68,7 +68,7 @@ static inline int wear_off(
     *until = INFINITY;
     if (per_metre == 0) return 1;
     if (length < worn * (1 - ROUNDED)) *until = worn, *slope -= per_metre;
-    blunt = smaller(blunt, ground->largest_weight);
+    else blunt = ground->largest_weight;
     *weight -= blunt;
     double least = LEAST_LEFT * blunt;
     if (*weight > least && *weight + *slope * (smaller(end, *until) - length) > least) return 1;
