@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from boreprop.case.case import Case, InputSchedule, Schedule
@@ -131,6 +131,7 @@ def test_wear_is_a_weight_that_falls_evenly_and_then_stays(engine: str) -> None:
 
 @settings(max_examples=15)
 @given(rate=st.floats(10.0, 200.0), worn=st.floats(0.3, 9.0))
+@example(rate=101.2, worn=6.2)  # where rate times length is not quite the largest weight
 def test_rows_lie_anywhere_before_and_after_the_bit_is_worn(engine: str, rate: float, worn: float) -> None:
     case = replace(PAPER, wear=Wear(rate, rate * worn / 1.5), schedule=Schedule((0.0, 3.0), (4e3, 0.0)))
     few, many = (simulate(case, engine=engine, length=8.0, sample_interval=interval) for interval in (2.0, 0.5))
