@@ -43,7 +43,7 @@ os.environ.pop("SOURCE_DATE_EPOCH", None)  # and what an FMU says of its date
 
 
 # what commands are slow to import
-OF_COMMANDS = ("boreprop.case.file", "boreprop_fmu.cli", "fmpy.simulation", "matplotlib.figure", "scipy.optimize")
+OF_COMMANDS = ("boreprop.case.file", "boreprop_fmu.cli", "fmpy.simulation", "scipy.optimize", "scipy.spatial")
 
 
 Command = Callable[..., subprocess.CompletedProcess[str]]

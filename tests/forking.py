@@ -14,7 +14,6 @@ import warnings
 from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib import import_module
-from multiprocessing import get_context
 from pathlib import Path
 from runpy import run_path
 from signal import alarm
