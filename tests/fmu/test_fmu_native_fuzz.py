@@ -106,7 +106,7 @@ def test_the_tests_of_the_native_flavour_pass_under_sanitizers(asan: Path) -> No
         cwd=FOLDER,
         env={
             **{name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")},
-            "CC": str(COMPILER),
+            "CC": f"env -u LD_PRELOAD {COMPILER}",
             "CFLAGS": shlex.join(SANITIZERS),
             "LD_PRELOAD": str(asan),
             "ASAN_OPTIONS": "detect_leaks=0",

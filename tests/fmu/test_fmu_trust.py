@@ -59,7 +59,7 @@ def version(folder: Path, name: str, case: Path, flavour: Flavour) -> Path:
         "build_fmu(load_case(Path(sys.argv[1])), Path(sys.argv[2]), runtime=sys.argv[3])"
     )
     fmu = folder / "Borehole.fmu"
-    environment = {"CFLAGS": "-O0", **os.environ, "PYTHONPATH": str(folder)}  # which is quick to compile
+    environment = {**os.environ, "CFLAGS": "-O0", "PYTHONPATH": str(folder)}  # which is quick to compile
     subprocess.run([sys.executable, "-c", program, case, fmu, flavour.runtime], env=environment, check=True)
     return fmu
 
