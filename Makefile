@@ -33,7 +33,7 @@ wheels: .venv/dev.installed  # wheels for all platforms and the source distribut
 	$(BIN)/python -m pytest tests/wheels --wheels dist -n auto --dist loadfile -rap
 
 test: .venv/dev.compiled  # the whole suite
-	$(BIN)/python -m pytest -n auto
+	$(BIN)/python -m pytest -n auto --dist worksteal
 
 soak: .venv/dev.compiled  # new examples of the property tests, then the fuzzers: make soak MINUTES=40 [SEED=…]
 	$(BIN)/python tests/soak.py --minutes $(MINUTES) $(if $(SEED),--seed $(SEED))
