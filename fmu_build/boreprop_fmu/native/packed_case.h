@@ -107,13 +107,14 @@ static int read_stations(CaseFile *file, PackedCase *packed, char why[LINE]) {
 }
 
 static int read_structure(CaseFile *file, Structure *structure, char why[LINE]) {
-    long n, sections, axial, points;
+    long n, sections, axial, points, sensors;
     if (!read_count(file, "stabilizers", 1, MAX_STABILIZERS, &n, why)) return 0;
     if (!read_count(file, "sections", 0, MAX_SECTIONS, &sections, why)) return 0;
     if (!read_count(file, "axial_load", 0, 1, &axial, why)) return 0;
     if (!read_count(file, "body_points", 0, MAX_POINTS, &points, why)) return 0;
+    if (!read_count(file, "sensors", 0, MAX_SENSORS, &sensors, why)) return 0;
     structure->n = (int)n, structure->sections = (int)sections, structure->axial = (int)axial;
-    structure->points = (int)points;
+    structure->points = (int)points, structure->sensors = (int)sensors;
     return 1;
 }
 
@@ -124,7 +125,7 @@ static int read_lines(CaseFile *file, PackedCase *packed, char why[LINE]) {
     if (!read_identity(file, packed, why) || !read_structure(file, &structure, why)) return 0;
     list_variables(all, structure);
     for (int i = 0; i < all->count; i++)
-        if (all->at[i].role != OUTPUT && all->at[i].kind == REAL &&
+        if (all->at[i].role != OUTPUT && all->at[i].kind != STRING &&
             !read_number(file, all->at[i].name, &packed->start[i], why))
             return 0;
     if (!read_radius(file, packed, why)) return 0;

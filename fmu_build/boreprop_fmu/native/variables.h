@@ -44,8 +44,9 @@ static void list_variables(Variables *all, Structure structure) {
     }
     all->first_parameter = all->count;
     for (int k = 0; k < PARAMETER_COUNT; k++) {
+        Kind kind = PARAMETER_TABLE[k].is_whole ? INTEGER : REAL;
         if (PARAMETER_TABLE[k].name == Q_RELATIVE_TOLERANCE) all->relative_tolerance = all->count;
-        add_variables(all, k, PARAMETER_TABLE[k].name, PARAMETER_TABLE[k].size, PARAMETER, REAL);
+        add_variables(all, k, PARAMETER_TABLE[k].name, PARAMETER_TABLE[k].size, PARAMETER, kind);
     }
     all->survey_file = all->count;
     add_variables(all, 0, Q_SURVEY_FILE, ONE, PARAMETER, STRING);

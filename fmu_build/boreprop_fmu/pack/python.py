@@ -46,11 +46,10 @@ def pack_python(case: Case, identifier: str) -> dict[str, bytes]:
     code = pack_code()
 
     def numbers(guid: str) -> dict[str, bytes]:
-        n = len(case.bha.stabilizer_positions)
         packed = {
             "guid": guid,
             "log_switch": log_switch(),
-            "stabilizers": n,
+            "structure": case.bha.structure,
             "start": start_values(case),
             "bit_diameter": case.bit_diameter,
             "survey": asdict(case.survey),

@@ -24,13 +24,13 @@ from boreprop.core.columns import read_columns
 from boreprop.core.drilling import Drilling
 from boreprop.core.errors import BorepropError, ParameterError, TableError
 from boreprop.core.options import Options
-from boreprop.core.quantities import MOST_DRILLED, VARIABLES, Quantity, columns_of, fields_of
+from boreprop.core.quantities import MOST_DRILLED, VARIABLES, Quantity, Structure, columns_of, fields_of
 from boreprop.core.sag import Watch
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop_fmu.python.process import forget, give_ctrl_c_back, open_log, write_to_user
 
-STATE_FORMAT = "boreprop-fmu-state-6"
+STATE_FORMAT = "boreprop-fmu-state-7"
 INSTANTIATED, INITIALIZATION, STEPPING, TERMINATED = "instantiated", "initialization", "stepping", "terminated"
 BEFORE_THE_END = (INSTANTIATED, INITIALIZATION, STEPPING)
 TIGHTEST, LOOSEST = 1e-12, 1e-5  # tolerance that a host may choose: some choose 1e-3 always, too coarse for a hole
@@ -56,9 +56,9 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         self.guid: str = packed["guid"]
         logger, place = kwargs.get("logger"), packed["log_switch"]
         self._log_switch = logger + place if logger and place else None
-        self._n: int = packed["stabilizers"]
+        self._structure = Structure(*packed["structure"])
         self._survey = Survey(**{name: tuple(values) for name, values in packed["survey"].items()})
-        self._scalars = [(name, quantity) for quantity in VARIABLES for name in quantity.names(self._n)]
+        self._scalars = [(name, quantity) for quantity in VARIABLES for name in quantity.names(self._structure)]
         self._given: dict[str, Any] = packed["start"]  # inputs and parameters
         self._weight: float = self._given["active_weight_on_bit"]  # the last that drilled, N
         self._chosen: set[str] = set()  # those of them that have been set
@@ -124,7 +124,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         self._call("fmi2SetReal", BEFORE_THE_END, self._set, vrs, values, "Real")
 
     def set_integer(self, vrs: list[int], values: list[int]) -> None:
-        """There are no Integer inputs and parameters."""
+        """Take parameters over, all or none."""
         self._call("fmi2SetInteger", BEFORE_THE_END, self._set, vrs, values, "Integer")
 
     def set_boolean(self, vrs: list[int], values: list[bool]) -> None:
@@ -176,12 +176,12 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
 
     def _bit(self) -> BitRock:
         """Bit and rock as they are given."""
-        return BitRock(**fields_of("bit", self._given, self._n))
+        return BitRock(**fields_of("bit", self._given, self._structure))
 
     def _build(self, survey: Survey) -> Drilling:
         given = self._given
         return Drilling(
-            BottomHoleAssembly(**fields_of("bha", given, self._n)),
+            BottomHoleAssembly(**fields_of("bha", given, self._structure)),
             self._bit(),
             survey,
             active_weight_on_bit=given["active_weight_on_bit"] or self._weight,

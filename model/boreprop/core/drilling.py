@@ -200,15 +200,29 @@ class Drilling:
         values |= {f"stabilizer_deflection[{i}]": d * l1 for i, d in enumerate(delta, 1)}
         values |= {f"stabilizer_force[{i}]": f * F_star for i, f in enumerate(F, 1)}
         values |= {f"stabilizer_contact[{i}]": wall(f) for i, f in enumerate(F, 1)}
-        return values | {
+        values |= {
             "bit_tilt_saturation": saturation(F_0, p.eta_pi, p.inputs.psi_star),
             "bit_lateral_force": F_0 * F_star,
             "bit_moment": -mode.M(loads) * F_star * l1,
             "borehole_curvature": (Theta - p.earlier_inclination(p.xi - 1.0)) / l1,
+        }
+        return values | self._sensed() | {
             "displacement": x * l1,
             "true_vertical_depth": z * l1,
             "eta_pi": p.eta_pi,
         }
+
+    def _sensed(self) -> dict[str, float]:
+        """The outputs of the sensors where the bit is."""
+        p, l1, F_star = self.integrator, self._length, self._force
+        inclinations, moments, clearances = {}, {}, {}
+        for i, (sensor, reading) in enumerate(zip(p.scaled.sensors, p.readings, strict=True), 1):
+            inclination, offset, moment = p.sensed(sensor.s, p.xi)
+            told = reading.inclination if sensor.interval else inclination + sensor.bias
+            inclinations[f"sensor_inclination[{i}]"] = told
+            moments[f"sensor_bending_moment[{i}]"] = moment * F_star * l1
+            clearances[f"sensor_clearance[{i}]"] = (sensor.clearance - abs(offset)) * l1
+        return inclinations | moments | clearances
 
     def save(self) -> dict[str, Any]:
         """The whole evolving state, of numbers, strings, lists and tuples; JSON keeps it exactly."""

@@ -8,56 +8,31 @@ are the integrator's own: the bit may stop anywhere.
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from math import isfinite, pi, sin
 from typing import Any
 
-from . import radau
 from .errors import CannotContinue
 from .events import Event, first_event
 from .hole import Drilled, Hole
 from .inputs import Inputs
 from .kinks import MERGE, SMOOTHEST_KINK, Kinks
 from .law import Law, Laws, bend
-from .modes import ROUNDING, Loads, Mode, Modes, Regime, bit_tilt, saturation
+from .modes import Loads, Mode, Modes, Regime, bit_tilt, saturation
 from .options import Options, Statistics
+from .plan import CLOSER, Plan, growth
 from .problems import Problem
+from .sensors import Reading, Sensed
 from .step import Step, Trial, try_step
 from .survey import Survey
 
 LOOK_BACK = 1.0  # ℓ₁: how far behind the bit Θ may be asked for, as the curvature over the last ℓ₁ does
-SAFETY = 0.85  # of the step that the error estimate asks for, so that few of the next ones are rejected
 LARGEST_GROWTH = 8.0  # of a step over the last, as in RADAU5 (Hairer & Wanner, IV.8): an estimate reaches no farther
 SMALLEST_GROWTH = 0.1  # of a trial over a rejected one, for the same reason
-LEAST_ERROR = 1e-12  # of a trial, over the tolerance: it is not zero, and its growth is far above the largest
 STRETCH = 1.3  # how much longer than planned a step may be if it then ends on the next kink: one long step that may be
 # rejected is tried before two short ones
 LARGEST_INCLINATION = 2 * pi  # beyond a full turn nothing is drilled
-CLOSER = 8.0  # by this factor a step is tried shorter where each regime meets a bound before its first point, and the
-# slack by which values may lie beyond their bounds at the points is made larger; 2 to 64 serve as well
 MOST_SLACK = 1e-6  # of that slack: what needs more is no touch that rounding hides
 ORIGIN_LIMIT = 8.0  # |Y| beyond which the origin of Y is moved to the bit: rounding errors of Y stay below 1e-15
-
-
-@dataclass
-class Plan:
-    """How a step is tried, and tried again."""
-
-    h: float  # its length
-    resumed: float  # the length that may follow if a kink cuts it short
-    repeated: bool = False  # an earlier trial was no good: the next is never longer than planned
-    switches: int = 0  # of the regime where it starts
-    slack: float = ROUNDING  # by which its points may lie beyond a bound
-
-    def shorten(self, h: float) -> None:
-        """Try again, the error having been too large."""
-        self.h = self.resumed = h
-        self.repeated = True
-
-    def look_closer(self, h: float) -> None:
-        """Try again, each regime having met a bound before the first point."""
-        self.h, self.repeated, self.switches = h, True, 0
-        self.slack *= CLOSER
 
 
 class Integrator:
@@ -110,7 +85,9 @@ class Integrator:
         theta = self.hole.final_inclination
         self.present = Step.standstill(0.0, theta, 0.0)  # the step that the bit is in
         inputs = Inputs(F_rss, eta_pi, 0.0, 0.0, self.scaled.epsilon, self.scaled.psi_star)
+        self.readings = [Reading() for _ in self.scaled.sensors]
         self._restart(self._loads(0.0, theta, 0.0, F_rss), inputs, theta)
+        self._read(0.0)
 
     # moving
 
@@ -127,6 +104,7 @@ class Integrator:
                     self._steer(inputs)
                 self._take_steps(xi)
         self.xi = xi
+        self._read(xi)
 
     def advance(self, xi: float) -> None:
         """Drill on to `xi` under the inputs as they are, see `drill`."""
@@ -142,6 +120,7 @@ class Integrator:
         with self._all_or_nothing():
             self._take_step()
         self.xi = self.present.end
+        self._read(self.xi)
         return self.present
 
     @contextmanager
@@ -165,7 +144,15 @@ class Integrator:
         while xi > self.present.end:
             if hopeless or self._accepted == last:
                 raise CannotContinue(Problem("too many", limit=most, place=self.xi * self.length_scale))
+            self._read(self.present.end)
             self._take_step()
+
+    def _read(self, xi: float) -> None:
+        """Let each sensor take the last reading that is due with the bit at `xi`, in the present step."""
+        for i, sensor in enumerate(self.scaled.sensors):
+            if sensor.interval and (number := sensor.due(xi)) > self.readings[i].number:
+                inclination = self.sensed(sensor.s, min(number * sensor.interval, xi)).inclination
+                self.readings[i] = Reading(number, sensor.reads(inclination, i, number))
 
     def _steer(self, inputs: Inputs) -> None:
         """Take over inputs where the bit is. Where a slope or ε changes, the curvature jumps."""
@@ -229,6 +216,13 @@ class Integrator:
         e = [Y - Y_i - s_i * theta for Y_i, s_i in zip(delayed, self.scaled.s)]
         return Loads(e, F_rss, sin(Y - delayed[0]))
 
+    def sensed(self, s: float, xi: float) -> Sensed:
+        """The BHA at `s` behind the bit while that is at `xi`, in the present step."""
+        theta, Y = self.present.state(xi)
+        loads = self._loads(xi, theta, Y, self.inputs.ahead(xi - self.inputs_xi).F_rss)
+        v, slope, moment = self.settled(loads).line(self.modes.beam, s, loads)
+        return Sensed(theta - slope, Y - self.hole.Y(xi - s) - s * theta + v, moment)
+
     def settled(self, loads: Loads) -> Mode:
         """The mode whose contacts hold under `loads`."""
         return self.modes.settle(loads, self.regime.contact)
@@ -258,6 +252,7 @@ class Integrator:
             "kinks": self.kinks.save(),
             "step": self.present,
             "hole": self.hole.save(),
+            "readings": self.readings[:],
         }
 
     def restore(self, state: dict[str, Any]) -> None:
@@ -269,6 +264,7 @@ class Integrator:
         xi, h, theta, Y, *rest = state["step"]
         self.present = Step(xi, h, tuple(theta), tuple(Y), *rest)
         self.hole.restore(state["hole"])
+        self.readings = [Reading(*reading) for reading in state["readings"]]
         self._take_over(Inputs(*state["inputs"]), state["inputs_xi"])
         contact, side = state["regime"]
         self._change_regime(Regime(tuple(contact), side))
@@ -390,9 +386,3 @@ class Integrator:
 
     def _failure(self, code: str, xi: float) -> CannotContinue:
         return CannotContinue(Problem(code, limit=self.options.relative_tolerance, place=xi * self.length_scale))
-
-
-def growth(error: float) -> float:
-    """How much longer than a trial with this error, over the tolerance, the next one may be."""
-    grown: float = max(error, LEAST_ERROR) ** (-1 / (radau.S + 1))
-    return SAFETY * grown

@@ -152,6 +152,7 @@ static inline void drilling_cancel(Drilling *d) { go_back(&d->integrator); }
 typedef struct {
     double l1, F_star, eta_pi, theta, Y, Theta, psi, F_0, F[MAX_PLACES], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
     double body_force, body_place, wall_distance; /* the largest force on the body and where it acts; the least gap */
+    Sensed sensed[MAX_SENSORS];
     Loads loads;
     const Mode *mode;
 } Present;
@@ -187,6 +188,8 @@ static inline Present present(Drilling *d) {
     at.Theta = at.theta - at.psi;
     position(now, &at.x, &at.z);
     find_body(d, &at);
+    for (int i = 0; i < p->scaled.sensors; i++)
+        at.sensed[i] = sensed(p, p->scaled.sensor[i].s, now->xi, state, at.mode, &at.loads);
     return at;
 }
 
@@ -214,6 +217,9 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_BODY_CONTACT_FORCE: return at->body_force * F_star;
         case OUT_BODY_CONTACT_POSITION: return at->body_place * l1;
         case OUT_WALL_DISTANCE: return at->wall_distance * l1;
+        case OUT_SENSOR_INCLINATION: return told(&d->integrator, i, &at->sensed[i]);
+        case OUT_SENSOR_BENDING_MOMENT: return at->sensed[i].moment * F_star * l1;
+        case OUT_SENSOR_CLEARANCE: return (scaled->sensor[i].clearance - fabs(at->sensed[i].offset)) * l1;
         case OUT_DISPLACEMENT: return at->x * l1;
         case OUT_TRUE_VERTICAL_DEPTH: return at->z * l1;
         case OUT_ETA_PI: return at->eta_pi;

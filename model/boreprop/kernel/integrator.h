@@ -6,6 +6,7 @@
 #ifndef BOREPROP_INTEGRATOR_H
 #define BOREPROP_INTEGRATOR_H
 
+#include "sensors.h"
 #include "surroundings.h"
 
 /* integrator.py gives the reasons for these numbers. */
@@ -237,8 +238,10 @@ static inline Status integrate(Integrator *p, double xi, Problem *problem) {
     double most = p->options.most_steps, last = p->before.accepted + most;
     Status status = DONE;
     if (xi > p->now.step.end && xi - p->now.xi > most * p->options.largest_step) return too_many(p, problem);
-    while (status == DONE && xi > p->now.step.end)
+    while (status == DONE && xi > p->now.step.end) {
+        read_sensors(p, p->now.step.end);
         status = p->now.accepted < last ? take_step(p, problem) : too_many(p, problem);
+    }
     return status;
 }
 

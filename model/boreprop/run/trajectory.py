@@ -81,7 +81,8 @@ class Trajectory(Mapping[str, Floats]):
         MissingColumn
             If the run lacks one of them.
         """
-        names = BY_NAME[name].names(self.n) if name in BY_NAME else [name]
+        structure = self.n if self.case is None else self.case.bha.structure
+        names = BY_NAME[name].names(structure) if name in BY_NAME else [name]
         columns = [self[scalar] for scalar in names]
         return np.column_stack(columns) if columns else np.empty((self.row_count, 0))
 
