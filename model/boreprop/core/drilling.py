@@ -206,11 +206,15 @@ class Drilling:
             "bit_moment": -mode.M(loads) * F_star * l1,
             "borehole_curvature": (Theta - p.earlier_inclination(p.xi - 1.0)) / l1,
         }
-        return values | self._sensed() | {
-            "displacement": x * l1,
-            "true_vertical_depth": z * l1,
-            "eta_pi": p.eta_pi,
-        }
+        return (
+            values
+            | self._sensed()
+            | {
+                "displacement": x * l1,
+                "true_vertical_depth": z * l1,
+                "eta_pi": p.eta_pi,
+            }
+        )
 
     def _sensed(self) -> dict[str, float]:
         """The outputs of the sensors where the bit is."""

@@ -144,7 +144,6 @@ class Integrator:
         while xi > self.present.end:
             if hopeless or self._accepted == last:
                 raise CannotContinue(Problem("too many", limit=most, place=self.xi * self.length_scale))
-            self._read(self.present.end)
             self._take_step()
 
     def _read(self, xi: float) -> None:
@@ -312,6 +311,7 @@ class Integrator:
     def _take_step(self) -> None:
         """Append one step at the end of the last one."""
         last, xi = self.present, self.present.end
+        self._read(xi)
         theta, Y, kink = self._leave(last)
         inputs = self.inputs.ahead(xi - self.inputs_xi)
         if inputs.eta_pi_slope:  # each step has laws of its own

@@ -81,7 +81,8 @@ QUANTITIES_HEADER = """\
 #define POINTS_ALONG_BHA {points} /* at which its distance from the hole is looked at */
 #define OFTEN {often!r} /* of its length, at most, from look to look */
 
-enum {{ MAX_STABILIZERS = {most}, MAX_SECTIONS = {most_sections}, MAX_POINTS = {most_points}, MAX_SENSORS = {most_sensors} }};
+enum {{ MAX_STABILIZERS = {most}, MAX_SECTIONS = {most_sections}, MAX_POINTS = {most_points} }};
+enum {{ MAX_SENSORS = {most_sensors} }};
 enum {{ PARAMETER_COUNT = {parameters}, INPUT_COUNT = {inputs}, OUTPUT_COUNT = {outputs} }};
 
 /* How a drilling system is made up, which says how many values each quantity has. */
@@ -304,7 +305,9 @@ def _note(unit: str, meaning: str) -> str:
 
 def _range_row(quantity: Quantity, offset: str) -> str:
     bounds = ", ".join(_bound(bound) for bound in (quantity.above, quantity.at_least, quantity.at_most))
-    return f"{{Q_{quantity.name.upper()}, {SIZES[quantity.size]}, {offset}, {int(quantity.kind == 'Integer')}, {bounds}}},"
+    return (
+        f"{{Q_{quantity.name.upper()}, {SIZES[quantity.size]}, {offset}, {int(quantity.kind == 'Integer')}, {bounds}}},"
+    )
 
 
 def _bound(value: float) -> str:

@@ -192,6 +192,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     double x[COMPONENTS], end[COMPONENTS];
     Trial trial;
     if (!has_room(p)) return FULL;
+    read_sensors(p, last.end);
     int kink = leave(p, &last, x);
     if (now->inputs.eta_pi_slope != 0) p->law_known = 0;
     Plan plan = first_plan(&last, kink, present_law(p), p->options.layers);
@@ -238,10 +239,8 @@ static inline Status integrate(Integrator *p, double xi, Problem *problem) {
     double most = p->options.most_steps, last = p->before.accepted + most;
     Status status = DONE;
     if (xi > p->now.step.end && xi - p->now.xi > most * p->options.largest_step) return too_many(p, problem);
-    while (status == DONE && xi > p->now.step.end) {
-        read_sensors(p, p->now.step.end);
+    while (status == DONE && xi > p->now.step.end)
         status = p->now.accepted < last ? take_step(p, problem) : too_many(p, problem);
-    }
     return status;
 }
 

@@ -15,8 +15,8 @@ static Structure structure_of(const int members[STRUCTURE_MEMBERS]) {
 }
 
 Run *boreprop_start(
-    const int structure[STRUCTURE_MEMBERS], const double *parameters, const Options *options, Count count, const double *measured_depth,
-    const double *inclination, const Inputs *inputs, Problem *problem
+    const int structure[STRUCTURE_MEMBERS], const double *parameters, const Options *options, Count count,
+    const double *measured_depth, const double *inclination, const Inputs *inputs, Problem *problem
 ) {
     Survey survey = {count, measured_depth, inclination};
     Structure made = structure_of(structure);
@@ -63,8 +63,8 @@ int boreprop_restore(Run *run, const double *state, Count count, Problem *proble
 }
 
 Count boreprop_lie(
-    const int structure[STRUCTURE_MEMBERS], const double *parameters, double weight_on_bit, double inclination, Count rows,
-    const double *loads, double *answers, Count count, const double *s, double *shapes, Problem *problem
+    const int structure[STRUCTURE_MEMBERS], const double *parameters, double weight_on_bit, double inclination,
+    Count rows, const double *loads, double *answers, Count count, const double *s, double *shapes, Problem *problem
 ) {
     Structure made = structure_of(structure);
     System system = system_of(made, parameters);

@@ -8,13 +8,14 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "f58124a965b44407" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "ab3635e22c6f1577" /* of this file, but for this line, and of problems.h */
 #define MOST_DRILLED 100000.0 /* m in a communication step */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: forces between closer ones are rounding errors */
 #define POINTS_ALONG_BHA 36 /* at which its distance from the hole is looked at */
 #define OFTEN 0.125 /* of its length, at most, from look to look */
 
-enum { MAX_STABILIZERS = 6, MAX_SECTIONS = 24, MAX_POINTS = 128, MAX_SENSORS = 8 };
+enum { MAX_STABILIZERS = 6, MAX_SECTIONS = 24, MAX_POINTS = 128 };
+enum { MAX_SENSORS = 8 };
 enum { PARAMETER_COUNT = 18, INPUT_COUNT = 7, OUTPUT_COUNT = 21 };
 
 /* How a drilling system is made up, which says how many values each quantity has. */

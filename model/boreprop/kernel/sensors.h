@@ -7,7 +7,7 @@
 #include "bit.h"
 #include <stdint.h>
 
-#define EARLY 1e-9           /* intervals: a reading is taken this much early, where lengths that were added up end on it */
+#define EARLY 1e-9 /* intervals: a reading is taken this much early, where lengths that were added up end on it */
 #define MOST_READINGS 0x1p53 /* beyond this, numbers of readings are no longer exact */
 #define PI 3.141592653589793
 

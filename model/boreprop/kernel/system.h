@@ -236,14 +236,9 @@ static inline Scaled scale(const System *system) {
     scale_sections(system, &scaled);
     scaled.sensors = system->structure.sensors;
     for (int i = 0; i < scaled.sensors; i++) {
-        Sensor sensor = {
-            system->sensor_position[i] / l1,
-            system->sensor_interval[i] / l1,
-            system->sensor_bias[i],
-            system->sensor_noise[i],
-            system->sensor_seed[i],
-            system->sensor_body_clearance[i] / l1
-        };
+        Sensor sensor = {system->sensor_position[i] / l1, system->sensor_interval[i] / l1,
+                         system->sensor_bias[i],          system->sensor_noise[i],
+                         system->sensor_seed[i],          system->sensor_body_clearance[i] / l1};
         scaled.sensor[i] = sensor;
     }
     return scaled;
