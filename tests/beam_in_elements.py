@@ -50,7 +50,8 @@ class Elements:
 
     def own_load(self, k: int) -> Floats:
         L = self.h[k]
-        return -self.load[k] * np.array([L / 2, L * L / 12, L / 2, -L * L / 12])
+        load: Floats = -self.load[k] * np.array([L / 2, L * L / 12, L / 2, -L * L / 12])
+        return load
 
     def push(self, s: float, force: float) -> None:
         self.f[2 * self.node(s)] += force

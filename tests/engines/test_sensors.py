@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from boreprop.arrays import Floats
 from boreprop.case.case import Case
 from boreprop.core.errors import ParameterError
 from boreprop.core.sensors import mixed, normal
@@ -23,11 +24,8 @@ ONCE = (0.0, 1.3, 3.66, 5.0, 7.32)  # m behind the bit
 
 def begin(case: Case, engine: str, positions: Sequence[float], **instrument: Any) -> Engine:
     """The engine at the start of a case whose BHA has sensors."""
-    bha = replace(
-        case.bha,
-        sensor_positions=tuple(positions),
-        **{f"sensor_{name}": (value,) * len(positions) for name, value in instrument.items()},
-    )
+    instruments: dict[str, Any] = {f"sensor_{name}": (value,) * len(positions) for name, value in instrument.items()}
+    bha = replace(case.bha, sensor_positions=tuple(positions), **instruments)
     return DRILLING[engine](bha, case.bit, case.survey, active_weight_on_bit=case.active_weight_on_bit, rss_force=FORCE)
 
 
@@ -143,9 +141,10 @@ def test_each_reading_has_noise_of_its_own_that_its_seed_gives_again(case: Case,
     noise, lengths = radians(0.1), np.arange(0.0, 200.0, 0.5).tolist()
     truth = np.array(along(begin(case, engine, [3.0], intervals=0.5), case, lengths))
 
-    def errors(seed: int, name: str = "sensor_inclination[1]") -> np.ndarray:
+    def errors(seed: int, name: str = "sensor_inclination[1]") -> Floats:
         run = begin(case, engine, [3.0, 3.0], intervals=0.5, noises=noise, seeds=seed)
-        return np.array(along(run, case, lengths, name)) - truth
+        told: Floats = np.array(along(run, case, lengths, name)) - truth
+        return told
 
     first = errors(3)
     np.testing.assert_array_equal(first, errors(3))
@@ -172,7 +171,7 @@ def test_a_saved_run_keeps_its_last_reading(case: Case, engine: str) -> None:
 def test_after_a_run_that_fails_readings_are_those_before(case: Case, engine: str) -> None:
     run = begin(case, engine, [3.0], intervals=1.0)
     told = drill(run, case, 2.5)
-    with pytest.raises(Exception, match="turns over|too short|finite"):
+    with pytest.raises(Exception, match=r"turns over|too short|finite"):
         drill(run, case, 500.0, 3e6)
     assert drill(run, case, 2.5) == told
 

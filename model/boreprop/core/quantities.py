@@ -148,7 +148,7 @@ SHAPE = (
     *("body_point_position", "body_point_clearance"),
 )
 FORCE = ("rss_force", "weight_on_bit", "survey_file", *SHAPE)
-INSTRUMENT = ("sensor_interval", "sensor_bias", "sensor_noise", "sensor_seed")
+INSTRUMENT = ("sensor_bias", "sensor_noise", "sensor_seed")
 FORCE_AND_WEIGHT = (*FORCE, "active_weight_on_bit", "lateral_steering_resistance", "bit_tilt_limit")
 
 QUANTITIES: tuple[Quantity, ...] = (

@@ -237,9 +237,10 @@ static inline int output_count(Structure structure) {
 /* Every output of the table of quantities where the bit is, in its order; returns how many values. */
 static inline int drilling_outputs(Drilling *d, double out[MOST_OUTPUTS]) {
     Present at = present(d);
+    const Structure structure = d->system.structure;
     double *next = out;
     for (int k = 0; k < OUTPUT_COUNT; k++)
-        for (int i = 0; i < value_count(OUTPUT_SIZE[k], d->system.structure); i++)
+        for (int i = 0, count = value_count(OUTPUT_SIZE[k], structure); i < count; i++)
             *next++ = output(d, &at, (Output)k, i);
     return (int)(next - out);
 }
