@@ -177,7 +177,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("body_contact_position", "output", "m", "s", "", "where that force acts, from the bit; 0 if the body touches no wall", size="body", at_least=0.0, nominal=10.0, follows=FORCE),
     Quantity("wall_distance", "output", "m", "", "", "least distance of the body from the wall", size="body", nominal=1e-2, follows=FORCE),
     Quantity("sensor_inclination", "output", "rad", "", "", "inclination of the BHA at the sensor; with an interval its last reading, with bias and noise", size="sensors", follows=(*FORCE, "sensor_position", *INSTRUMENT)),
-    Quantity("sensor_bending_moment", "output", "N.m", "", "", "bending moment of the BHA at the sensor, at the bit the moment on the bit", size="sensors", nominal=1e4, follows=(*FORCE, "sensor_position")),
+    Quantity("sensor_bending_moment", "output", "N.m", "", "", "bending moment of the BHA at the sensor, positive as in a hole that builds; at the bit the moment on the bit", size="sensors", nominal=1e4, follows=(*FORCE, "sensor_position")),
     Quantity("sensor_clearance", "output", "m", "", "", "distance of the body at the sensor from the wall; negative beyond it", size="sensors", nominal=1e-2, follows=(*FORCE, "sensor_position", "sensor_body_clearance")),
     Quantity("displacement", "output", "m", "x", "", "horizontal position of the bit from the start of the run", nominal=100.0),
     Quantity("true_vertical_depth", "output", "m", "z", "", "depth of the bit below the start of the run", nominal=100.0),

@@ -8,7 +8,7 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "ab3635e22c6f1577" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "efe66c923fd50d92" /* of this file, but for this line, and of problems.h */
 #define MOST_DRILLED 100000.0 /* m in a communication step */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: forces between closer ones are rounding errors */
 #define POINTS_ALONG_BHA 36 /* at which its distance from the hole is looked at */
@@ -123,7 +123,7 @@ typedef enum {
     OUT_BODY_CONTACT_POSITION, /* m: where that force acts, from the bit; 0 if the body touches no wall */
     OUT_WALL_DISTANCE, /* m: least distance of the body from the wall */
     OUT_SENSOR_INCLINATION, /* rad: inclination of the BHA at the sensor; with an interval its last reading, with bias and noise */
-    OUT_SENSOR_BENDING_MOMENT, /* N.m: bending moment of the BHA at the sensor, at the bit the moment on the bit */
+    OUT_SENSOR_BENDING_MOMENT, /* N.m: bending moment of the BHA at the sensor, positive as in a hole that builds; at the bit the moment on the bit */
     OUT_SENSOR_CLEARANCE, /* m: distance of the body at the sensor from the wall; negative beyond it */
     OUT_DISPLACEMENT, /* m: horizontal position of the bit from the start of the run */
     OUT_TRUE_VERTICAL_DEPTH, /* m: depth of the bit below the start of the run */
