@@ -72,7 +72,9 @@ def test_its_states_hold_the_last_readings(sensed: Case, flavour: Flavour, pack:
 
 
 @both_flavours
-def test_its_description_has_the_sensors_with_whole_numbers_as_seeds(sensed: Case, flavour: Flavour, pack: Pack) -> None:
+def test_its_description_has_the_sensors_with_whole_numbers_as_seeds(
+    sensed: Case, flavour: Flavour, pack: Pack
+) -> None:
     fmu = pack(sensed, flavour)
     with ZipFile(fmu) as archive:
         description = fromstring(archive.read("modelDescription.xml"))
