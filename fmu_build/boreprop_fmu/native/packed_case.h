@@ -124,10 +124,13 @@ static int read_lines(CaseFile *file, PackedCase *packed, char why[LINE]) {
     Structure structure;
     if (!read_identity(file, packed, why) || !read_structure(file, &structure, why)) return 0;
     list_variables(all, structure);
-    for (int i = 0; i < all->count; i++)
-        if (all->at[i].role != OUTPUT && all->at[i].kind != STRING &&
-            !read_number(file, all->at[i].name, &packed->start[i], why))
-            return 0;
+    for (int i = 0; i < all->count; i++) {
+        const Variable *own = &all->at[i];
+        if (own->role == OUTPUT || own->kind == STRING) continue;
+        if (!read_number(file, own->name, &packed->start[i], why)) return 0;
+        if (!is_value_of(own->kind, packed->start[i]))
+            return explain(why, "%s:%ld: %s: must be a whole number", file->path, file->line, own->name);
+    }
     if (!read_radius(file, packed, why)) return 0;
     if (!read_stations(file, packed, why)) return 0;
     if (!*file->at) return 1;

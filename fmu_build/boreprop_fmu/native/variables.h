@@ -3,6 +3,7 @@
 #define BOREPROP_VARIABLES_H
 
 #include "system.h"
+#include <limits.h>
 
 typedef enum { INPUT, OUTPUT, PARAMETER } Role;
 typedef enum { REAL, INTEGER, BOOLEAN, STRING } Kind;
@@ -23,6 +24,11 @@ typedef struct {
     int first_output, first_parameter, eta_pi, relative_tolerance, survey_file; /* value references */
     Variable at[MOST_VARIABLES];
 } Variables;
+
+/* Whether a number can be the value of a variable of this kind. */
+static int is_value_of(Kind kind, double value) {
+    return kind != INTEGER || (fabs(value) <= INT_MAX && value == floor(value));
+}
 
 static void add_variables(Variables *all, int place, Name quantity, Size size, Role role, Kind kind) {
     for (int i = 0; i < value_count(size, all->structure); i++) {

@@ -35,8 +35,7 @@ static inline Sensed sensed_gain(const Drilling *d, const Present *at, int i) {
     const Sensor *sensor = &p->scaled.sensor[i];
     Bending bending = {.F_rss = 1.0, .M = mode->M.rss, .F_0 = mode->F_0.rss};
     double line[PARTS];
-    for (int k = 0; k < at->loads.count; k++)
-        bending.F[support_at(&mode->contact, p->scaled.n, k)] = mode->F[k].rss;
+    for (int k = 0; k < at->loads.count; k++) bending.F[support_at(&mode->contact, p->scaled.n, k)] = mode->F[k].rss;
     line_at(&p->modes.beam, &p->scaled, &bending, sensor->s, line);
     Sensed gain = {sensor->interval > 0 ? 0.0 : -line[SLOPE_OF_BEAM], line[DEFLECTION], line[MOMENT]};
     return gain;
