@@ -80,6 +80,8 @@ def test_a_folder_that_is_none_is_refused(start: Start, folder: Path) -> None:
         ("stabilizers 2", "stabilizers 1.5", "case.txt:3: stabilizers: must be 1 to 6, got 1.5"),
         ("sections 0", "sections 25", "case.txt:4: sections: must be 0 to 24, got 25.0"),
         ("axial_load 0", "axial_load 2", "case.txt:5: axial_load: must be 0 to 1, got 2.0"),
+        ("layered 0", "layered 2", "case.txt:7: layered: must be 0 to 1, got 2.0"),
+        ("ground 0", "ground 9", "ground: must be as many numbers as layers have, got 9"),
         ("body_points 0", "body_points -1", "case.txt:6: body_points: must be 0 to 128, got -1.0"),
         ("sensors 0", "sensors 9", "case.txt:7: sensors: must be 0 to 8, got 9.0"),
         ("rss_position", "rss_place", "must be 'rss_position' and a value, got 'rss_place 0.6'"),

@@ -49,10 +49,11 @@ def pack_python(case: Case, identifier: str) -> dict[str, bytes]:
         packed = {
             "guid": guid,
             "log_switch": log_switch(),
-            "structure": case.bha.structure,
+            "structure": case.structure,
             "start": start_values(case),
             "bit_diameter": case.bit_diameter,
             "survey": asdict(case.survey),
+            "ground": case.ground and asdict(case.ground),
         }
         return {**describe(case, identifier, guid), "resources/fmu.json": json.dumps(packed, indent=1).encode()}
 

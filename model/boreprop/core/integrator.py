@@ -8,6 +8,7 @@ are the integrator's own: the bit may stop anywhere.
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from math import isfinite, pi, sin
 from typing import Any
 
@@ -15,21 +16,18 @@ from .errors import CannotContinue
 from .events import Event, first_event
 from .hole import Drilled, Hole
 from .inputs import Inputs
-from .kinks import MERGE, SMOOTHEST_KINK, Kinks
+from .kinks import MERGE, Kinks
 from .law import Law, Laws, bend
 from .modes import Loads, Mode, Modes, Regime, bit_tilt, saturation
 from .options import Options, Statistics
-from .plan import CLOSER, Plan, growth
+from .plan import CLOSER, LARGEST_GROWTH, SMALLEST_GROWTH, Plan, first_plan, growth
 from .problems import Problem
 from .sensors import Reading, Sensed
 from .step import Step, Trial, try_step
 from .survey import Survey
 
 LOOK_BACK = 1.0  # ℓ₁: how far behind the bit Θ may be asked for, as the curvature over the last ℓ₁ does
-LARGEST_GROWTH = 8.0  # of a step over the last, as in RADAU5 (Hairer & Wanner, IV.8): an estimate reaches no farther
-SMALLEST_GROWTH = 0.1  # of a trial over a rejected one, for the same reason
-STRETCH = 1.3  # how much longer than planned a step may be if it then ends on the next kink: one long step that may be
-# rejected is tried before two short ones
+STRETCH = 1.3  # how much longer than planned a step may be to end on the next kink: one long step before two short ones
 LARGEST_INCLINATION = 2 * pi  # beyond a full turn nothing is drilled
 MOST_SLACK = 1e-6  # of that slack: what needs more is no touch that rounding hides
 ORIGIN_LIMIT = 8.0  # |Y| beyond which the origin of Y is moved to the bit: rounding errors of Y stay below 1e-15
@@ -79,6 +77,7 @@ class Integrator:
         self.path = (0.0, 0.0)  # ∫ sin Θ dξ, ∫ cos Θ dξ up to the start of the present step
         self.origin = 0.0  # of Y
         self._accepted = self._rejected = self._events = 0
+        self.cleared = 0.0  # where the stabilizers got the clearances that they have
         self.kinks = Kinks(self.scaled.s)
         for kink, jump in self.hole.kinks:
             self.kinks.add_images(kink, 2, jump)
@@ -105,6 +104,22 @@ class Integrator:
                 self._take_steps(xi)
         self.xi = xi
         self._read(xi)
+
+    def change_clearances(self, y_star: tuple[float, ...]) -> None:
+        """Let the stabilizers have other clearances from where the bit is; errors as in `drill`."""
+        with self._all_or_nothing():
+            loads, (theta, Y), inputs = self.loads(), self.present.state(self.xi), self._inputs_here()
+            Theta = self._inclination(theta, loads, inputs)
+            self._move_path(self.xi)
+            self.present = Step.standstill(self.xi, theta, Y)
+            self._clear(y_star, self.xi)
+            self._restart(loads, inputs, Theta)
+
+    def _clear(self, y_star: tuple[float, ...], xi: float) -> None:
+        self.cleared = xi
+        if y_star != self.scaled.y_star:
+            self.scaled = replace(self.scaled, y_star=y_star)
+            self.modes = Modes(self.scaled)
 
     def advance(self, xi: float) -> None:
         """Drill on to `xi` under the inputs as they are, see `drill`."""
@@ -138,12 +153,9 @@ class Integrator:
             raise failure from error
 
     def _take_steps(self, xi: float) -> None:
-        most = self.options.most_steps
-        hopeless = xi - self.xi > most * self.options.largest_step
-        last = self._accepted + most
+        last = self._accepted + self.options.most_steps
         while xi > self.present.end:
-            if hopeless or self._accepted == last:
-                raise CannotContinue(Problem("too many", limit=most, place=self.xi * self.length_scale))
+            self._check_way(xi, last)
             self._take_step()
 
     def _read(self, xi: float) -> None:
@@ -152,6 +164,12 @@ class Integrator:
             if sensor.interval and (number := sensor.due(xi)) > self.readings[i].number:
                 inclination = self.sensed(sensor.s, min(number * sensor.interval, xi)).inclination
                 self.readings[i] = Reading(number, sensor.reads(inclination, i, number))
+
+    def _check_way(self, xi: float, last: int) -> None:
+        """Raise unless so many steps at most may lead to `xi`."""
+        most = self.options.most_steps
+        if xi - self.xi > most * self.options.largest_step or self._accepted == last:
+            raise CannotContinue(Problem("too many", limit=most, place=self.xi * self.length_scale))
 
     def _steer(self, inputs: Inputs) -> None:
         """Take over inputs where the bit is. Where a slope or ε changes, the curvature jumps."""
@@ -196,7 +214,7 @@ class Integrator:
         hole = self.hole
         k = hole.find(xi + MERGE)
         drilled = hole.drilled[k]
-        if drilled is None:
+        if drilled is None or xi + MERGE < self.cleared:  # with other clearances its law was another
             return hole.Theta(xi)
         xi = max(xi, hole.starts[k])
         theta = drilled.at((xi - hole.starts[k]) * hole.rates[k])
@@ -247,6 +265,7 @@ class Integrator:
             "regime": self.regime,
             "path": self.path,
             "origin": self.origin,
+            "clearances": (self.scaled.y_star, self.cleared),
             "statistics": self.statistics,
             "kinks": self.kinks.save(),
             "step": self.present,
@@ -258,6 +277,8 @@ class Integrator:
         """Go back to a state from `save`, also after a journey through JSON."""
         self.xi, self.origin = state["xi"], state["origin"]
         self.path = (state["path"][0], state["path"][1])
+        y_star, cleared = state["clearances"]
+        self._clear(tuple(y_star), cleared)
         self._accepted, self._rejected, self._events = state["statistics"]
         self.kinks.restore(state["kinks"])
         xi, h, theta, Y, *rest = state["step"]
@@ -317,7 +338,7 @@ class Integrator:
         if inputs.eta_pi_slope:  # each step has laws of its own
             self._laws = Laws(self.modes, inputs, xi)
             self._change_regime(self.regime)
-        plan = self._first_plan(last, kink)
+        plan = first_plan(last, kink, self.options.layers * self._law.relaxation)
         trial, event = self._find_step(plan, xi, theta, Y)
         _, h, thetas, Ys, end, *_ = trial.step
         next_h = h * min(growth(trial.error), LARGEST_GROWTH)
@@ -331,15 +352,6 @@ class Integrator:
         if kink is not None:
             self.kinks.add_images(xi, kink, abs(step.derivative(kink, xi) - last.derivative(kink, xi)))
         self._accepted += 1
-
-    def _first_plan(self, last: Step, kink: int | None) -> Plan:
-        """The plan of the next step: as the last one left it, but after a kink no longer than `layers` allow."""
-        plan = Plan(last.next_h, last.next_h)
-        if (kink is not None and kink <= SMOOTHEST_KINK) or last.end == last.xi:
-            plan.h = min(plan.h, self.options.layers * self._law.relaxation)
-            if last.event is not None:
-                plan.resumed = plan.h
-        return plan
 
     def _find_step(self, plan: Plan, xi: float, theta: float, Y: float) -> tuple[Trial, Event | None]:
         """The first trial of a step whose error is tolerable and whose regime holds beyond its start; its first event.

@@ -25,10 +25,12 @@ EXPORT void boreprop_sentence(const Problem *problem, char line[MESSAGE]);
 
 /* A run of this structure (its members one after the other) at the end of its survey, with parameters in the order of the
    table of quantities; NULL, and the problem, if a value is out of range. The caller ends it with `boreprop_end`. The
-   tolerance is that of the parameters; the other options are not checked. */
+   tolerance is that of the parameters; the other options are not checked. The ground is of so many layers, and made of
+   numbers as ground.h says, or NULL. */
 EXPORT Run *boreprop_start(
     const int structure[STRUCTURE_MEMBERS], const double *parameters, const Options *options, Count count,
-    const double *measured_depth, const double *inclination, const Inputs *inputs, Problem *problem
+    const double *measured_depth, const double *inclination, int layers, const double *ground, const Inputs *inputs,
+    Problem *problem
 );
 EXPORT void boreprop_end(Run *run);
 
@@ -38,6 +40,9 @@ EXPORT void boreprop_end(Run *run);
 EXPORT Count boreprop_follow(
     Run *run, Count count, const double *lengths, const Inputs *inputs, const int *rows, double *table, Problem *problem
 );
+
+/* Let the stabilizers have other clearances, m, from where the bit is; 0, and the problem, if that fails. */
+EXPORT int boreprop_change_clearances(Run *run, const double *clearances, Problem *problem);
 
 /* Drill on to the end of the integrator's next step, under the inputs as they are; 0, and the problem, if that fails. */
 EXPORT int boreprop_step(Run *run, Problem *problem);

@@ -40,6 +40,7 @@ SIZES = {
     "axial": "IF_AXIAL",
     "points": "EACH_POINT",
     "body": "IF_POINTS",
+    "layered": "IF_LAYERED",
     "sensors": "EACH_SENSOR",
 }
 ROOMS = {
@@ -49,7 +50,7 @@ ROOMS = {
     "points": "[MAX_POINTS]",
     "sensors": "[MAX_SENSORS]",
 }
-LARGEST = Structure(MAX_STABILIZERS, MAX_SECTIONS, 1, MAX_POINTS, MAX_SENSORS)
+LARGEST = Structure(MAX_STABILIZERS, MAX_SECTIONS, 1, MAX_POINTS, 1, MAX_SENSORS)
 
 NAMES = {quantity.name: quantity.name for quantity in QUANTITIES} | {
     **{name: name for name in (f"{quantity.name}_slope" for quantity in INPUTS if quantity.slope)},
@@ -90,6 +91,7 @@ typedef struct {{
     int n, sections; /* numbers of stabilizers and of sections */
     int axial;       /* whether the load along the beam counts */
     int points;      /* number of points at which the body between the stabilizers may touch the wall */
+    int layered;     /* whether rock comes in layers by true vertical depth */
     int sensors;     /* their number */
 }} Structure;
 

@@ -16,14 +16,19 @@ static Structure structure_of(const int members[STRUCTURE_MEMBERS]) {
 
 Run *boreprop_start(
     const int structure[STRUCTURE_MEMBERS], const double *parameters, const Options *options, Count count,
-    const double *measured_depth, const double *inclination, const Inputs *inputs, Problem *problem
+    const double *measured_depth, const double *inclination, int layers, const double *ground, const Inputs *inputs,
+    Problem *problem
 ) {
     Survey survey = {count, measured_depth, inclination};
     Structure made = structure_of(structure);
     System system = system_of(made, parameters);
     Run *run = calloc(1, sizeof *run);
     met(problem, NO_MEMORY, MOST_PIECES, 0.0);
-    if (run && run_prepare(run, &system, *options, problem) == DONE &&
+    size_t size = ground ? (size_t)ground_size(layers) * sizeof *ground : 0;
+    if (run && ground) run->ground = malloc(size);
+    if (run && run->ground) memcpy(run->ground, ground, size);
+    if (run && (run->ground || !ground) &&
+        run_prepare(run, &system, ground_of(layers, run->ground), *options, problem) == DONE &&
         run_start(run, &survey, *inputs, problem) == DONE)
         return run;
     run_end(run);
@@ -46,6 +51,10 @@ Count boreprop_follow(
 int boreprop_outputs(Run *run, double out[MOST_OUTPUTS]) { return drilling_outputs(&run->drilling, out); }
 
 double boreprop_length(const Run *run) { return drilling_length(&run->drilling); }
+
+int boreprop_change_clearances(Run *run, const double *clearances, Problem *problem) {
+    return run_change_clearances(run, clearances, problem) == DONE;
+}
 
 int boreprop_step(Run *run, Problem *problem) { return run_step(run, problem) == DONE; }
 

@@ -76,7 +76,7 @@ class Trajectory(Mapping[str, Floats]):
     @property
     def structure(self) -> int | Structure:
         """How the BHA of the case is made up; without a case, the number of its stabilizers."""
-        return self.n if self.case is None else self.case.bha.structure
+        return self.n if self.case is None else self.case.structure
 
     def stack(self, name: str) -> Floats:
         """The columns ``name[1]``, ``name[2]``, … side by side, shape (rows, n), (rows, n − 1) or (rows, sensors).
