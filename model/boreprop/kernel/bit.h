@@ -5,6 +5,11 @@
 #include "body.h"
 #include "ground.h"
 
+/* The last reading of a sensor: how many there have been, and the inclination that it told. */
+typedef struct {
+    double count, inclination;
+} Reading;
+
 /* Everything that evolves, but for what the rings of the hole and its kinks hold. A copy of it is a way back. */
 typedef struct {
     double xi;
@@ -23,6 +28,7 @@ typedef struct {
     Hole hole;
     Kinks kinks;
     double accepted, rejected, events; /* counts of steps, of rejected trials and of bounds met */
+    Reading reading[MAX_SENSORS];
 } State;
 
 /* How far the points of the body are from the wall, at the end of the last step, and how much that changed along it. */
