@@ -165,7 +165,7 @@ static inline void find_body(Drilling *d, Present *at) {
     if (!points) return;
     for (int i = n; i < at->loads.count; i++)
         if (fabs(at->F[i]) > fabs(at->body_force)) at->body_force = at->F[i], at->body_place = p->now.places.s[i];
-    find_gaps(p, &p->now.step, p->now.xi, points, gap);
+    find_gaps(p, gap);
     for (int k = 0; k < points; k++) at->wall_distance = smaller(at->wall_distance, larger(gap[k], 0.0));
 }
 

@@ -50,7 +50,9 @@ static inline int leave(Integrator *p, const Step *last, double x[COMPONENTS]) {
     double xi = last->end;
     move_path(now, xi);
     step_state(last, xi, x);
+    double Y = x[LATERAL];
     keep_origin_near(now, x);
+    if (x[LATERAL] != Y) move_sight(p, x[LATERAL] - Y);
     forget(&now->hole, xi - LOOK_BACK - p->scaled.s[p->scaled.n - 1]);
     move_cursors(&now->hole, &now->places, xi);
     /* a step may have to stop half way to a kink: a kink too near for that counts as met here */
@@ -169,18 +171,21 @@ static inline Status find_step(
 static inline Status keep_clear(
     Integrator *p, const Step *last, int kink, const double x[COMPONENTS], Plan *plan, Trial *trial, Problem *problem
 ) {
-    Surroundings around;
+    double body[MAX_POINTS];
     for (;;) {
-        look_around(p, &trial->step, &around);
-        int beyond = around.near ? watch_beyond(p, around.gap, last->end) : 0; /* those beyond are near */
+        find_body_after(p, trial, body);
+        look_around(p, &trial->step, body);
+        int beyond = p->around.near ? watch_beyond(p, last->end) : 0; /* those beyond are near */
         if (beyond < 0) return met(problem, TOO_CROWDED, MAX_WATCHED, last->end * p->length_scale);
         if (!beyond) break;
         p->now.rejected++;
+        forget_seen(p);
         *plan = first_plan(last, kink, present_law(p), p->options.layers);
         Status status = find_step(p, last->end, x, plan, trial, problem);
         if (status != DONE) return status;
     }
-    copy_around(&p->around, &around, p->scaled.points);
+    memcpy(p->around.body, body, (size_t)p->scaled.points * sizeof *body);
+    note_inclinations(&p->now.inclinations, &trial->step, p->scaled.s[p->scaled.n - 1]);
     return DONE;
 }
 
@@ -219,6 +224,7 @@ static inline void go_back(Integrator *p) {
     *kink(&p->now.kinks, p->now.kinks.end - 1) = p->last_kink;
     p->law_known = p->under_way = 0;
     bear(p, p->now.inputs.W);
+    forget_seen(p);
 }
 
 /* Remember the state where a call sets out; 0 if the rings have no room. */

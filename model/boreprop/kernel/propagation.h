@@ -65,8 +65,9 @@ static inline Status restart(
     change_regime(p, regime);
     add_kink(&now->kinks, p->scaled.n, now->xi, 1, jump);
     if (p->scaled.points) {
-        memset(p->around.change, 0, sizeof p->around.change);
-        find_gaps(p, &now->step, now->xi, p->scaled.points, p->around.gap);
+        clear_around(p);
+        forget_seen(p);
+        find_body_at(p, &now->step, now->xi, p->around.body);
     }
     return DONE;
 }
@@ -152,6 +153,7 @@ static inline Status begin(Integrator *p, const Survey *survey, ScaledInputs inp
     for (Count k = 0; k < now->hole.end; k++)
         if (!check_finite(Q_STATION_RATE, 0, piece(&now->hole, k)->rate, problem)) return FAILED;
     find_places(now, &p->scaled, now->xi);
+    if (p->scaled.points) start_noting(now);
     if (restart(p, inputs, x, x[ANGLE], problem) == DONE) return DONE;
     wrong(problem, NO_START, Q_PARAMETERS, 0, NAN, NAN);
     return FAILED;

@@ -4,50 +4,201 @@
 
 #include "bit.h"
 
-/* Add the offsets of the bit's axis from the hole at the points of the body, with the bit at `xi` in the state `x`. The
-   hole ends where the step begins that is being tried. */
-static inline void add_offsets(
-    Integrator *p, const Step *step, double xi, const double x[COMPONENTS], int points, double *v
-) {
+/* Where the hole is at a point of the body with the bit at `xi`. The hole ends where the step begins that is being tried;
+   `nearer` is the piece at a point nearer to the bit, if one has been asked for. */
+static inline double hole_at_point(const Integrator *p, const Step *step, double xi, int k, const Piece **nearer) {
     const Hole *hole = &p->now.hole;
-    const double *s = p->scaled.s + p->scaled.n;
-    int k = 0;
-    for (; k < points && xi - s[k] >= step->xi; k++)
-        v[k] += x[LATERAL] - polynomial(step->x[LATERAL], (xi - s[k] - step->xi) / step->h) - s[k] * x[ANGLE];
-    for (; k < points; k++) {
-        const Piece *own = piece(hole, p->cursor[k] = find_from(hole, p->cursor[k], xi - s[k]));
-        v[k] += x[LATERAL] - polynomial(own->x[LATERAL], (xi - s[k] - own->start) * own->rate) - s[k] * x[ANGLE];
-    }
+    double at = xi - p->scaled.s[p->scaled.n + k];
+    if (at >= step->xi) return polynomial(step->x[LATERAL], (at - step->xi) * (1 / step->h));
+    if (!*nearer || (*nearer)->start > at) *nearer = piece(hole, find(hole, at));
+    return polynomial((*nearer)->x[LATERAL], (at - (*nearer)->start) * (*nearer)->rate);
 }
 
-#define NEARBY 2.0   /* a point is watched whose gap is less than so many times its change over the last step, … */
-#define FAR_AWAY 4.0 /* … and no longer when it is more than so many times that */
-
-/* How far every point of the body is from the wall with the bit at `xi` in a step. */
-static inline void find_gaps(Integrator *p, const Step *step, double xi, int points, double gap[MAX_POINTS]) {
+/* Where the points of the body are, from the origin, with the bit in the state `x`, under loads. */
+static inline void find_body_under(Integrator *p, const double x[COMPONENTS], const Loads *loads, double *body) {
     const Contact *contact = &p->now.regime.contact;
-    const double *y_star = p->scaled.y_star + p->scaled.n;
-    double x[COMPONENTS], F[MAX_PLACES], v[MAX_POINTS];
-    int n = p->scaled.n;
+    const Beam *beam = &p->modes.beam;
+    int n = p->scaled.n, points = p->scaled.points;
+    const double *s = p->scaled.s + n;
+    double F[MAX_PLACES];
+    contact_forces(mode_of(&p->modes, *contact), loads, F);
+    free_deflections(beam, loads->e[n - 1], loads->F_rss, loads->g, n, points, body);
+    for (int i = 0; i < loads->count; i++)
+        if (F[i] != 0.0) add_push(beam, support_at(contact, n, i), F[i], points, body);
+    for (int k = 0; k < points; k++) body[k] += x[LATERAL] - s[k] * x[ANGLE];
+}
+
+/* The same where a step ends that is being tried. */
+static inline void find_body_after(Integrator *p, const Trial *trial, double *body) {
+    const Step *step = &trial->step;
+    const Places *places = &p->now.places;
+    double x[COMPONENTS];
+    step_state(step, step->end, x);
+    Loads loads;
+    if (step->event != NONE) loads = loads_at(p, step->end, x, force_at(&p->now, step->end));
+    else { /* all of the trial, with its last point at the end */
+        loads.count = places->count, loads.F_rss = force_at(&p->now, step->end);
+        for (int i = 0; i < places->count; i++)
+            loads.e[i] = x[LATERAL] - trial->delayed[i][0][POINTS - 1] - places->s[i] * x[ANGLE];
+        loads.g = sin(p->scaled.axial ? x[ANGLE] : x[LATERAL] - trial->delayed[0][0][POINTS - 1]);
+    }
+    find_body_under(p, x, &loads, body);
+}
+
+/* The same with the bit at `xi` in a step. */
+static inline void find_body_at(Integrator *p, const Step *step, double xi, double *body) {
+    double x[COMPONENTS];
     step_state(step, xi, x);
     Loads loads = loads_at(p, xi, x, force_at(&p->now, xi));
-    contact_forces(mode_of(&p->modes, *contact), &loads, F);
-    free_deflections(&p->modes.beam, loads.e[n - 1], loads.F_rss, loads.g, n, points, v);
-    for (int i = 0; i < loads.count; i++)
-        if (F[i] != 0.0) add_push(&p->modes.beam, support_at(contact, n, i), F[i], points, v);
-    add_offsets(p, step, xi, x, points, v);
-    for (int k = 0; k < points; k++) gap[k] = y_star[k] - fabs(v[k]);
+    find_body_under(p, x, &loads, body);
 }
 
-/* The same, and how much it has changed since the end of the last step. */
-static inline void look_around(Integrator *p, const Step *step, Surroundings *around) {
-    int points = p->scaled.points;
-    find_gaps(p, step, step->end, points, around->gap);
-    around->near = 0;
-    for (int k = 0; k < points; k++) {
-        around->change[k] = fabs(around->gap[k] - p->around.gap[k]);
-        around->near |= around->gap[k] < NEARBY * around->change[k];
+/* How far every point of the body is from the wall with the bit where it is. */
+static inline void find_gaps(Integrator *p, double gap[MAX_POINTS]) {
+    const double *y_star = p->scaled.y_star + p->scaled.n;
+    const Piece *nearer = NULL;
+    find_body_at(p, &p->now.step, p->now.xi, gap);
+    for (int k = 0; k < p->scaled.points; k++)
+        gap[k] = y_star[k] - fabs(gap[k] - hole_at_point(p, &p->now.step, p->now.xi, k, &nearer));
+}
+
+/* Widen a range of inclinations by those of a piece of hole, the slopes of its polynomial up to t: they lie between the
+   least and the largest of its coefficients in the basis of Bernstein. */
+static inline void widen(Range *range, const double c[S + 1], double rate, double t) {
+    static const double part[S][S] = {
+        {1.0}, {1.0, 0.25}, {1.0, 0.5, 1.0 / 6}, {1.0, 0.75, 0.5, 0.25}, {1.0, 1.0, 1.0, 1.0, 1.0}
+    };
+    double slope[S], power = rate;
+    for (int m = 0; m < S; m++) slope[m] = (m + 1) * c[m + 1] * power, power *= t;
+    for (int i = 0; i < S; i++) {
+        double bend = dot(i + 1, part[i], slope);
+        range->low = smaller(range->low, bend), range->high = larger(range->high, bend);
     }
+}
+
+/* Note the inclinations of the hole over a step. */
+static inline void note_inclinations(Inclinations *noted, const Step *step, double reach) {
+    if (step->end - noted->since > reach + BLIND) {
+        Range nothing = {INFINITY, -INFINITY};
+        noted->before = noted->latest, noted->latest = nothing, noted->since = step->xi;
+    }
+    widen(&noted->latest, step->x[LATERAL], 1 / step->h, (step->end - step->xi) / step->h);
+}
+
+/* Forget where the hole was seen. */
+static inline void forget_seen(Integrator *p) {
+    for (int k = 0; k < p->scaled.points; k++) p->sight.seen_at[k] = -INFINITY;
+}
+
+/* Note the inclinations of the existing hole. */
+static inline void start_noting(State *now) {
+    const Hole *hole = &now->hole;
+    Range range = {INFINITY, -INFINITY};
+    for (Count k = hole->first; k < hole->end; k++)
+        widen(&range, piece(hole, k)->x[LATERAL], piece(hole, k)->rate, 1.0);
+    now->inclinations.before = now->inclinations.latest = range, now->inclinations.since = now->xi;
+}
+
+/* Follow the origin of the lateral coordinates when it moves, so that they all change by `shift`. */
+static inline void move_sight(Integrator *p, double shift) {
+    for (int k = 0; k < p->scaled.points; k++) p->around.body[k] += shift;
+    forget_seen(p);
+}
+
+/* No point of the body is near the wall. */
+static inline void clear_around(Integrator *p) {
+    Surroundings *around = &p->around;
+    around->near = around->known = around->turning = 0;
+    for (int k = 0; k < p->scaled.points; k++)
+        around->gap[k] = p->scaled.y_star[p->scaled.n + k], around->change[k] = -1.0;
+}
+
+#define NEARBY 0.5   /* a point is watched whose gap is less than so many times its change over the last step, … */
+#define FAR_AWAY 4.0 /* … and no longer when it is more than so many times that */
+/* The gap may have been less within a step by half of the most that it can have changed, where it turned round, and at the
+   start of the step it may have been less by all of that. */
+#define TURNING 1.5
+
+/* What is known of a step before the hole is looked at: that its inclination at the points is `middle`, give or take `half`. */
+typedef struct {
+    double middle, half, start, end;
+} Ahead;
+
+static inline Ahead ahead_of(const Inclinations *noted, const Step *step) {
+    double low = smaller(noted->before.low, noted->latest.low), high = larger(noted->before.high, noted->latest.high);
+    Ahead ahead = {(low + high) / 2, (high - low) / 2, step->xi, step->end};
+    return ahead;
+}
+
+/* By how much every point of the body, which is at `body` at the end of a step, is farther from the wall than where it would
+   be near, at least. Negative where the hole has not been seen for long. */
+static inline void find_margins(
+    const Integrator *p, const Ahead *ahead, const double *restrict body, double *restrict margin
+) {
+    const double *restrict y_star = p->scaled.y_star + p->scaled.n, *restrict before = p->around.body;
+    const double *restrict seen = p->sight.seen, *restrict seen_at = p->sight.seen_at;
+    double middle = ahead->middle, half = ahead->half, end = ahead->end, h = end - ahead->start;
+    int points = p->scaled.points;
+    for (int k = 0; k < points; k++) {
+        double way = end - seen_at[k];
+        double gap = y_star[k] - fabs(body[k] - seen[k] - middle * way) - half * way;
+        double change = fabs(body[k] - before[k] - middle * h) + half * h;
+        margin[k] = smaller(gap - TURNING * change, BLIND - way);
+    }
+}
+
+/* Look at the hole at a point of the body, which is at `body` at the end of a step: how far it is from the wall and how much
+   that has changed along the step, unless it is far from it. */
+static inline void look_at(Integrator *p, const Step *step, const Ahead *ahead, int k, double body, const Piece **nearer) {
+    Sight *sight = &p->sight;
+    Surroundings *around = &p->around;
+    double y_star = p->scaled.y_star[p->scaled.n + k], h = ahead->end - ahead->start;
+    double Y = hole_at_point(p, step, step->end, k, nearer), before = sight->seen[k], seen_at = sight->seen_at[k];
+    double gap = y_star - fabs(body - Y);
+    double most = fabs(body - around->body[k] - ahead->middle * h) + ahead->half * h;
+    const Piece *none = NULL;
+    sight->seen[k] = Y, sight->seen_at[k] = step->end;
+    if (gap >= TURNING * most) return;
+    if (seen_at != step->xi) before = hole_at_point(p, step, step->xi, k, &none);
+    double start = y_star - fabs(around->body[k] - before);
+    around->gap[k] = gap, around->change[k] = fabs(gap - start);
+    around->near |= gap < NEARBY * around->change[k];
+    around->turning |= smaller(gap, start) < most / 2;
+    around->known = 1;
+}
+
+/* The least of a gap that is `start`, `middle` and `end` in a step, by a parabola. */
+static inline double least_gap(double start, double middle, double end) {
+    double rise = (end - start) / 2, bend = start - 2 * middle + end;
+    return bend > fabs(rise) ? middle - rise * rise / (2 * bend) : smaller(middle, end);
+}
+
+/* See whether a point that is known, and not watched, has touched the wall within the step and come free again. */
+static inline void look_between(Integrator *p, const Step *step) {
+    const double *y_star = p->scaled.y_star + p->scaled.n;
+    Surroundings *around = &p->around;
+    double body[MAX_POINTS], xi = (step->xi + step->end) / 2;
+    find_body_at(p, step, xi, body);
+    for (int k = 0; k < p->scaled.points; k++) {
+        const Piece *start = NULL, *middle = NULL;
+        if (around->change[k] < 0 || place_of(&p->now.regime.contact, p->scaled.n, k) >= 0) continue;
+        double before = y_star[k] - fabs(around->body[k] - hole_at_point(p, step, step->xi, k, &start));
+        double between = y_star[k] - fabs(body[k] - hole_at_point(p, step, xi, k, &middle));
+        around->gap[k] = smaller(around->gap[k], least_gap(before, between, around->gap[k]));
+        around->near |= around->gap[k] < 0;
+    }
+}
+
+/* See which points of the body are near the wall where a step ends that is being tried, with the points at `body`. */
+static inline void look_around(Integrator *p, const Step *step, const double *body) {
+    const Piece *nearer = NULL;
+    double margin[MAX_POINTS];
+    Ahead ahead = ahead_of(&p->now.inclinations, step);
+    if (p->around.known) clear_around(p);
+    find_margins(p, &ahead, body, margin);
+    for (int k = 0; k < p->scaled.points; k++)
+        if (!(margin[k] >= 0)) look_at(p, step, &ahead, k, body[k], &nearer);
+    if (p->around.turning) look_between(p, step);
 }
 
 /* Choose which points to watch from the end of the last step on. */
@@ -67,11 +218,11 @@ static inline void choose_watched(Integrator *p, double xi) {
 
 /* Watch every point that a trial step has brought through the wall unwatched, with the step to be tried again from `xi`;
    returns how many there are, or −1 if there is no room. */
-static inline int watch_beyond(Integrator *p, const double gap[MAX_POINTS], double xi) {
+static inline int watch_beyond(Integrator *p, double xi) {
     int n = p->scaled.n, found = 0;
     Contact contact = p->now.regime.contact;
     for (int k = 0; k < p->scaled.points; k++) {
-        if (gap[k] >= 0 || place_of(&contact, n, k) >= 0) continue;
+        if (p->around.gap[k] >= 0 || place_of(&contact, n, k) >= 0) continue;
         if (contact.watched == MAX_WATCHED) return -1;
         watch(&contact, n, k, 0);
         found++;
@@ -84,12 +235,14 @@ static inline int watch_beyond(Integrator *p, const double gap[MAX_POINTS], doub
    `x`. */
 static inline Status touch_down(Integrator *p, double xi, const double x[COMPONENTS], Problem *problem) {
     int n = p->scaled.n, points = p->scaled.points;
+    const Piece *nearer = NULL;
     double q[MAX_SUPPORTS];
     Contact contact;
     Loads loads = loads_at(p, xi, x, force_at(&p->now, xi));
     free_deflections(&p->modes.beam, loads.e[n - 1], loads.F_rss, loads.g, 0, n + points, q);
     for (int i = 0; i < n; i++) q[i] += loads.e[i];
-    add_offsets(p, &p->now.step, xi, x, points, q + n);
+    for (int k = 0; k < points; k++)
+        q[n + k] += x[LATERAL] - hole_at_point(p, &p->now.step, xi, k, &nearer) - p->scaled.s[n + k] * x[ANGLE];
     if (!search(&p->modes, q, points, &contact)) return met(problem, TOO_CROWDED, MAX_WATCHED, xi * p->length_scale);
     change_places(p, contact, xi);
     return DONE;
