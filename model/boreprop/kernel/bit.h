@@ -39,9 +39,8 @@ typedef struct {
    from the wall, and how much that changed along the step. Of points that are far from it, the last two are the
    clearance and −1. */
 typedef struct {
-    int near;    /* whether any is so near that it may have to be watched */
-    int known;   /* whether the distance of any is known */
-    int turning; /* whether any may have been at the wall within the step */
+    int near;  /* whether any is so near that it may have to be watched */
+    int known; /* whether the distance of any is known */
     double body[MAX_POINTS], gap[MAX_POINTS], change[MAX_POINTS];
 } Surroundings;
 

@@ -108,7 +108,7 @@ static inline void move_sight(Integrator *p, double shift) {
 /* No point of the body is near the wall. */
 static inline void clear_around(Integrator *p) {
     Surroundings *around = &p->around;
-    around->near = around->known = around->turning = 0;
+    around->near = around->known = 0;
     for (int k = 0; k < p->scaled.points; k++)
         around->gap[k] = p->scaled.y_star[p->scaled.n + k], around->change[k] = -1.0;
 }
@@ -148,8 +148,8 @@ static inline void find_margins(
 }
 
 /* Look at the hole at a point of the body, which is at `body` at the end of a step: how far it is from the wall and how much
-   that has changed along the step, unless it is far from it. */
-static inline void look_at(Integrator *p, const Step *step, const Ahead *ahead, int k, double body, const Piece **nearer) {
+   that has changed along the step, unless it is far from it. Returns whether it may have been at the wall within the step. */
+static inline int look_at(Integrator *p, const Step *step, const Ahead *ahead, int k, double body, const Piece **nearer) {
     Sight *sight = &p->sight;
     Surroundings *around = &p->around;
     double y_star = p->scaled.y_star[p->scaled.n + k], h = ahead->end - ahead->start;
@@ -158,47 +158,84 @@ static inline void look_at(Integrator *p, const Step *step, const Ahead *ahead, 
     double most = fabs(body - around->body[k] - ahead->middle * h) + ahead->half * h;
     const Piece *none = NULL;
     sight->seen[k] = Y, sight->seen_at[k] = step->end;
-    if (gap >= TURNING * most) return;
+    if (gap >= TURNING * most) return 0;
     if (seen_at != step->xi) before = hole_at_point(p, step, step->xi, k, &none);
     double start = y_star - fabs(around->body[k] - before);
     around->gap[k] = gap, around->change[k] = fabs(gap - start);
     around->near |= gap < NEARBY * around->change[k];
-    around->turning |= smaller(gap, start) < most / 2;
     around->known = 1;
+    return smaller(gap, start) < most / 2;
 }
 
-/* The least of a gap that is `start`, `middle` and `end` in a step, by a parabola. */
-static inline double least_gap(double start, double middle, double end) {
-    double rise = (end - start) / 2, bend = start - 2 * middle + end;
-    return bend > fabs(rise) ? middle - rise * rise / (2 * bend) : smaller(middle, end);
+/* A quantity along a step: its values at the start, in the middle and at the end. */
+typedef struct {
+    double start, middle, end;
+} Arc;
+
+/* Its value at t, from 0 to 1, by a parabola. */
+static inline double along(Arc arc, double t) {
+    double bend = 2 * (arc.start - 2 * arc.middle + arc.end);
+    return arc.start + t * (arc.end - arc.start + (t - 1) * bend);
 }
 
-/* See whether a point that is known, and not watched, has touched the wall within the step and come free again. */
-static inline void look_between(Integrator *p, const Step *step) {
-    const double *y_star = p->scaled.y_star + p->scaled.n;
+/* The least of it within the step, or at its end. */
+static inline double least(Arc arc) {
+    double rise = (arc.end - arc.start) / 2, bend = arc.start - 2 * arc.middle + arc.end;
+    return bend > fabs(rise) ? arc.middle - rise * rise / (2 * bend) : smaller(arc.middle, arc.end);
+}
+
+/* The least gap of a point within a step, along which it moves as `body`, piece by piece of the hole that it passes. */
+static inline double least_gap(const Integrator *p, const Step *step, int k, Arc body) {
+    const Hole *hole = &p->now.hole;
+    double s = p->scaled.s[p->scaled.n + k], y_star = p->scaled.y_star[p->scaled.n + k], length = step->end - step->xi;
+    double at = step->xi - s, end = step->end - s, lowest = INFINITY;
+    Count own = find(hole, at);
+    Arc gap = {0.0, 0.0, 0.0};
+    for (int first = 1; at < end; first = 0, own++) {
+        double next = own + 1 < hole->end ? smaller(piece(hole, own + 1)->start, end) : end;
+        double middle = (at + next) / 2, places[] = {at, middle, next}, gaps[3];
+        for (int i = 0; i < 3; i++) {
+            if (i == 0 && !first) continue;
+            const Piece *passed = piece(hole, own);
+            double Y = places[i] > step->xi
+                           ? polynomial(step->x[LATERAL], (places[i] - step->xi) * (1 / step->h))
+                           : polynomial(passed->x[LATERAL], (places[i] - passed->start) * passed->rate);
+            gaps[i] = y_star - fabs(along(body, (places[i] + s - step->xi) / length) - Y);
+        }
+        gap.start = first ? gaps[0] : gap.end, gap.middle = gaps[1], gap.end = gaps[2];
+        lowest = smaller(lowest, least(gap));
+        at = next;
+    }
+    return lowest;
+}
+
+/* See which of `count` points of the body, which were not at the wall at the ends of a step, have been there within it. */
+static inline void look_between(Integrator *p, const Step *step, int count, const int *turning, const double *body) {
     Surroundings *around = &p->around;
-    double body[MAX_POINTS], xi = (step->xi + step->end) / 2;
-    find_body_at(p, step, xi, body);
-    for (int k = 0; k < p->scaled.points; k++) {
-        const Piece *start = NULL, *middle = NULL;
-        if (around->change[k] < 0 || place_of(&p->now.regime.contact, p->scaled.n, k) >= 0) continue;
-        double before = y_star[k] - fabs(around->body[k] - hole_at_point(p, step, step->xi, k, &start));
-        double between = y_star[k] - fabs(body[k] - hole_at_point(p, step, xi, k, &middle));
-        around->gap[k] = smaller(around->gap[k], least_gap(before, between, around->gap[k]));
+    double middle[MAX_POINTS];
+    find_body_at(p, step, (step->xi + step->end) / 2, middle);
+    for (int i = 0; i < count; i++) {
+        int k = turning[i];
+        Arc arc = {around->body[k], middle[k], body[k]};
+        around->gap[k] = smaller(around->gap[k], least_gap(p, step, k, arc));
         around->near |= around->gap[k] < 0;
     }
 }
 
 /* See which points of the body are near the wall where a step ends that is being tried, with the points at `body`. */
 static inline void look_around(Integrator *p, const Step *step, const double *body) {
+    const Contact *contact = &p->now.regime.contact;
     const Piece *nearer = NULL;
     double margin[MAX_POINTS];
+    int count = 0, turning[MAX_POINTS];
     Ahead ahead = ahead_of(&p->now.inclinations, step);
     if (p->around.known) clear_around(p);
     find_margins(p, &ahead, body, margin);
-    for (int k = 0; k < p->scaled.points; k++)
-        if (!(margin[k] >= 0)) look_at(p, step, &ahead, k, body[k], &nearer);
-    if (p->around.turning) look_between(p, step);
+    for (int k = 0; k < p->scaled.points; k++) {
+        if (margin[k] >= 0 || !look_at(p, step, &ahead, k, body[k], &nearer)) continue;
+        if (place_of(contact, p->scaled.n, k) < 0) turning[count++] = k;
+    }
+    if (count) look_between(p, step, count, turning, body);
 }
 
 /* Choose which points to watch from the end of the last step on. */
