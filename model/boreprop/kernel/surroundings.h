@@ -269,9 +269,10 @@ static inline int watch_beyond(Integrator *p, double xi) {
 }
 
 /* Find all contacts of a BHA whose body may touch the wall, with the bit at `xi`, where the last step ends, in the state
-   `x`. */
+   `x`. Points that are watched stay so. */
 static inline Status touch_down(Integrator *p, double xi, const double x[COMPONENTS], Problem *problem) {
     int n = p->scaled.n, points = p->scaled.points;
+    const Contact *now = &p->now.regime.contact;
     const Piece *nearer = NULL;
     double q[MAX_SUPPORTS];
     Contact contact;
@@ -281,6 +282,8 @@ static inline Status touch_down(Integrator *p, double xi, const double x[COMPONE
     for (int k = 0; k < points; k++)
         q[n + k] += x[LATERAL] - hole_at_point(p, &p->now.step, xi, k, &nearer) - p->scaled.s[n + k] * x[ANGLE];
     if (!search(&p->modes, q, points, &contact)) return met(problem, TOO_CROWDED, MAX_WATCHED, xi * p->length_scale);
+    for (int k = 0; k < now->watched && contact.watched < MAX_WATCHED; k++)
+        if (place_of(&contact, n, now->point[k]) < 0) watch(&contact, n, now->point[k], 0);
     change_places(p, contact, xi);
     return DONE;
 }
