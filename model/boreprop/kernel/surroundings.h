@@ -274,14 +274,15 @@ static inline Status touch_down(Integrator *p, double xi, const double x[COMPONE
     int n = p->scaled.n, points = p->scaled.points;
     const Contact *now = &p->now.regime.contact;
     const Piece *nearer = NULL;
-    double q[MAX_SUPPORTS];
+    Bent bent = {.end = p->modes.beam.end};
     Contact contact;
     Loads loads = loads_at(p, xi, x, force_at(&p->now, xi));
-    free_deflections(&p->modes.beam, loads.e[n - 1], loads.F_rss, loads.g, 0, n + points, q);
-    for (int i = 0; i < n; i++) q[i] += loads.e[i];
+    bent.F_rss = loads.F_rss, bent.g = loads.g;
+    memcpy(bent.e, loads.e, (size_t)n * sizeof *bent.e);
     for (int k = 0; k < points; k++)
-        q[n + k] += x[LATERAL] - hole_at_point(p, &p->now.step, xi, k, &nearer) - p->scaled.s[n + k] * x[ANGLE];
-    if (!search(&p->modes, q, points, &contact)) return met(problem, TOO_CROWDED, MAX_WATCHED, xi * p->length_scale);
+        bent.e[n + k] = x[LATERAL] - hole_at_point(p, &p->now.step, xi, k, &nearer) - p->scaled.s[n + k] * x[ANGLE];
+    if (!search(&p->modes, &bent, points, &contact))
+        return met(problem, TOO_CROWDED, MAX_WATCHED, xi * p->length_scale);
     for (int k = 0; k < now->watched && contact.watched < MAX_WATCHED; k++)
         if (place_of(&contact, n, now->point[k]) < 0) watch(&contact, n, now->point[k], 0);
     change_places(p, contact, xi);
