@@ -61,7 +61,7 @@ typedef struct {
 typedef struct {
     Scaled scaled;
     Modes modes;
-    double length_scale;
+    double length_scale, force_scale;
     Options options;
     State now;
     Surroundings around;

@@ -112,7 +112,7 @@ static inline Status drilling_prepare(
     d->drilled_length = 0.0;
     d->given.rss_force = (double)NAN;
     options.relative_tolerance = system->relative_tolerance;
-    prepare(&d->integrator, &scaled, length_scale(system), options);
+    prepare(&d->integrator, &scaled, length_scale(system), force_scale(system), options);
     take_cosine(d, 0.0);
     drilling_move(d, memory, capacity);
     return DONE;

@@ -55,7 +55,7 @@ static inline Status restart(
     now->inputs = inputs, now->inputs_xi = now->xi;
     now->step = standstill(now->xi, x);
     bear(p, inputs.W);
-    if (p->scaled.points && touch_down(p, now->xi, x, problem) != DONE) return FAILED;
+    if (p->scaled.stepped && touch_down(p, now->xi, x, problem) != DONE) return FAILED;
     Loads loads = loads_at(p, now->xi, x, inputs.F_rss);
     const Mode *mode = settle(&p->modes, &loads, now->regime.contact);
     double F_0 = row_value(&mode->F_0, &loads), psi_star = inputs.psi_star;
@@ -134,14 +134,16 @@ static inline Status drill_step(Integrator *p, Problem *problem) {
 }
 
 /* Set what does not evolve, to be followed by `begin` or by a state that is restored. */
-static inline void prepare(Integrator *p, const Scaled *scaled, double length_scale, Options options) {
+static inline void prepare(
+    Integrator *p, const Scaled *scaled, double length_scale, double force_scale, Options options
+) {
     Axial unloaded = {0.0, 0.0};
     memset(&p->now, 0, sizeof p->now);
     p->law_known = p->under_way = 0;
     p->scaled = *scaled;
     load_beam(&p->modes, scaled, unloaded);
     memcpy(p->modes.y_star, scaled->y_star, sizeof p->modes.y_star);
-    p->length_scale = length_scale, p->options = options;
+    p->length_scale = length_scale, p->force_scale = force_scale, p->options = options;
 }
 
 /* Start at the end of a survey; the rings must have room for it. */
