@@ -114,8 +114,15 @@ def test_what_changes_at_once_with_an_input_is_said_to_depend_on_it(
     }
 
     def outputs(values: dict[str, float]) -> dict[str, float | int]:
-        inputs = {name: value for name, value in values.items() if name not in ROCK}
-        return NativeDrilling(bha, BitRock(*(values[name] for name in ROCK)), survey, **inputs).outputs()
+        run = NativeDrilling(
+            bha,
+            BitRock(*(values[name] for name in ROCK)),
+            survey,
+            active_weight_on_bit=values["active_weight_on_bit"],
+            weight_on_bit=values["weight_on_bit"],
+            rss_force=values["rss_force"],
+        )
+        return run.outputs()
 
     before = outputs(acting)
     for name, value in acting.items():

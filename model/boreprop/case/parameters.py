@@ -27,7 +27,7 @@ def parameters(case: Case) -> dict[str, float]:
 
 
 def diameters(case: Case) -> dict[str, float]:
-    """The diameters of hole and sections by scalar name, m, from which the clearances of a body that may touch follow."""
+    """The diameters of hole and sections by scalar name, m, where clearances of the body follow from them."""
     if not case.bha.body_point_positions:
         return {}
     body = {f"section_outer_diameter[{i}]": value for i, value in enumerate(case.bha.section_outer_diameters, 1)}

@@ -54,8 +54,8 @@ static inline void copy_around(Surroundings *to, const Surroundings *from, int p
 /* Where the hole was at the points of the body, and where the bit, when it was looked at. Nothing but the time that a run
    takes depends on it. */
 typedef struct {
-    double seen[MAX_POINTS], seen_at[MAX_POINTS];
-} Sight;
+    double Y[MAX_POINTS], at[MAX_POINTS];
+} Seen;
 
 /* The bit at the front of its hole, dimensionless. */
 typedef struct {
@@ -65,11 +65,11 @@ typedef struct {
     Options options;
     State now;
     Surroundings around;
-    Sight sight;
-    Law law;                  /* of the present regime and inputs, */
-    int law_known;            /* if it is made already */
-    int under_way;            /* whether a call has set out and not yet arrived; then the way back leads to … */
-    State before;             /* … the state before it, */
+    Seen seen;
+    Law law;       /* of the present regime and inputs, */
+    int law_known; /* if it is made already */
+    int under_way; /* whether a call has set out and not yet arrived; then the way back leads to … */
+    State before;  /* … the state before it, */
     Surroundings around_before;
     Kink last_kink; /* with its last kink, whose jump may have changed since */
 } Integrator;

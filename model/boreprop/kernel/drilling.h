@@ -160,7 +160,7 @@ typedef struct {
 static inline void find_body(Drilling *d, Present *at) {
     Integrator *p = &d->integrator;
     int n = p->scaled.n, points = p->scaled.points;
-    double gap[MAX_POINTS];
+    double gap[MAX_POINTS] = {0};
     at->body_force = at->body_place = 0.0, at->wall_distance = INFINITY;
     if (!points) return;
     for (int i = n; i < at->loads.count; i++)

@@ -52,7 +52,7 @@ static inline int leave(Integrator *p, const Step *last, double x[COMPONENTS]) {
     step_state(last, xi, x);
     double Y = x[LATERAL];
     keep_origin_near(now, x);
-    if (x[LATERAL] != Y) move_sight(p, x[LATERAL] - Y);
+    if (x[LATERAL] != Y) move_seen(p, x[LATERAL] - Y);
     forget(&now->hole, xi - LOOK_BACK - p->scaled.s[p->scaled.n - 1]);
     move_cursors(&now->hole, &now->places, xi);
     /* a step may have to stop half way to a kink: a kink too near for that counts as met here */

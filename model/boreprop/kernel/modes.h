@@ -93,7 +93,8 @@ static inline Column column_of(
     hold(chain, acting, &held);
     for (int k = 0; k < chain->spans - 1; k++) column.F[places[k]] = held.F[k];
     for (int i = 0; i < place_count(*contact, n); i++)
-        if (!contact->of[i] && i != n - 1) column.delta[i] = place_between(chain, &held, acting, support_at(contact, n, i));
+        if (!contact->of[i] && i != n - 1)
+            column.delta[i] = place_between(chain, &held, acting, support_at(contact, n, i));
     column.M = held.M, column.F_0 = held.F_0;
     return column;
 }

@@ -57,9 +57,10 @@ static inline void find_body_at(Integrator *p, const Step *step, double xi, doub
 static inline void find_gaps(Integrator *p, double gap[MAX_POINTS]) {
     const double *y_star = p->scaled.y_star + p->scaled.n;
     const Piece *nearer = NULL;
-    find_body_at(p, &p->now.step, p->now.xi, gap);
+    double body[MAX_POINTS] = {0};
+    find_body_at(p, &p->now.step, p->now.xi, body);
     for (int k = 0; k < p->scaled.points; k++)
-        gap[k] = y_star[k] - fabs(gap[k] - hole_at_point(p, &p->now.step, p->now.xi, k, &nearer));
+        gap[k] = y_star[k] - fabs(body[k] - hole_at_point(p, &p->now.step, p->now.xi, k, &nearer));
 }
 
 /* Widen a range of inclinations by those of a piece of hole, the slopes of its polynomial up to t: they lie between the
@@ -87,7 +88,7 @@ static inline void note_inclinations(Inclinations *noted, const Step *step, doub
 
 /* Forget where the hole was seen. */
 static inline void forget_seen(Integrator *p) {
-    for (int k = 0; k < p->scaled.points; k++) p->sight.seen_at[k] = -INFINITY;
+    for (int k = 0; k < p->scaled.points; k++) p->seen.at[k] = -INFINITY;
 }
 
 /* Note the inclinations of the existing hole. */
@@ -100,7 +101,7 @@ static inline void start_noting(State *now) {
 }
 
 /* Follow the origin of the lateral coordinates when it moves, so that they all change by `shift`. */
-static inline void move_sight(Integrator *p, double shift) {
+static inline void move_seen(Integrator *p, double shift) {
     for (int k = 0; k < p->scaled.points; k++) p->around.body[k] += shift;
     forget_seen(p);
 }
@@ -136,12 +137,12 @@ static inline void find_margins(
     const Integrator *p, const Ahead *ahead, const double *restrict body, double *restrict margin
 ) {
     const double *restrict y_star = p->scaled.y_star + p->scaled.n, *restrict before = p->around.body;
-    const double *restrict seen = p->sight.seen, *restrict seen_at = p->sight.seen_at;
+    const double *restrict Y = p->seen.Y, *restrict at = p->seen.at;
     double middle = ahead->middle, half = ahead->half, end = ahead->end, h = end - ahead->start;
     int points = p->scaled.points;
     for (int k = 0; k < points; k++) {
-        double way = end - seen_at[k];
-        double gap = y_star[k] - fabs(body[k] - seen[k] - middle * way) - half * way;
+        double way = end - at[k];
+        double gap = y_star[k] - fabs(body[k] - Y[k] - middle * way) - half * way;
         double change = fabs(body[k] - before[k] - middle * h) + half * h;
         margin[k] = smaller(gap - TURNING * change, BLIND - way);
     }
@@ -149,17 +150,19 @@ static inline void find_margins(
 
 /* Look at the hole at a point of the body, which is at `body` at the end of a step: how far it is from the wall and how much
    that has changed along the step, unless it is far from it. Returns whether it may have been at the wall within the step. */
-static inline int look_at(Integrator *p, const Step *step, const Ahead *ahead, int k, double body, const Piece **nearer) {
-    Sight *sight = &p->sight;
+static inline int look_at(
+    Integrator *p, const Step *step, const Ahead *ahead, int k, double body, const Piece **nearer
+) {
+    Seen *seen = &p->seen;
     Surroundings *around = &p->around;
     double y_star = p->scaled.y_star[p->scaled.n + k], h = ahead->end - ahead->start;
-    double Y = hole_at_point(p, step, step->end, k, nearer), before = sight->seen[k], seen_at = sight->seen_at[k];
+    double Y = hole_at_point(p, step, step->end, k, nearer), before = seen->Y[k], then = seen->at[k];
     double gap = y_star - fabs(body - Y);
     double most = fabs(body - around->body[k] - ahead->middle * h) + ahead->half * h;
     const Piece *none = NULL;
-    sight->seen[k] = Y, sight->seen_at[k] = step->end;
+    seen->Y[k] = Y, seen->at[k] = step->end;
     if (gap >= TURNING * most) return 0;
-    if (seen_at != step->xi) before = hole_at_point(p, step, step->xi, k, &none);
+    if (then != step->xi) before = hole_at_point(p, step, step->xi, k, &none);
     double start = y_star - fabs(around->body[k] - before);
     around->gap[k] = gap, around->change[k] = fabs(gap - start);
     around->near |= gap < NEARBY * around->change[k];

@@ -28,7 +28,7 @@ from boreprop.analysis.steering import offsets
 from boreprop.case.case import Case
 from boreprop.core.errors import ParameterError
 from boreprop.core.modes import Loads, Mode, Modes
-from boreprop.core.system import BitRock, BottomHoleAssembly, Scaled, scale
+from boreprop.core.system import BitRock, BottomHoleAssembly, scale
 from boreprop.report.figures.stability import SHADES, boundaries, draw
 from stability import BIT, PAPER, VERTICAL, drilling
 
@@ -66,9 +66,12 @@ def test_stabilizers_beyond_the_second_keep_their_distance_from_it() -> None:
     bha = BottomHoleAssembly((2.0, 3.6, 6.0), (1e-3, 1e-3), 0.4, 1e3, 1e7)
     assert respaced(bha, 0.5).stabilizer_positions == pytest.approx((2.0, 3.0, 5.4))
     built = replace(
-        bha, section_lengths=(1.0, 5.0), section_distributed_weights=(1e3, 2e3), section_flexural_stiffnesses=(1e7, 2e7),
+        bha,
+        section_lengths=(1.0, 5.0),
+        section_distributed_weights=(1e3, 2e3),
+        section_flexural_stiffnesses=(1e7, 2e7),
         section_outer_diameters=(0.0, 0.0),
-    )  # fmt: skip
+    )
     assert respaced(built, 2.0).section_lengths == pytest.approx((1.0, 7.4))
 
 

@@ -84,7 +84,7 @@ class Characteristic:
         *,
         axial: bool = False,
     ) -> "Characteristic":
-        """That of M and F_0 as Σ m_i e_i + m_g times the angle of the weight: ⟨Θ⟩_1, or θ where the axial load counts."""
+        """That of M and F_0 as Σ m_i e_i + m_g times the angle of the weight: ⟨Θ⟩_1, or θ under an axial load."""
         (m, m_g), (f, f_g) = M, F_0
         along_hole, along_bit = (0.0, 1.0) if axial else (1.0, 0.0)
         return cls(

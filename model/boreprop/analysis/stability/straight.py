@@ -55,9 +55,7 @@ def mode_verdict(case: Case, contact: Contact, saturated: bool, inclination: flo
         return None
     touching = touching_stabilizers(case.bha, contact)
     weight = pressing_weight(case)
-    return verdict_at(
-        characteristic_of(case.bha, case.bit, touching, saturated, inclination, weight), case.eta_pi
-    )
+    return verdict_at(characteristic_of(case.bha, case.bit, touching, saturated, inclination, weight), case.eta_pi)
 
 
 def verdict_at(characteristic: Characteristic, eta_pi: float) -> Verdict:
