@@ -134,7 +134,7 @@ def _add_variable(
         "variability": "continuous" if quantity.kind == "Real" else "discrete",
     }
     if quantity.role == "parameter":
-        attributes |= {"variability": "fixed", "initial": "exact"}
+        attributes |= {"variability": "tunable" if quantity.tunable else "fixed", "initial": "exact"}
     if quantity.role == "output":
         attributes |= {"initial": "calculated"}
     scalar = SubElement(variables, "ScalarVariable", attributes)
@@ -152,7 +152,7 @@ def _add_variable(
         typed.set("max", number(quantity.at_most))
     if name in start:
         value = start[name]
-        typed.set("start", value if isinstance(value, str) else repr(value))
+        typed.set("start", value if isinstance(value, str) else number(value))
 
 
 def _add_structure(structure: Element, scalars: list[tuple[str, Quantity]]) -> None:
