@@ -250,7 +250,7 @@ def scale(bha: BottomHoleAssembly, bit: BitRock) -> Scaled:
         raise ParameterError(
             "bha",
             "must be the paper's uniform beam here; for others there are simulate with the native engine, summary, "
-            "steering, dogleg, hysteresis, study and boreprop-view",
+            "steering, dogleg, hysteresis, study, boreprop-view and, without body contact, roots and stability",
             bha.structure.beyond_the_paper,
         )
     l1 = bha.length_scale
