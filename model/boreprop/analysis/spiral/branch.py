@@ -23,12 +23,13 @@ SCALES = np.array([5.0, 1.0, 1.0, 0.1, 0.3, 1.0])  # about how much the unknowns
 MOST_ITERATIONS = 20  # of Newton's method, which takes about five
 CONVERGED = 1e-9  # of the scales: a step of Newton's method this small ends it, as the next would be rounding
 BEYOND = 100.0  # |ln ηΠ| at which it has lost its way
-FIRST, LONGEST, SHORTEST = 0.02, 0.1, 1e-5  # steps along a curve, in the scales
+FIRST, LONGEST, SHORTEST = 0.02, 0.2, 1e-5  # steps along a curve, in the scales
 ASIDE = 0.5  # of a step: how far beside its tangent a curve may be, so that no other curve is taken for it
 STRAIGHT = 0.9  # cosine of the angle by which a curve may turn in a step, unless it is shorter than …
 KINK = 1e-3  # … this: it has a kink where a stabilizer comes off the wall
 MOST_HALVINGS = 30  # of a step in which a curve meets a condition, until Newton's method finds where
 MOST_STEPS = 2000  # along a curve; usual ones take fewer than a hundred
+BARELY = 1.1  # times the gap at which stabilizers just do not touch: with it they do not
 BLOCK = 8 * pi  # 1/s_n: the frequencies that are looked through first; then twice as many, and so on
 
 
@@ -68,17 +69,18 @@ def solve(turning: Turning, x: Floats, *conditions: Condition) -> Floats:
     raise ArithmeticError("no spiral is found")
 
 
-def beginning(scaled: Scaled, turning: Turning, eta_pi: float) -> Floats | None:
-    """The spiral at a gap of zero, to the right, with the stiffest gauge; None if there is none.
+def beginning(scaled: Scaled, turning: Turning, eta_pi: float, touching: tuple[int, ...]) -> Floats | None:
+    """A spiral to the right, with the stiffest gauge, where the equations are nearly linear; None if there is none.
 
-    It is the one that lasts to the largest ηΠ and the widest gaps. Others turn several times faster; those of the
-    paper's case are unstable. |F_0/ψ| falls as 1/ω, so that the search ends.
+    All stabilizers are held (1 for each in `touching`) at a gap of zero; or, at a gap at which the others (0) just do
+    not touch, the rest hardly move. The stiffest gauge is that which lasts to the largest ηΠ and the widest gaps. Other
+    spirals turn several times faster; those of the paper's case are unstable. |F_0/ψ| falls as 1/ω, so the search ends.
     """
-    held = Characteristic.of(scaled, (1,) * (len(scaled.s) - 1), False)
+    held = Characteristic.of(scaled, touching, False)
     spacing, best = 2 * pi / SAMPLES / scaled.s[-1], None
     start, end = 0.5 * spacing, BLOCK / scaled.s[-1]
     while True:
-        for x in _beginnings(held, turning, eta_pi, np.arange(start, end + spacing, spacing)):
+        for x in _beginnings(held, turning, eta_pi, np.arange(start, end + spacing, spacing), touching):
             if best is None or x[MU] > best[MU]:
                 best = x
         at_end = 2 * (abs(held.f).sum() + abs(held.f_theta)) / end
@@ -87,20 +89,21 @@ def beginning(scaled: Scaled, turning: Turning, eta_pi: float) -> Floats | None:
         start, end = end, 2 * end
 
 
-def _beginnings(held: Characteristic, turning: Turning, eta_pi: float, omega: Floats) -> Iterator[Floats]:
-    """The spirals at a gap of zero with ω between the given ones, those with a gauge that pushes inwards."""
+def _beginnings(
+    held: Characteristic, turning: Turning, eta_pi: float, omega: Floats, touching: tuple[int, ...]
+) -> Iterator[Floats]:
+    """Such spirals with ω between the given ones, those with a gauge that pushes inwards."""
     p = 1j * omega
     B = -np.expm1(-np.multiply.outer(held.s, p)) / p
     bit = (held.m @ B) / (p * held.epsilon * eta_pi - held.m_theta)
     gauge = (held.f @ B + held.f_theta * bit) / (bit - 1.0) - eta_pi * turning.walk
     for k in np.flatnonzero((gauge.imag[1:] * gauge.imag[:-1] <= 0) & (gauge.real[1:] > 0)):
         x = np.array([omega[k], bit[k].real, bit[k].imag, gauge[k].real, 0.0, log(eta_pi)])
-        try:
-            x = solve(turning, x, keep(GAP, 0.0), keep(LOG_ETA_PI, log(eta_pi)))
-        except ArithmeticError:  # it was a pole
-            continue
-        if x[MU] > 0 and abs(x[OMEGA] - omega[k]) < 2 * (omega[1] - omega[0]):
-            yield x
+        x[GAP] = BARELY * turning.free_gap(x, np.array(touching, bool))
+        with suppress(ArithmeticError):  # it was a pole
+            x = solve(turning, x, keep(GAP, x[GAP]), keep(LOG_ETA_PI, log(eta_pi)))
+            if x[MU] > 0 and abs(x[OMEGA] - omega[k]) < 2 * (omega[1] - omega[0]) + x[GAP]:
+                yield x
 
 
 def follow(turning: Turning, x: Floats, condition: Condition, index: int, side: float) -> Iterator[Floats]:

@@ -1,10 +1,11 @@
 """The spiral into which a case may drill a vertical hole, in closed form, and where it ends.
 
-In space the ripple of a plane is not stable: such a hole winds around, in a spiral of constant pitch and radius. That is
-a steady state in a frame that turns, so it follows from a few equations, see `turning`. The hole is vertical, whatever
-the hole of the case, and no force steers.
+In space the ripple of a plane is not stable: such a hole winds around, in a spiral of constant pitch and radius. That
+is a steady state in a frame that turns, so it follows from a few equations, see `turning`. The hole is vertical,
+whatever the hole of the case, and no force steers.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import exp, inf, isfinite, log, nan, pi
 from typing import NamedTuple
@@ -80,8 +81,8 @@ class Spiral(Winding):
         Above this clearance of the stabilizer with the largest one there is no spiral, m, the others in proportion; nan
         as above, inf if no stabilizer has a clearance.
     least_eta_pi, largest_eta_pi
-        The ηΠ between which there is a spiral with these clearances and tilt limit, nan if there is none; a least one of 0
-        means that there is one at 1e-4, the smallest that is tried.
+        The ηΠ between which there is a spiral with these clearances and tilt limit, nan if there is none. A least one
+        of 0 means that there is one at 1e-4, the smallest that is tried.
     critical
         The ηΠ below which a small spiral grows about a straight hole with all stabilizers on the wall, and the pitch of
         that. None if there is none.
@@ -154,9 +155,8 @@ def spiral(case: Case, handedness: str | None = None) -> Spiral:
     try:
         return Search(case, -walk if left else walk).found(side)
     except ArithmeticError as error:
-        raise SpiralNotFound(
-            f"the spiral at ηΠ = {case.eta_pi:.6g}: {error}; change the weight on bit a little"
-        ) from error
+        where = f"the spiral at ηΠ = {case.eta_pi:.6g}"
+        raise SpiralNotFound(f"{where}: {error}; use a slightly different active weight on bit") from error
 
 
 class Search:
@@ -186,12 +186,30 @@ class Search:
         )
 
     def at(self, eta_pi: float) -> "Found":
-        """The spiral of the case at some ηΠ, and the edge."""
-        x, fixed = beginning(self.scaled, self.turning, eta_pi), keep(LOG_ETA_PI, log(eta_pi))
-        if x is None or not self.clearance:
-            return Found(x, None, nan if x is None else 0.0)
-        least, met, last = inf, [], x  # met: the spirals with the ratio of the case, of which the first is stiffest
-        for x in follow(self.turning, x, fixed, GAP, 1.0):
+        """The spiral of the case at some ηΠ, and the edge.
+
+        If it is not on the curve that begins with all stabilizers on the wall, those with wide clearances are idle.
+        """
+        tightest = sorted(self.turning.y.tolist())
+        found = self.along(eta_pi, inf)
+        for widest in reversed(tightest[:-1]):
+            if found.own is not None or widest == tightest[-1]:
+                break
+            further = self.along(eta_pi, widest)
+            if further.own is not None or found.least_ratio != found.least_ratio:
+                found = further
+        return found
+
+    def along(self, eta_pi: float, widest: float) -> "Found":
+        """The spirals along a curve that begins with the stabilizers of no wider relative clearance on the wall."""
+        fixed, touching = keep(LOG_ETA_PI, log(eta_pi)), tuple(int(y <= widest) for y in self.turning.y.tolist())
+        start = beginning(self.scaled, self.turning, eta_pi, touching)
+        if start is None or not self.clearance:
+            return Found(start, None, nan if start is None else 0.0)
+        met: list[Floats] = []  # spirals with the ratio of the case, of which the first has the stiffest gauge
+        least, last = inf, start
+        for point in self.curve(start, fixed):
+            x = point
             if x[MU] <= 0:
                 x = meet(self.turning, last, x, fixed, keep(MU, 0.0))
             ratio = tilt(x) / x[GAP] if x[GAP] > 0 else inf
@@ -203,8 +221,18 @@ class Search:
             if not 0 <= x[GAP] < WIDEST or x[MU] == 0:
                 break
             last = x
-        own, edge, *_ = *met, None, None
-        return Found(own, edge, least)
+        return Found(met[0] if met else None, met[1] if len(met) > 1 else None, least)
+
+    def curve(self, start: Floats, fixed: Condition) -> Iterator[Floats]:
+        """The points of a curve, from its narrowest gap on."""
+        before: list[Floats] = []
+        if start[GAP] > 0:
+            for x in follow(self.turning, start, fixed, GAP, -1.0):
+                if x[GAP] <= 0 or x[MU] <= 0:
+                    break
+                before.append(x)
+        yield from reversed(before[1:])
+        yield from follow(self.turning, start, fixed, GAP, 1.0)
 
     def eta_pi_range(self, x: Floats | None) -> tuple[float, float]:
         """The ηΠ between which there is a spiral, from x on if that is one; 0 for a least one below 1e-4."""
@@ -223,14 +251,14 @@ class Search:
     def end(self, x: Floats, fixed: Condition, side: float) -> float:
         """The ηΠ at which a curve of spirals ends, towards larger (side 1) or smaller ones (−1)."""
         last = x
-        for x in follow(self.turning, x, fixed, LOG_ETA_PI, side):
-            if x[MU] <= 0:
-                last = meet(self.turning, last, x, fixed, keep(MU, 0.0))
+        for point in follow(self.turning, x, fixed, LOG_ETA_PI, side):
+            if point[MU] <= 0:
+                last = meet(self.turning, last, point, fixed, keep(MU, 0.0))
                 break
-            if side * x[LOG_ETA_PI] < side * last[LOG_ETA_PI]:  # it turns back
+            if side * point[LOG_ETA_PI] < side * last[LOG_ETA_PI]:  # it turns back
                 break
-            last = x
-            if x[LOG_ETA_PI] < log(SMALLEST_ETA_PI):
+            last = point
+            if point[LOG_ETA_PI] < log(SMALLEST_ETA_PI):
                 break
         return exp(last[LOG_ETA_PI])
 

@@ -55,18 +55,19 @@ def contact(K_inv: Floats, q: Complexes, y_star: Floats, start: Complexes | None
     ArithmeticError
         If they are not found.
     """
-    own = np.diag(K_inv).copy()
+    own, wide = np.diag(K_inv).copy(), np.kron(K_inv, np.eye(2))
     F = np.zeros(len(q), complex) if start is None else start
     residual = _residual(K_inv, own, q, y_star, F)
     for _ in range(MOST_ITERATIONS):
         held, outwards = _held(K_inv, own, q, y_star, F)
         # d(residual) = held · dδ + (1 − held) · K⁻¹_ii dF_i
-        slope = held @ np.kron(K_inv, np.eye(2)) + (np.eye(len(held)) - held) * np.repeat(own, 2)
+        slope = held @ wide + (np.eye(len(held)) - held) * np.repeat(own, 2)
         size, rounding = abs(residual).max(initial=0.0), ROUNDING * (abs(q) + abs(K_inv) @ abs(F)).max(initial=0.0)
         step = np.linalg.solve(slope, real(residual)).view(complex)
         share, closer = 1.0, _residual(K_inv, own, q, y_star, F - step)
         if size <= rounding or (size <= ENOUGH * rounding and abs(closer).max(initial=0.0) >= size):
-            return Contact(F, -np.linalg.inv(slope), held, outwards)
+            F = np.where(outwards != 0, F, 0.0)
+            return Contact(F, np.asarray(-np.linalg.inv(slope), float), held, outwards)
         while share > SMALLEST_STEP and abs(closer).max(initial=0.0) >= size:
             share /= 2
             closer = _residual(K_inv, own, q, y_star, F - share * step)

@@ -1,7 +1,7 @@
 """Small spirals about a straight vertical hole, with all stabilizers on the wall all around and the tilt free.
 
-They are those of the characteristic function of that mode with a bit that walks, see `stability.characteristic`. A spiral
-to the left under a walk ϖ is the mirror image of one to the right under −ϖ.
+They are those of the characteristic function of that mode with a bit that walks, see `stability.characteristic`. A
+spiral to the left under a walk ϖ is the mirror image of one to the right under −ϖ.
 """
 
 from math import pi

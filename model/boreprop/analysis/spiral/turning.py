@@ -14,6 +14,7 @@ common to all stabilizers, times their clearances over the largest one. A case h
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Complexes, Floats
 from ...core.beam import Beam
@@ -69,10 +70,23 @@ class Turning:
 
     def contact(self, x: Floats) -> Contact:
         """The contact forces in a spiral."""
-        e, G = self.loads(x)
-        found = contact(self.K_inv, self.q_e @ e + self.q_g * G, x[GAP] * self.y, self._near)
+        return self.contact_under(*self.loads(x), x[GAP])
+
+    def contact_under(self, e: Complexes, G: complex, gap: float) -> Contact:
+        """The contact forces under offsets and weight."""
+        found = contact(self.K_inv, self.q_e @ e + self.q_g * G, gap * self.y, self._near)
         self._near = found.F
         return found
+
+    def free_gap(self, x: Floats, held: NDArray[np.bool_]) -> float:
+        """The least gap at which stabilizers that are not held do not touch; 0 if all are held."""
+        e, G = self.loads(x)
+        q, free = self.q_e @ e + self.q_g * G, ~held
+        if not free.any():
+            return 0.0
+        F = np.zeros(len(q), complex)
+        F[held] = -np.linalg.solve(self.K_inv[np.ix_(held, held)], q[held])
+        return float((abs(q + self.K_inv @ F)[free] / self.y[free]).max())
 
     def response(self, e: Complexes, G: complex, F: Complexes) -> Response:
         """M and F_0 under offsets, weight and contact forces; or their changes with those."""
@@ -89,7 +103,9 @@ class Turning:
         """Both equations at x."""
         p, eta_pi, mu, bit = 1j * x[OMEGA], np.exp(x[LOG_ETA_PI]), x[MU], theta(x)
         stiffness, psi, drag = eta_pi * self.walk + mu, bit - 1.0, self.epsilon * eta_pi
-        (_, slopes), (e, G), touched = self.lags(x), self.loads(x), self.contact(x)
+        B, slopes = self.lags(x)
+        e, G = B - self.s * bit, complex(B[0])
+        touched = self.contact_under(e, G, x[GAP])
         M, F_0, _ = self.response(e, G, touched.F)
         still = np.zeros(len(self.s), complex)
         columns = []

@@ -26,7 +26,7 @@ class WalkChart:
         The ηΠ below which a small spiral to the right grows about a straight vertical hole with all stabilizers on the
         wall, shape (k,); nan where there is none.
     largest_eta_pi
-        The largest ηΠ with a spiral to the right with the clearances and the tilt limit of the case, shape (k,); likewise.
+        The largest ηΠ with a spiral to the right, with the clearances and the tilt limit of the case, shape (k,).
     """
 
     walk_angle: Floats

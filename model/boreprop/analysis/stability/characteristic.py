@@ -14,9 +14,9 @@ and ν is a root of
 B_i is entire, so the freedom to shift the whole hole sideways adds no root.
 
 In a vertical hole the same equations hold for complex numbers, real to one side and imaginary to the side 90° to the
-right of it looking down the hole, if a stabilizer that touches is held all around. The bit may then walk by ϖ: ηΠ e^{iϖ}
-stands for ηΠ in the law of the tilt, and roots do not come in pairs any more. One with Im ν > 0 winds to the right. One
-with Im ν < 0 winds to the left; it is the conjugate of a root for −ϖ.
+right of it looking down the hole, if a stabilizer that touches is held all around. The bit may then walk by ϖ:
+ηΠ e^{iϖ} stands for ηΠ in the law of the tilt, and roots do not come in pairs any more. One with Im ν > 0 winds to the
+right. One with Im ν < 0 winds to the left; it is the conjugate of a root for −ϖ.
 """
 
 from cmath import exp

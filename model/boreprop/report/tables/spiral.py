@@ -40,7 +40,7 @@ def _column(case: Case, found: Spiral) -> dict[str, str]:
     length, angle = case.length_scale, UNITS["rad"]
     edge = found.edge
     return {
-        "pitch": metres(found.pitch) if found.exists else NONE,
+        "pitch": UNITS["m"].text(found.pitch, ".4g") if found.exists else NONE,
         "radius": small_length().text(found.radius) if found.exists else NONE,
         "inclination of the hole, of the bit": _angles(found) if found.exists else NONE,
         "bit tilt": angle.text(found.bit_tilt) if found.exists else NONE,
