@@ -1,0 +1,74 @@
+"""The command `boreprop spiral`."""
+
+import json
+from pathlib import Path
+
+import pytest
+from matplotlib.image import imread
+
+from boreprop.analysis.spiral.closed_form import spiral
+from boreprop.case.case import Case
+from boreprop.case.file import load_case
+from conftest import Command
+from places import EXAMPLES
+
+
+@pytest.fixture
+def walking(tmp_path: Path) -> Path:
+    text = (EXAMPLES / "paper_case.toml").read_text(encoding="utf-8")
+    path = tmp_path / "walks.toml"
+    path.write_text(text.replace("[bit]\n", "[bit]\nwalk_angle_deg = -10.0\n"), encoding="utf-8")
+    return path
+
+
+def test_it_prints_pitch_radius_and_where_spirals_end(command: Command, paper_case: Path) -> None:
+    done = command("boreprop", "spiral", paper_case)
+    assert (done.returncode, done.stderr) == (0, "")
+    for text in ("to either side", "5.102 m", "21.4 mm", "19.4 kN", "0.235 °", "0.1327 (21.4 kN)", "0.1468 (23.66 kN)"):
+        assert text in done.stdout
+    assert "the hole of the case ends at 0.50 ° inclination: that has no part here" in " ".join(done.stdout.split())
+
+
+def test_json_has_the_fields_of_the_api(command: Command, paper_case: Path, case: Case) -> None:
+    document, found = json.loads(command("boreprop", "spiral", paper_case, "--json").stdout), spiral(case)
+    assert document["handedness"] == "either"
+    assert document["pitch"] == pytest.approx(found.pitch)
+    assert document["radius"] == pytest.approx(found.radius)
+    assert document["stabilizer_force"] == pytest.approx(found.stabilizer_force)
+    assert found.edge is not None
+    assert document["edge"]["hole_inclination"] == pytest.approx(found.edge.hole_inclination)
+    assert document["other"] is None
+
+
+def test_a_bit_that_walks_has_two_spirals(command_here: Command, walking: Path) -> None:
+    document, case = json.loads(command_here("boreprop", "spiral", walking, "--json").stdout), load_case(walking)
+    assert (document["handedness"], document["other"]["handedness"]) == ("left", "right")
+    assert document["pitch"] == pytest.approx(spiral(case, "left").pitch)
+    assert document["other"]["pitch"] == pytest.approx(spiral(case, "right").pitch)
+    printed = command_here("boreprop", "spiral", walking, "--units", "field").stdout
+    assert "to the left" in printed
+    assert "to the right" in printed
+    assert "16.69 ft" in printed
+
+
+def test_a_case_without_a_spiral_has_none(command_here: Command, tmp_path: Path) -> None:
+    text = (EXAMPLES / "paper_case.toml").read_text(encoding="utf-8")
+    (tmp_path / "stiff.toml").write_text(text.replace("tilt_limit_deg              = 2.0", "tilt_limit_deg = 0.2"))
+    document = json.loads(command_here("boreprop", "spiral", "stiff.toml", "--json").stdout)
+    assert document["pitch"] is None
+    assert document["edge"] is None
+    assert "none" in command_here("boreprop", "spiral", "stiff.toml").stdout
+
+
+@pytest.mark.slow
+def test_it_draws_a_chart_over_the_walk_angle(command_here: Command, tmp_path: Path, walking: Path) -> None:
+    done = command_here("boreprop", "spiral", walking, "--chart", "chart.png")
+    assert done.returncode == 0
+    assert "chart.png: up to which ηΠ holes spiral" in done.stdout
+    assert imread(tmp_path / "chart.png")[..., :3].std() > 0.05
+
+
+def test_a_wrong_picture_is_refused(command_here: Command, tmp_path: Path, paper_case: Path) -> None:
+    done = command_here("boreprop", "spiral", paper_case, "--chart", "chart.pdf")
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert not list(tmp_path.iterdir())
