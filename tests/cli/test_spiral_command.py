@@ -38,6 +38,12 @@ def test_json_has_the_fields_of_the_api(command: Command, paper_case: Path, case
     assert found.edge is not None
     assert document["edge"]["hole_inclination"] == pytest.approx(found.edge.hole_inclination)
     assert document["other"] is None
+    assert document["ripple"] is None
+
+
+def test_it_says_how_fast_a_ripple_leaves_its_plane(command_here: Command, paper_case: Path) -> None:
+    printed = command_here("boreprop", "spiral", paper_case, "--ripple").stdout
+    assert "a ripple in a plane, in waves of 5.07 m: a disturbance across it doubles in 8.1 m" in printed
 
 
 def test_a_bit_that_walks_has_two_spirals(command_here: Command, walking: Path) -> None:

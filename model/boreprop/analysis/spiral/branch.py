@@ -28,7 +28,7 @@ ASIDE = 0.5  # of a step: how far beside its tangent a curve may be, so that no 
 STRAIGHT = 0.9  # cosine of the angle by which a curve may turn in a step, unless it is shorter than …
 KINK = 1e-3  # … this: it has a kink where a stabilizer comes off the wall
 MOST_HALVINGS = 30  # of a step in which a curve meets a condition, until Newton's method finds where
-MOST_STEPS = 2000  # along a curve; usual ones take fewer than a hundred
+MOST_STEPS = 500  # along a curve; usual ones take fewer than a hundred
 BARELY = 1.1  # times the gap at which stabilizers just do not touch: with it they do not
 BLOCK = 8 * pi  # 1/s_n: the frequencies that are looked through first; then twice as many, and so on
 

@@ -25,8 +25,8 @@ from .turning import GAP, LOG_ETA_PI, MU, OMEGA, Turning, theta, tilt
 
 HANDS = ("right", "left")
 WIDEST = 100.0  # gap: stabilizers that may move so far, compared with the inclination, touch no wall
-LESS = 4.0  # by which ηΠ is divided in search of one at which there is a spiral, so many times:
-MOST_DIVISIONS = 5
+LESS = 8.0  # by which ηΠ is divided in search of one at which there is a spiral, so many times:
+MOST_DIVISIONS = 3
 
 
 @dataclass(frozen=True)
@@ -207,14 +207,17 @@ class Search:
         if start is None or not self.clearance:
             return Found(start, None, nan if start is None else 0.0)
         met: list[Floats] = []  # spirals with the ratio of the case, of which the first has the stiffest gauge
-        least, last = inf, start
-        for point in self.curve(start, fixed):
+        points = self.curve(start, fixed)
+        last = next(points)
+        least = ratio_of(last)
+        outside = least > self.ratio
+        for point in points:
             x = point
             if x[MU] <= 0:
                 x = meet(self.turning, last, x, fixed, keep(MU, 0.0))
-            ratio = tilt(x) / x[GAP] if x[GAP] > 0 else inf
-            least = min(least, float(ratio))
-            if (ratio <= self.ratio) != (len(met) % 2 == 1):
+            least = min(least, ratio_of(x))
+            outside, before = ratio_of(x) > self.ratio, outside
+            if outside != before and (met or before):
                 met.append(meet(self.turning, last, x, fixed, at_limit(self.ratio)))
             if x[MU] == 0 and len(met) == 1:
                 met.append(x)
@@ -296,3 +299,8 @@ class Search:
             growth=growth / self.length_scale,
             stable=growth < NEUTRAL,
         )
+
+
+def ratio_of(x: Floats) -> float:
+    """Tilt over gap."""
+    return tilt(x) / float(x[GAP]) if x[GAP] > 0 else inf

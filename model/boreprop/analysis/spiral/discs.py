@@ -97,4 +97,4 @@ def _held(K_inv: Floats, own: Floats, q: Complexes, y_star: Floats, F: Complexes
     held[each, :, each, :] = across[:, None, None] * np.eye(2) + (1.0 - across)[:, None, None] * (
         blocks[:, :, None] * blocks[:, None, :]
     )
-    return held.reshape(2 * len(q), -1), n
+    return held.reshape(2 * len(q), 2 * len(q)), n

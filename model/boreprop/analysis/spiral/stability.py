@@ -10,6 +10,7 @@ Vermiglio 2005). The eigenvalues converge faster than any power of the number of
 """
 
 from math import ceil
+from typing import Any
 
 import numpy as np
 
@@ -38,13 +39,18 @@ def roots(turning: Turning, x: Floats) -> Complexes:
     matrix = np.kron(bend, np.eye(2))
     ends = np.kron(np.eye(count + 2)[:, [0, -1]], np.eye(2))
     matrix += ends @ rates(turning, x) @ np.kron(seen, np.eye(2))
-    found = np.linalg.eigvals(matrix)
+    found = eigenvalues(matrix)
     for known in (0.0, 1j * omega, -1j * omega):
         nearest = int(np.argmin(abs(found - known)))
         if abs(found[nearest] - known) < TRIVIAL:
             found = np.delete(found, nearest)
     found = found[found.imag >= 0]
     return found[np.argsort(-found.real)]
+
+
+def eigenvalues(matrix: Any) -> Complexes:
+    """The eigenvalues of a real matrix, as complex numbers, in pairs."""
+    return np.asarray(np.linalg.eigvals(matrix), complex)
 
 
 def rates(turning: Turning, x: Floats) -> Floats:

@@ -3,6 +3,7 @@
 from math import inf, isnan
 
 from ...analysis.spiral.closed_form import Spiral, Winding
+from ...analysis.spiral.transverse import TransverseGrowth
 from ...case.case import Case
 from ...units import UNITS, small_length
 from .stability import change, metres, weight
@@ -33,6 +34,15 @@ def lines(case: Case, *found: Spiral) -> list[tuple[str, ...]]:
     """The lines of a table with a column for each spiral."""
     columns = [_column(case, one) for one in found]
     return [(what, *(column[what] for column in columns)) for what in columns[0]]
+
+
+def ripple_line(case: Case, found: TransverseGrowth) -> str:
+    """What becomes of a ripple that is disturbed across its plane."""
+    if isnan(found.growth):
+        return "in a plane a vertical hole does not ripple after a dogleg of 0.5°"
+    length = case.length_scale
+    waves, what = metres(found.wavelength), change(complex(found.growth * length), length)
+    return f"a ripple in a plane, in waves of {waves}: a disturbance across it {what}"
 
 
 def _column(case: Case, found: Spiral) -> dict[str, str]:
