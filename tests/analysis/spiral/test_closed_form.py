@@ -1,12 +1,13 @@
 """Spirals in closed form: against numbers of another program, simulations in space, and the symmetries of the model."""
 
 from dataclasses import replace
+from functools import cache
 from math import degrees, inf, isnan, pi, radians
 
 import numpy as np
 import pytest
 
-from boreprop.analysis.spiral.closed_form import Search, Spiral, spiral
+from boreprop.analysis.spiral.closed_form import Search, Spiral, Winding, spiral
 from boreprop.analysis.spiral.turning import MU, OMEGA, theta
 from boreprop.case.case import Case
 from boreprop.core.errors import ParameterError
@@ -17,6 +18,27 @@ from spirals import paper_spiral
 STATIONS = 801  # of an existing hole that spirals, over the BHA: chords are off by 1e-6 of its inclination
 
 
+@cache
+def paper() -> Spiral:
+    return spiral(paper_spiral())
+
+
+def search(case: Case, walk: float | None = None) -> Search:
+    return Search(case, case.bit.walk_angle if walk is None else walk)
+
+
+def exists(case: Case, *, left: bool = False) -> bool:
+    walk = -case.bit.walk_angle if left else case.bit.walk_angle
+    return search(case, walk).at(case.eta_pi).own is not None
+
+
+def winding(case: Case) -> Winding:
+    own = search(case)
+    x = own.at(case.eta_pi).own
+    assert x is not None
+    return own.winding(x)
+
+
 def three_stabilizers(walk_deg: float = 12.0) -> Case:
     bha = BottomHoleAssembly((3.66, 6.9, 11.7), (4e-3, 6e-3), 0.6, 1080.0, 7.2e6)
     case = replace(paper_spiral(walk_deg=walk_deg), bha=bha)
@@ -24,7 +46,7 @@ def three_stabilizers(walk_deg: float = 12.0) -> Case:
 
 
 def test_the_paper_case_winds_as_a_program_of_its_own_says() -> None:
-    found = spiral(paper_spiral())
+    found = paper()
     assert found.pitch == pytest.approx(2 * pi / 4.50697 * 3.66, rel=1e-6)
     assert degrees(found.hole_inclination) == pytest.approx(1.511, abs=5e-4)
     assert found.radius == pytest.approx(5.85e-3 * 3.66, rel=1e-3)
@@ -34,46 +56,50 @@ def test_the_paper_case_winds_as_a_program_of_its_own_says() -> None:
 
 @pytest.mark.parametrize(("eta_pi", "inclination_deg"), [(0.01, 0.235), (0.05, 0.287), (0.10, 0.515), (0.13, 1.30)])
 def test_the_edge_of_the_paper_case_is_the_published_one(eta_pi: float, inclination_deg: float) -> None:
-    edge = spiral(paper_spiral(eta_pi)).edge
-    assert edge is not None
+    own = search(paper_spiral(eta_pi))
+    found = own.at(eta_pi).edge
+    assert found is not None
+    edge = own.winding(found)
     assert degrees(edge.hole_inclination) == pytest.approx(inclination_deg, abs=6e-3 if eta_pi > 0.1 else 6e-4)
     assert not edge.stable
 
 
 def test_below_a_tilt_limit_there_is_no_spiral() -> None:
-    least = spiral(paper_spiral()).least_tilt_limit
+    least = paper().least_tilt_limit
     assert degrees(least) == pytest.approx(0.236, abs=5e-4)
-    above, below = (spiral(paper_spiral(tilt_limit_deg=degrees(least) * factor)) for factor in (1.001, 0.999))
-    assert above.exists
+    assert exists(paper_spiral(tilt_limit_deg=degrees(least) * 1.001))
+    below = spiral(paper_spiral(tilt_limit_deg=degrees(least) * 0.999))
     assert not below.exists
     assert isnan(below.pitch)
     assert below.edge is None
 
 
 def test_above_a_clearance_there_is_no_spiral() -> None:
-    widest = spiral(paper_spiral()).widest_clearance / 3.66
-    assert spiral(paper_spiral(clearance=0.999 * widest)).exists
-    assert not spiral(paper_spiral(clearance=1.001 * widest)).exists
+    widest = paper().widest_clearance / 3.66
+    assert exists(paper_spiral(clearance=0.999 * widest))
+    assert not exists(paper_spiral(clearance=1.001 * widest))
 
 
 @pytest.mark.parametrize("walk_deg", [0.0, -10.0])
 def test_the_range_of_eta_pi_is_where_spirals_are(walk_deg: float) -> None:
-    found = spiral(paper_spiral(walk_deg=walk_deg), "right")
-    assert found.least_eta_pi == 0.0
-    assert spiral(paper_spiral(0.9999 * found.largest_eta_pi, walk_deg=walk_deg), "right").exists
-    beyond = spiral(paper_spiral(1.0001 * found.largest_eta_pi, walk_deg=walk_deg), "right")
-    assert not beyond.exists
-    assert beyond.largest_eta_pi == pytest.approx(found.largest_eta_pi, rel=1e-3)
+    own = search(paper_spiral(walk_deg=walk_deg))
+    lowest, highest = own.eta_pi_range(own.at(0.01).own)
+    assert lowest == 0.0
+    assert own.at(0.9999 * highest).own is not None
+    assert own.at(1.0001 * highest).own is None
+    beyond = search(paper_spiral(1.0001 * highest, walk_deg=walk_deg))
+    assert beyond.eta_pi_range(None)[1] == pytest.approx(highest, rel=1e-3)
 
 
 def test_a_spiral_is_a_steady_state_of_a_simulation_in_space() -> None:
     for case in (paper_spiral(0.1, walk_deg=5.0), three_stabilizers()):
-        search = Search(case, case.bit.walk_angle)
-        found, x = spiral(case), search.at(case.eta_pi).own
+        own = search(case)
+        x = own.at(case.eta_pi).own
         assert x is not None
-        direction = found.hole_inclination * np.exp(1j * x[OMEGA] * np.linspace(-search.scaled.s[-1], 0.0, STATIONS))
+        found = own.winding(x)
+        direction = found.hole_inclination * np.exp(1j * x[OMEGA] * np.linspace(-own.scaled.s[-1], 0.0, STATIONS))
         bit = np.array([found.hole_inclination * theta(x)]).view(float)
-        drilling = Drilling(existing(search, direction, tilted(bit)), 0.002)
+        drilling = Drilling(existing(own, direction, tilted(bit)), 0.002)
         drilling.theta = bit
         row = drilling.row()
         np.testing.assert_allclose(row.Theta, [found.hole_inclination, 0.0], atol=1e-4 * found.hole_inclination)
@@ -85,8 +111,8 @@ def test_a_spiral_is_a_steady_state_of_a_simulation_in_space() -> None:
         np.testing.assert_allclose(drilling.row().Theta, [turned.real, turned.imag], atol=1e-3 * found.hole_inclination)
 
 
-def existing(search: Search, direction: np.ndarray, frame: np.ndarray) -> System:
-    scaled, case = search.scaled, search.case
+def existing(own: Search, direction: np.ndarray, frame: np.ndarray) -> System:
+    scaled, case = own.scaled, own.case
     return System(
         s=scaled.s,
         y_star=scaled.y_star,
@@ -110,11 +136,11 @@ def test_the_opposite_walk_gives_the_mirror_image() -> None:
 def test_a_bit_winds_to_the_side_to_which_it_walks() -> None:
     assert spiral(paper_spiral(walk_deg=3.0)).handedness == "right"
     assert spiral(paper_spiral(walk_deg=-3.0)).handedness == "left"
-    assert spiral(paper_spiral()).handedness == "either"
+    assert paper().handedness == "either"
 
 
 def test_twice_the_clearance_and_tilt_limit_wind_twice_as_wide() -> None:
-    once, twice = spiral(paper_spiral()), spiral(paper_spiral(tilt_limit_deg=4.0, clearance=2e-3))
+    once, twice = paper(), spiral(paper_spiral(tilt_limit_deg=4.0, clearance=2e-3))
     assert twice.pitch == pytest.approx(once.pitch)
     assert twice.radius == pytest.approx(2 * once.radius)
     assert twice.stabilizer_force == pytest.approx([2 * force for force in once.stabilizer_force])
@@ -128,7 +154,7 @@ def test_a_stabilizer_that_never_touches_changes_nothing() -> None:
     bha = BottomHoleAssembly((2.0, 3.66, 7.32), (0.5, *two.bha.stabilizer_clearances), 0.6, 0.0, 7.2e6)
     resistance = two.bit.angular_steering_resistance * (3.66 / 2.0) ** 2
     three = replace(two, bha=bha, bit=replace(two.bit, angular_steering_resistance=resistance))
-    found, expected = spiral(three), spiral(two)
+    found, expected = winding(three), winding(two)
     assert found.pitch == pytest.approx(expected.pitch)
     assert found.radius == pytest.approx(expected.radius)
     assert found.stabilizer_force == pytest.approx((0.0, *expected.stabilizer_force))
@@ -152,7 +178,7 @@ def test_a_single_stabilizer_has_no_edge() -> None:
 def test_the_hole_and_the_force_of_the_case_have_no_part() -> None:
     case = paper_spiral()
     inclined = replace(case, survey=replace(case.survey, inclination=(0.5,) * len(case.survey.inclination)))
-    assert spiral(inclined) == spiral(case)
+    assert spiral(inclined) == paper()
 
 
 @pytest.mark.parametrize(
@@ -177,13 +203,13 @@ def test_random_systems_have_spirals_that_obey_the_laws(seed: int) -> None:
     bha = BottomHoleAssembly(tuple(positions.tolist()), tuple(clearances.tolist()), 0.5, 1000.0, 1e7)
     bit = BitRock(10.0, float(random.uniform(0.2, 2.0)), 0.05, float(random.uniform(-0.3, 0.3)))
     case = replace(paper_spiral(), bha=bha, bit=bit, active_weight_on_bit=0.01 / 10.0 * bha.force_scale)
-    search = Search(case, bit.walk_angle)
-    x = search.at(case.eta_pi).own
+    own = search(case)
+    x = own.at(case.eta_pi).own
     assert x is not None
-    touched, (e, G) = search.turning.contact(x), search.turning.loads(x)
-    delta = search.turning.q_e @ e + search.turning.q_g * G + search.turning.K_inv @ touched.F
-    allowed = x[4] * search.turning.y
+    touched, (e, G) = own.turning.contact(x), own.turning.loads(x)
+    delta = own.turning.q_e @ e + own.turning.q_g * G + own.turning.K_inv @ touched.F
+    allowed = x[4] * own.turning.y
     assert (abs(delta) <= allowed * (1 + 1e-9)).all()
     np.testing.assert_allclose((delta.conj() * touched.F).real, -allowed * abs(touched.F), atol=1e-10)
     assert x[MU] >= 0
-    assert abs(search.turning.residual(x).value).max() < 1e-11
+    assert abs(own.turning.residual(x).value).max() < 1e-11
