@@ -26,6 +26,7 @@ from boreprop.core.drilling import Drilling
 from boreprop.core.quantities import INPUTS, quantity_of, scalar_names
 from boreprop.run.results import read_trajectory
 from boreprop.run.trajectory import Trajectory
+from forking import run_script
 from places import EXAMPLES
 
 CLOSED_LOOP = EXAMPLES / "closed_loop"
@@ -43,8 +44,7 @@ ecos = pytest.mark.skipif(not has_ecos(), reason="no ecospy, or no libtbb.so.12 
 
 
 def script(name: str, *arguments: object) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, str(CLOSED_LOOP / name), *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, encoding="utf-8", timeout=300)
+    return run_script([CLOSED_LOOP / name, *map(str, arguments)], ("numpy", "fmpy.simulation", "fmpy.ssp.simulation"))
 
 
 def make_ssp(path: Path, *arguments: object) -> Path:

@@ -148,6 +148,27 @@ def follow(fmu: str, schedule: str, step: str, count: str, time: str, rate: str)
         return {"rows": rows, "modules": modules(one)}
 
 
+def act(fmu: str, actions: str) -> object:
+    """What actions give: ["set", values] and ["step", size] a status, ["row"] a row; ["save"] and ["back"] nothing."""
+    answers: list[object] = []
+    with instance(fmu) as one:
+        one.initialize()
+        saved, time = b"", 0.0
+        for kind, *given in json.loads(actions):
+            if kind == "set":
+                answers.append(attempt(one.set_names, *given))
+            elif kind == "step":
+                answers.append(one.step(*given))
+            elif kind == "row":
+                answers.append(one.row())
+            elif kind == "save":
+                saved, time = one.state(), one.time
+            else:
+                one.set_state(saved)
+                one.time = time
+    return answers
+
+
 def respond(fmu: str) -> object:
     """Which outputs follow a change of each input at once, anywhere along a run."""
     changes = {"rss_force": 3e3, "active_weight_on_bit": 3e3, "rate_of_penetration": 1.0}

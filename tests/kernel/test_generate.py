@@ -27,6 +27,12 @@ def test_the_generated_headers_are_fresh(name: str) -> None:
     assert (FOLDER / name).read_text(encoding="utf-8") == HEADERS[name](), "run: python -m boreprop.kernel.generate"
 
 
+@pytest.fixture(autouse=True)
+def quickly(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Compile without optimizing."""
+    monkeypatch.setenv("CFLAGS", "-O0")
+
+
 def compiled(folder: Path, outputs: tuple[Quantity, ...]) -> Path:
     """The kernel, compiled with a header for these outputs."""
     for path in [*FOLDER.glob("*.c"), *FOLDER.glob("*.h")]:
@@ -66,6 +72,8 @@ def started(
         len(depths),
         depths,
         inclinations,
+        0,
+        None,
         binding.Inputs(rss_force=0.0, active_weight_on_bit=1e3),
         problem,
     )

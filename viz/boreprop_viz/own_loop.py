@@ -17,7 +17,7 @@ from boreprop.case.case import Case
 from boreprop.case.file import load_case
 from boreprop.case.packed import read_packed_case
 from boreprop.cli.console import check_output, warn
-from boreprop.core.quantities import BY_NAME, names_of_runs
+from boreprop.core.quantities import BY_NAME, CLEARANCES, names_of_runs
 from boreprop.core.survey import Survey
 from boreprop.errors import InputError, shown
 
@@ -257,7 +257,7 @@ class Rows:
 
     def begin(self, row: Mapping[str, float]) -> None:
         """Let rows have the values of this one; `InputError` if one is unknown, not finite or missing."""
-        known = {"time", *names_of_runs(self.n)}
+        known = {"time", *names_of_runs(self.n), *CLEARANCES[: self.n - 1]}
         for name in row:
             if name not in known:
                 raise InputError(f"send: must be given time and inputs and outputs of the FMU alone, got {name!r}")

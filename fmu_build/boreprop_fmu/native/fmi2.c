@@ -76,6 +76,7 @@ void fmi2FreeInstance(fmi2Component instance) {
     run_end(c->run);
     free(c->survey_file);
     free(c->packed.stations);
+    free(c->packed.layers);
     free(c->name);
     free(c);
 }

@@ -57,7 +57,7 @@ static int restore(Component *c, const Saved *saved, char why[LINE]) {
             explain(why, "state: must be one of this FMU, got one with text that is not UTF-8");
             count = -1;
         }
-        if (count > 0) run = new_run(all, value, why);
+        if (count > 0) run = new_run(&c->packed, value, why);
         if (run && run_restore(run, numbers, count, &problem) != DONE) {
             tell(&problem, why);
             run_end(run);

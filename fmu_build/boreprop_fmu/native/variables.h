@@ -20,7 +20,8 @@ enum { MOST_VARIABLES = INPUT_COUNT + MOST_OUTPUTS + MOST_PARAMETERS + 1 };
 typedef struct {
     Structure structure;
     int count;
-    int first_output, first_parameter, eta_pi, relative_tolerance, survey_file; /* value references */
+    /* value references */
+    int first_output, first_parameter, first_clearance, eta_pi, relative_tolerance, survey_file;
     Variable at[MOST_VARIABLES];
 } Variables;
 
@@ -45,10 +46,17 @@ static void list_variables(Variables *all, Structure structure) {
     all->first_parameter = all->count;
     for (int k = 0; k < PARAMETER_COUNT; k++) {
         if (PARAMETER_TABLE[k].name == Q_RELATIVE_TOLERANCE) all->relative_tolerance = all->count;
+        if (PARAMETER_TABLE[k].name == Q_STABILIZER_CLEARANCE) all->first_clearance = all->count;
         add_variables(all, k, PARAMETER_TABLE[k].name, PARAMETER_TABLE[k].size, PARAMETER, REAL);
     }
     all->survey_file = all->count;
     add_variables(all, 0, Q_SURVEY_FILE, ONE, PARAMETER, STRING);
+}
+
+/* Whether a variable is a parameter that may change along a run. */
+static int is_tunable(const Variable *variable) {
+    return variable->role == PARAMETER && variable->kind == REAL &&
+           PARAMETER_TABLE[variable->quantity].name == Q_STABILIZER_CLEARANCE;
 }
 
 #endif

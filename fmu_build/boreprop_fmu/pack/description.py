@@ -134,7 +134,7 @@ def _add_variable(
         "variability": "continuous" if quantity.kind == "Real" else "discrete",
     }
     if quantity.role == "parameter":
-        attributes |= {"variability": "fixed", "initial": "exact"}
+        attributes |= {"variability": "tunable" if quantity.tunable else "fixed", "initial": "exact"}
     if quantity.role == "output":
         attributes |= {"initial": "calculated"}
     scalar = SubElement(variables, "ScalarVariable", attributes)

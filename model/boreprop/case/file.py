@@ -4,6 +4,7 @@ A file has angles in degrees, a `Case` in radians. The table of quantities says 
 the case.
 """
 
+from dataclasses import asdict
 from operator import attrgetter
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,7 @@ from typing import Any
 import tomli_w
 
 from ..core.columns import regular
-from ..core.quantities import QUANTITIES
+from ..core.quantities import CLEARANCES, QUANTITIES
 from ..errors import InputError
 from .case import Case
 from .formations import file_degrees, formations_in_file
@@ -78,10 +79,14 @@ def _check_clearances(case: Case, path: str | Path) -> None:
     in Python may have a stabilizer that never touches the wall.
     """
     clearances, radius = case.bha.stabilizer_clearances, case.bit_diameter / 2
-    widest = max(clearances, default=0.0)
-    if widest >= radius:
-        key = f"bha.stabilizer_clearances[{clearances.index(widest) + 1}]"
-        raise InputError(f"{path}: {key}: must be < bit.diameter/2 = {radius:g}, got {widest!r}")
+    columns: dict[str, tuple[float, ...]] = {
+        f"bha.stabilizer_clearances[{i}]": (value,) for i, value in enumerate(clearances, 1)
+    }
+    if case.inputs is not None:
+        columns |= {f"drilling.schedule.{name}": column for name, column in case.inputs.inputs if name in CLEARANCES}
+    for key, values in columns.items():
+        if max(values) >= radius:
+            raise InputError(f"{path}: {key}: must be < bit.diameter/2 = {radius:g}, got {max(values)!r}")
 
 
 def parse_case(text: str, source: str | Path) -> Case:
@@ -154,6 +159,8 @@ def dump_case(case: Case, **run: str | None) -> str:
         document["drilling"]["schedule"] = {name: list(map(float, values)) for name, values in entries.items()}
         if case.inputs.interpolation != "held":
             document["drilling"]["interpolation"] = case.inputs.interpolation
+    if case.wear is not None:
+        document["bit"]["wear"] = asdict(case.wear)
     if case.formations:
         document["formation"] = formations_in_file(case.formations)
     facts = {key: text for key, text in run.items() if text is not None}

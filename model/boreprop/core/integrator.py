@@ -8,56 +8,29 @@ are the integrator's own: the bit may stop anywhere.
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import replace
 from math import isfinite, pi, sin
 from typing import Any
 
-from . import radau
 from .errors import CannotContinue
 from .events import Event, first_event
 from .hole import Drilled, Hole
 from .inputs import Inputs
 from .kinks import MERGE, SMOOTHEST_KINK, Kinks
 from .law import Law, Laws, bend
-from .modes import ROUNDING, Loads, Mode, Modes, Regime, bit_tilt, saturation
+from .modes import Loads, Mode, Modes, Regime, bit_tilt, saturation
 from .options import Options, Statistics
+from .plan import CLOSER, LARGEST_GROWTH, SMALLEST_GROWTH, Plan, growth
 from .problems import Problem
 from .step import Step, Trial, try_step
 from .survey import Survey
 
 LOOK_BACK = 1.0  # ℓ₁: how far behind the bit Θ may be asked for, as the curvature over the last ℓ₁ does
-SAFETY = 0.85  # of the step that the error estimate asks for, so that few of the next ones are rejected
-LARGEST_GROWTH = 8.0  # of a step over the last, as in RADAU5 (Hairer & Wanner, IV.8): an estimate reaches no farther
-SMALLEST_GROWTH = 0.1  # of a trial over a rejected one, for the same reason
-LEAST_ERROR = 1e-12  # of a trial, over the tolerance: it is not zero, and its growth is far above the largest
 STRETCH = 1.3  # how much longer than planned a step may be if it then ends on the next kink: one long step that may be
 # rejected is tried before two short ones
 LARGEST_INCLINATION = 2 * pi  # beyond a full turn nothing is drilled
-CLOSER = 8.0  # by this factor a step is tried shorter where each regime meets a bound before its first point, and the
-# slack by which values may lie beyond their bounds at the points is made larger; 2 to 64 serve as well
 MOST_SLACK = 1e-6  # of that slack: what needs more is no touch that rounding hides
 ORIGIN_LIMIT = 8.0  # |Y| beyond which the origin of Y is moved to the bit: rounding errors of Y stay below 1e-15
-
-
-@dataclass
-class Plan:
-    """How a step is tried, and tried again."""
-
-    h: float  # its length
-    resumed: float  # the length that may follow if a kink cuts it short
-    repeated: bool = False  # an earlier trial was no good: the next is never longer than planned
-    switches: int = 0  # of the regime where it starts
-    slack: float = ROUNDING  # by which its points may lie beyond a bound
-
-    def shorten(self, h: float) -> None:
-        """Try again, the error having been too large."""
-        self.h = self.resumed = h
-        self.repeated = True
-
-    def look_closer(self, h: float) -> None:
-        """Try again, each regime having met a bound before the first point."""
-        self.h, self.repeated, self.switches = h, True, 0
-        self.slack *= CLOSER
 
 
 class Integrator:
@@ -104,6 +77,7 @@ class Integrator:
         self.path = (0.0, 0.0)  # ∫ sin Θ dξ, ∫ cos Θ dξ up to the start of the present step
         self.origin = 0.0  # of Y
         self._accepted = self._rejected = self._events = 0
+        self.cleared = 0.0  # where the stabilizers got the clearances that they have
         self.kinks = Kinks(self.scaled.s)
         for kink, jump in self.hole.kinks:
             self.kinks.add_images(kink, 2, jump)
@@ -127,6 +101,22 @@ class Integrator:
                     self._steer(inputs)
                 self._take_steps(xi)
         self.xi = xi
+
+    def change_clearances(self, y_star: tuple[float, ...]) -> None:
+        """Let the stabilizers have other clearances from where the bit is; errors as in `drill`."""
+        with self._all_or_nothing():
+            loads, (theta, Y), inputs = self.loads(), self.present.state(self.xi), self._inputs_here()
+            Theta = self._inclination(theta, loads, inputs)
+            self._move_path(self.xi)
+            self.present = Step.standstill(self.xi, theta, Y)
+            self._clear(y_star, self.xi)
+            self._restart(loads, inputs, Theta)
+
+    def _clear(self, y_star: tuple[float, ...], xi: float) -> None:
+        self.cleared = xi
+        if y_star != self.scaled.y_star:
+            self.scaled = replace(self.scaled, y_star=y_star)
+            self.modes = Modes(self.scaled)
 
     def advance(self, xi: float) -> None:
         """Drill on to `xi` under the inputs as they are, see `drill`."""
@@ -159,13 +149,16 @@ class Integrator:
             raise failure from error
 
     def _take_steps(self, xi: float) -> None:
-        most = self.options.most_steps
-        hopeless = xi - self.xi > most * self.options.largest_step
-        last = self._accepted + most
+        last = self._accepted + self.options.most_steps
         while xi > self.present.end:
-            if hopeless or self._accepted == last:
-                raise CannotContinue(Problem("too many", limit=most, place=self.xi * self.length_scale))
+            self._check_way(xi, last)
             self._take_step()
+
+    def _check_way(self, xi: float, last: int) -> None:
+        """Raise unless so many steps at most may lead to `xi`."""
+        most = self.options.most_steps
+        if xi - self.xi > most * self.options.largest_step or self._accepted == last:
+            raise CannotContinue(Problem("too many", limit=most, place=self.xi * self.length_scale))
 
     def _steer(self, inputs: Inputs) -> None:
         """Take over inputs where the bit is. Where a slope or ε changes, the curvature jumps."""
@@ -210,7 +203,7 @@ class Integrator:
         hole = self.hole
         k = hole.find(xi + MERGE)
         drilled = hole.drilled[k]
-        if drilled is None:
+        if drilled is None or xi + MERGE < self.cleared:  # with other clearances its law was another
             return hole.Theta(xi)
         xi = max(xi, hole.starts[k])
         theta = drilled.at((xi - hole.starts[k]) * hole.rates[k])
@@ -254,6 +247,7 @@ class Integrator:
             "regime": self.regime,
             "path": self.path,
             "origin": self.origin,
+            "clearances": (self.scaled.y_star, self.cleared),
             "statistics": self.statistics,
             "kinks": self.kinks.save(),
             "step": self.present,
@@ -264,6 +258,8 @@ class Integrator:
         """Go back to a state from `save`, also after a journey through JSON."""
         self.xi, self.origin = state["xi"], state["origin"]
         self.path = (state["path"][0], state["path"][1])
+        y_star, cleared = state["clearances"]
+        self._clear(tuple(y_star), cleared)
         self._accepted, self._rejected, self._events = state["statistics"]
         self.kinks.restore(state["kinks"])
         xi, h, theta, Y, *rest = state["step"]
@@ -390,9 +386,3 @@ class Integrator:
 
     def _failure(self, code: str, xi: float) -> CannotContinue:
         return CannotContinue(Problem(code, limit=self.options.relative_tolerance, place=xi * self.length_scale))
-
-
-def growth(error: float) -> float:
-    """How much longer than a trial with this error, over the tolerance, the next one may be."""
-    grown: float = max(error, LEAST_ERROR) ** (-1 / (radau.S + 1))
-    return SAFETY * grown

@@ -57,6 +57,10 @@ OBSTACLES = {
         "from {place} m on, more than {limit} steps of the integrator would be needed in one call",
         "drill to a nearer length, change inputs less often, or raise relative_tolerance (--tolerance)",
     ),
+    "worn out": (
+        "from {place} m on the flats of the worn bit bear all of the active weight on bit",
+        "raise active_weight_on_bit, or lower bit.wear.largest_weight",
+    ),
     "no memory": (
         "there is too little memory for the hole behind the bit, at most {limit} pieces",
         "give a survey with fewer stations, or change inputs less often",

@@ -14,7 +14,7 @@ from typing import Any, Literal, NamedTuple
 Role = Literal["input", "output", "parameter", "case"]  # "case": only a case has it, an FMU has not
 Kind = Literal["Real", "Integer", "Boolean", "String"]
 Size = Literal[
-    "1", "n", "n-1", "uniform", "sections", "stepped", "axial", "points", "body", "column"
+    "1", "n", "n-1", "uniform", "sections", "stepped", "axial", "points", "body", "layered", "column"
 ]  # "column": as long as its table
 
 MAX_STABILIZERS = 6
@@ -32,6 +32,7 @@ class Structure(NamedTuple):
     sections: int = 0  # of the beam; none: it is uniform
     axial_load: int = 0  # 1: the load along the beam counts
     body_points: int = 0  # of the beam between the stabilizers, at which its body may touch the wall
+    layered: int = 0  # 1: rock comes in layers by true vertical depth
 
     @property
     def is_of_the_paper(self) -> bool:
@@ -48,7 +49,7 @@ class Structure(NamedTuple):
 @cache
 def counts(structure: Structure) -> dict[str, int]:
     """Size → how many values a quantity of that size has."""
-    n, sections, axial, points = structure
+    n, sections, axial, points, layered = structure
     return {
         "1": 1,
         "n": n,
@@ -60,6 +61,7 @@ def counts(structure: Structure) -> dict[str, int]:
         "axial": axial,
         "points": points,
         "body": int(bool(points)),
+        "layered": layered,
     }
 
 
@@ -82,6 +84,8 @@ class Quantity:
         Its value where a case does not give one.
     follows
         Of an output, the inputs and parameters that it follows at once, without any drilling.
+    tunable
+        Of a parameter, whether it may change along a run.
     slope
         Of an input, whether the engines also take its change per metre drilled; without it, it is held along a leg.
     key
@@ -105,6 +109,7 @@ class Quantity:
     start: float | str | None = None
     follows: tuple[str, ...] = ()
     slope: bool = False
+    tunable: bool = False
     key: str = ""
     field: str = ""
 
@@ -177,8 +182,10 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("true_vertical_depth", "output", "m", "z", "", "depth of the bit below the start of the run", nominal=100.0),
     Quantity("eta_pi", "output", "", "ηΠ", "(9)", "lateral penetration stiffness of the rock over the BHA's bending stiffness", nominal=0.01, follows=("active_weight_on_bit", "lateral_steering_resistance", "flexural_stiffness", "stabilizer_position")),
 
+    Quantity("formation", "output", "", "", "", "number of the formation by true vertical depth in which the bit is, from the top; 0 above the first", kind="Integer", size="layered", at_least=0),
+
     Quantity("stabilizer_position", "parameter", "m", "s_i", "", "distance of the stabilizer from the bit; the last one is ideal", size="n", above=0.0, nominal=10.0, key="bha.stabilizer_positions", field="bha.stabilizer_positions"),
-    Quantity("stabilizer_clearance", "parameter", "m", "y*_i", "(7)", "clearance between stabilizer and wall on each side", size="n-1", at_least=0.0, nominal=1e-3, key="bha.stabilizer_clearances", field="bha.stabilizer_clearances"),
+    Quantity("stabilizer_clearance", "parameter", "m", "y*_i", "(7)", "clearance between stabilizer and wall on each side", size="n-1", at_least=0.0, nominal=1e-3, tunable=True, key="bha.stabilizer_clearances", field="bha.stabilizer_clearances"),
     Quantity("rss_position", "parameter", "m", "Δ", "", "distance of the steering pads from the bit", at_least=0.0, key="bha.rss_position", field="bha.rss_position"),
     Quantity("distributed_weight", "parameter", "N/m", "w", "", "buoyant weight of the BHA per length", size="uniform", at_least=0.0, nominal=1e3, key="bha.distributed_weight", field="bha.distributed_weight"),
     Quantity("flexural_stiffness", "parameter", "N.m2", "EI", "", "bending stiffness of the BHA", size="uniform", above=0.0, nominal=1e7, key="bha.flexural_stiffness", field="bha.flexural_stiffness"),
@@ -202,6 +209,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("measured_depth", "case", "m", "", "", "stations along the existing hole, the last one is the bit if bit_depth does not say where it is", size="column", key="hole.measured_depth", field="survey.measured_depth"),
     Quantity("inclination", "case", "rad", "Θ", "", "inclination of the existing hole at each station", at_least=-pi, at_most=pi, size="column", key="hole.inclination_deg", field="survey.inclination"),
     Quantity("bit_depth", "case", "m", "", "", "measured depth of the bit at the start of the run; beyond the survey the hole is straight", nominal=1e3, key="hole.bit_depth"),
+    Quantity("bit_true_vertical_depth", "case", "m", "", "", "true vertical depth of the bit at the start of the run, from which those of formations count", nominal=1e3, start=0.0, key="hole.true_vertical_depth", field="true_vertical_depth"),
     Quantity("schedule_depth", "case", "m", "", "", "measured depths at which the forces begin, in place of drilled lengths", size="column", nominal=1e3, key="rss.measured_depth"),
     Quantity("full_force", "case", "N", "", "", "force of the steering pads at a duty of 1", at_least=0.0, nominal=1e4, key="rss.full_force"),
     Quantity("duty", "case", "", "", "", "share of the time in which the pads push to the side of the toolface", size="column", at_least=0.0, at_most=1.0, key="rss.duty"),
@@ -223,6 +231,8 @@ ACTING = tuple(name for q in INPUTS if q.field for name in ((q.name, f"{q.name}_
 """What an engine is given for a leg: the inputs where it starts, and the changes per metre of those that may change."""
 ROCK = tuple(q.name for q in INPUTS if q.part == "bit")
 """The inputs that say what bit and rock are like."""
+CLEARANCES = tuple(f"stabilizer_clearance[{i}]" for i in range(1, MAX_STABILIZERS))
+"""The clearances that a schedule may change, of as many stabilizers as there may be."""
 VARIABLES = INPUTS + OUTPUTS + PARAMETERS  # what an FMU has
 
 
@@ -233,7 +243,7 @@ def scalar_names(quantities: tuple[Quantity, ...], structure: int | Structure) -
 
 def names_of_runs(n: int) -> list[str]:
     """The scalar names of all inputs and outputs that a run with `n` stabilizers may have, whatever its beam."""
-    return scalar_names(INPUTS + OUTPUTS, Structure(n, axial_load=1, body_points=1))
+    return scalar_names(INPUTS + OUTPUTS, Structure(n, axial_load=1, body_points=1, layered=1))
 
 
 def quantity_of(scalar_name: str) -> Quantity:
@@ -243,7 +253,7 @@ def quantity_of(scalar_name: str) -> Quantity:
 
 def columns_of(table: str) -> tuple[str, ...]:
     """The columns, as people name them, of "hole" or "rss": tables of a case file that may be CSV files of their own."""
-    keys = (quantity.key.split(".") for quantity in QUANTITIES if quantity.key and quantity.field)
+    keys = (quantity.key.split(".") for quantity in QUANTITIES if quantity.key and quantity.part)
     return tuple(key for place, key in keys if place == table)
 
 

@@ -3,7 +3,7 @@
 #define BOREPROP_BIT_H
 
 #include "body.h"
-#include "events.h"
+#include "ground.h"
 
 /* Everything that evolves, but for what the rings of the hole and its kinks hold. A copy of it is a way back. */
 typedef struct {
@@ -11,9 +11,13 @@ typedef struct {
     ScaledInputs inputs;
     double inputs_xi; /* where they were taken over */
     Regime regime;
-    Places places;             /* of the regime */
-    double path[2];            /* ∫ sin Θ dξ, ∫ cos Θ dξ up to the start of the present step */
-    double origin[DIRECTIONS]; /* of the lateral coordinates */
+    Places places;                  /* of the regime */
+    double y_star[MAX_STABILIZERS]; /* clearances of the stabilizers, and … */
+    double cleared;                 /* … where they got them */
+    int layer;                      /* of the ground, in which the bit is, and … */
+    double stay;                    /* … where it may leave it again */
+    double path[2];                 /* ∫ sin Θ dξ, ∫ cos Θ dξ up to the start of the present step */
+    double origin[DIRECTIONS];      /* of the lateral coordinates */
     double cosine; /* of the inclination at which the weight acts along the beam; 0 if the axial load does not count */
     Step step;
     Hole hole;
@@ -42,11 +46,13 @@ typedef struct {
     Options options;
     State now;
     Surroundings around;
-    Count cursor[MAX_POINTS]; /* where the look-up of the hole at a point begins, as that at a place does */
-    Law law;                  /* of the present regime and inputs, */
-    int law_known;            /* if it is made already */
-    int under_way;            /* whether a call has set out and not yet arrived; then the way back leads to … */
-    State before;             /* … the state before it, */
+    Count cursor[MAX_POINTS];  /* where the look-up of the hole at a point begins, as that at a place does */
+    Law law;                   /* of the present regime and inputs, */
+    int law_known;             /* if it is made already */
+    double exit;               /* where the bit leaves its layer of the ground in the present step, … */
+    int exit_side, exit_known; /* … on this side, if it does, and if that is known already */
+    int under_way;             /* whether a call has set out and not yet arrived; then the way back leads to … */
+    State before;              /* … the state before it, */
     Surroundings around_before;
     Kink last_kink; /* with its last kink, whose jump may have changed since */
 } Integrator;
@@ -82,6 +88,15 @@ static inline void bear(Integrator *p, double W) {
     Axial axial = {W, p->now.cosine};
     if (axial.W == p->modes.axial.W && axial.cosine == p->modes.axial.cosine) return;
     load_beam(&p->modes, &p->scaled, axial);
+    p->law_known = 0;
+}
+
+/* Let the stabilizers have the clearances of the present state. */
+static inline void clear(Integrator *p) {
+    size_t size = (size_t)(p->scaled.n - 1) * sizeof(double);
+    if (!memcmp(p->modes.y_star, p->now.y_star, size)) return;
+    memcpy(p->modes.y_star, p->now.y_star, size);
+    p->modes.count = p->modes.next = 0;
     p->law_known = 0;
 }
 

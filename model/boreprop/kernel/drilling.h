@@ -9,9 +9,10 @@ enum { LEAST_CAPACITY = 1024, MOST_PIECES = 1 << 19 }; /* of hole */
 /* A borehole as it is drilled, from the end of the survey on. */
 typedef struct {
     System system;
-    double drilled_length;  /* m */
-    Inputs given;           /* the inputs that were given last, and … */
-    ScaledInputs scaled;    /* … what they are in the paper's numbers */
+    double drilled_length; /* m */
+    Inputs given;          /* the inputs that were given last, and … */
+    ScaledInputs scaled;   /* … what they are in the paper's numbers */
+    Ground ground;
     double buckling_weight; /* over F*: under it the BHA buckles; infinite if the axial load does not count */
     Integrator integrator;
 } Drilling;
@@ -97,10 +98,10 @@ static inline void drilling_move(Drilling *d, void *memory, Count capacity) {
     move_rings(&d->integrator, memory, kinks_in(memory, capacity), capacity);
 }
 
-/* Prepare a drilling system, to be followed by `drilling_start` or `drilling_restore`. The memory must live on. The
-   tolerance of the system takes the place of that of the options. */
+/* Prepare a drilling system, to be followed by `drilling_start` or `drilling_restore`. The memory, and the numbers of the
+   ground, must live on. The tolerance of the system takes the place of that of the options. */
 static inline Status drilling_prepare(
-    Drilling *d, const System *system, Options options, void *memory, Count capacity, Problem *problem
+    Drilling *d, const System *system, Ground ground, Options options, void *memory, Count capacity, Problem *problem
 ) {
     if (!check_system(system, problem)) return FAILED;
     if (!check_positive(Q_FORCE_SCALE, force_scale(system), problem)) return FAILED;
@@ -108,7 +109,7 @@ static inline Status drilling_prepare(
     if (!check_finite(Q_SCALED_REACH, 0, scaled.s[scaled.n - 1], problem) ||
         !check_finite(Q_SCALED_WEIGHT, 0, scaled.w, problem))
         return FAILED;
-    d->system = *system;
+    d->system = *system, d->ground = ground;
     d->drilled_length = 0.0;
     d->given.rss_force = (double)NAN;
     options.relative_tolerance = system->relative_tolerance;
@@ -122,9 +123,39 @@ static inline Status drilling_prepare(
 static inline Status drilling_start(Drilling *d, const Survey *survey, Inputs inputs, Problem *problem) {
     if (!check_survey(survey, problem)) return FAILED;
     take_cosine(d, cos(survey->inclination[survey->count - 1]));
-    if (!take_given(d, inputs, problem)) return FAILED;
+    int layer = d->integrator.now.layer = first_layer(&d->ground);
+    if (!take_given(d, d->ground.there ? rock_in(&d->ground, layer, inputs) : inputs, problem)) return FAILED;
     if (d->integrator.now.hole.capacity < drilling_capacity(&d->system, survey)) return FULL;
     return begin(&d->integrator, survey, d->scaled, problem);
+}
+
+/* Drill on to `xi` through the ground, under inputs that are given for a sharp bit and the rock without layers; as `drill`. */
+static inline Status drill_through(Drilling *d, double xi, Inputs given, Problem *problem) {
+    Integrator *p = &d->integrator;
+    State *now = &p->now;
+    double l1 = length_scale(&d->system), start = d->drilled_length / l1, end;
+    int left;
+    if (!set_out(p)) return FULL;
+    if (d->system.structure.axial) given.weight_on_bit = whole_weight(given);
+    do {
+        double until, way = (now->xi - start) * l1;
+        Inputs inputs = rock_in(&d->ground, now->layer, given);
+        inputs.rss_force += inputs.rss_force_slope * way;
+        inputs.active_weight_on_bit += inputs.active_weight_on_bit_slope * way;
+        int good = wear_off(&d->ground, now->xi * l1, xi * l1, &inputs, &until, problem);
+        Status status = good && take_given(d, inputs, problem) ? DONE : FAILED;
+        end = smaller(xi, until / l1);
+        if (status == DONE && are_others(now, d->scaled, end - now->xi)) {
+            if (!has_room(p)) return FULL;
+            status = steer(p, d->scaled, problem);
+        }
+        if (status == DONE) status = drill_in_layer(p, &d->ground, end, &left, problem);
+        if (status == FAILED) go_back(p);
+        if (status != DONE) return status;
+        if (!left) now->xi = end;
+    } while (left || end < xi);
+    p->under_way = 0;
+    return DONE;
 }
 
 /* Drill on to a length, m from the start, under inputs from here; where the bit is, only they are taken over.
@@ -134,9 +165,29 @@ static inline Status drilling_advance(Drilling *d, double drilled_length, Inputs
     if (!check_number(Q_DRILLED_LENGTH, 0, drilled_length, -INFINITY, d->drilled_length, INFINITY, problem))
         return FAILED;
     double xi = drilled_length / length_scale(&d->system);
-    Status status = drill(&d->integrator, xi, d->scaled, problem);
+    Status status =
+        d->ground.there ? drill_through(d, xi, inputs, problem) : drill(&d->integrator, xi, d->scaled, problem);
     if (status == DONE) d->drilled_length = drilled_length;
     return status;
+}
+
+/* Whether clearances, m, are others than those that the stabilizers have. */
+static inline int has_other_clearances(const Drilling *d, const double *clearances) {
+    for (int i = 0; i < d->system.structure.n - 1; i++)
+        if (clearances[i] / length_scale(&d->system) != d->integrator.now.y_star[i]) return 1;
+    return 0;
+}
+
+/* Let the stabilizers have other clearances, m, from where the bit is; after FULL as `drilling_advance`. */
+static inline Status drilling_change_clearances(Drilling *d, const double *clearances, Problem *problem) {
+    double y_star[MAX_STABILIZERS] = {0};
+    if (!has_other_clearances(d, clearances)) return DONE;
+    for (int i = 0; i < d->system.structure.n - 1; i++) {
+        if (!check_number(Q_STABILIZER_CLEARANCE, i + 1, clearances[i], -INFINITY, 0.0, INFINITY, problem))
+            return FAILED;
+        y_star[i] = clearances[i] / length_scale(&d->system);
+    }
+    return change_clearances(&d->integrator, y_star, problem);
 }
 
 /* Drill on to the end of the next step, under the inputs as they are; after FULL as `drilling_advance`. */
@@ -217,6 +268,7 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_DISPLACEMENT: return at->x * l1;
         case OUT_TRUE_VERTICAL_DEPTH: return at->z * l1;
         case OUT_ETA_PI: return at->eta_pi;
+        case OUT_FORMATION: return d->integrator.now.layer;
     }
     return NAN;
 }

@@ -39,6 +39,7 @@ SIZES = {
     "axial": "IF_AXIAL",
     "points": "EACH_POINT",
     "body": "IF_POINTS",
+    "layered": "IF_LAYERED",
 }
 ROOMS = {
     "n": "[MAX_STABILIZERS]",
@@ -46,7 +47,7 @@ ROOMS = {
     "sections": "[MAX_SECTIONS]",
     "points": "[MAX_POINTS]",
 }
-LARGEST = Structure(MAX_STABILIZERS, MAX_SECTIONS, 1, MAX_POINTS)
+LARGEST = Structure(MAX_STABILIZERS, MAX_SECTIONS, 1, MAX_POINTS, 1)
 
 NAMES = {quantity.name: quantity.name for quantity in QUANTITIES} | {
     **{name: name for name in (f"{quantity.name}_slope" for quantity in INPUTS if quantity.slope)},
@@ -86,6 +87,7 @@ typedef struct {{
     int n, sections; /* numbers of stabilizers and of sections */
     int axial;       /* whether the load along the beam counts */
     int points;      /* number of points at which the body between the stabilizers may touch the wall */
+    int layered;     /* whether rock comes in layers by true vertical depth */
 }} Structure;
 
 /* The parameters, in SI units. */

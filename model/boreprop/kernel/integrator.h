@@ -199,6 +199,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     if (status != DONE) return status;
     Step *step = &now->step;
     *step = trial.step;
+    p->exit_known = 0;
     step->next_h =
         larger(plan.h < plan.resumed ? plan.resumed : 0.0, plan.h * smaller(growth(trial.error), LARGEST_GROWTH));
     step_state(step, step->end, end);
@@ -217,8 +218,9 @@ static inline void go_back(Integrator *p) {
     p->now = p->before;
     copy_around(&p->around, &p->around_before, p->scaled.points);
     *kink(&p->now.kinks, p->now.kinks.end - 1) = p->last_kink;
-    p->law_known = p->under_way = 0;
+    p->law_known = p->exit_known = p->under_way = 0;
     bear(p, p->now.inputs.W);
+    clear(p);
 }
 
 /* Remember the state where a call sets out; 0 if the rings have no room. */

@@ -28,6 +28,7 @@ typedef enum {
     NO_MODE,
     TOO_CROWDED,
     TOO_MANY,
+    WORN_OUT,
     NO_MEMORY,
     CODE_COUNT
 } Code;
@@ -60,6 +61,7 @@ typedef enum {
     Q_DISPLACEMENT,
     Q_TRUE_VERTICAL_DEPTH,
     Q_ETA_PI,
+    Q_FORMATION,
     Q_STABILIZER_POSITION,
     Q_STABILIZER_CLEARANCE,
     Q_RSS_POSITION,
@@ -84,6 +86,7 @@ typedef enum {
     Q_MEASURED_DEPTH,
     Q_INCLINATION,
     Q_BIT_DEPTH,
+    Q_BIT_TRUE_VERTICAL_DEPTH,
     Q_SCHEDULE_DEPTH,
     Q_FULL_FORCE,
     Q_DUTY,
@@ -140,6 +143,7 @@ static const char *const SENTENCE[CODE_COUNT] = {
     "no contacts are found that hold at {place} m: change relative_tolerance (--tolerance), now {limit}",
     "more than {limit} supports touch the wall, or are near it, at {place} m: put fewer points on the body (bha.body_contact_spacing)",
     "from {place} m on, more than {limit} steps of the integrator would be needed in one call: drill to a nearer length, change inputs less often, or raise relative_tolerance (--tolerance)",
+    "from {place} m on the flats of the worn bit bear all of the active weight on bit: raise active_weight_on_bit, or lower bit.wear.largest_weight",
     "there is too little memory for the hole behind the bit, at most {limit} pieces: give a survey with fewer stations, or change inputs less often",
 };
 
@@ -170,6 +174,7 @@ static const char *const NAME[NAME_COUNT] = {
     "displacement",
     "true_vertical_depth",
     "eta_pi",
+    "formation",
     "stabilizer_position",
     "stabilizer_clearance",
     "rss_position",
@@ -194,6 +199,7 @@ static const char *const NAME[NAME_COUNT] = {
     "measured_depth",
     "inclination",
     "bit_depth",
+    "bit_true_vertical_depth",
     "schedule_depth",
     "full_force",
     "duty",

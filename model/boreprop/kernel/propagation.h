@@ -24,7 +24,7 @@ static inline double inclination_under(Integrator *p, double theta, const Loads 
 static inline double earlier_inclination(Integrator *p, double xi) {
     const Hole *hole = &p->now.hole;
     const Piece *at = piece(hole, find(hole, xi + MERGE));
-    if (at->inputs.eta_pi == 0 || p->scaled.points) { /* Θ is the slope of the hole */
+    if (at->inputs.eta_pi == 0 || p->scaled.points || xi + MERGE < p->now.cleared) { /* Θ is the slope of the hole */
         const Piece *own = piece(hole, find(hole, xi));
         return polynomial_slope(own->x[LATERAL], (xi - own->start) * own->rate) * own->rate;
     }
@@ -54,6 +54,7 @@ static inline Status restart(
     State *now = &p->now;
     now->inputs = inputs, now->inputs_xi = now->xi;
     now->step = standstill(now->xi, x);
+    p->exit_known = 0;
     bear(p, inputs.W);
     if (p->scaled.points && touch_down(p, now->xi, x, problem) != DONE) return FAILED;
     Loads loads = loads_at(p, now->xi, x, inputs.F_rss);
@@ -101,14 +102,19 @@ static inline Status steer(Integrator *p, ScaledInputs inputs, Problem *problem)
     return DONE;
 }
 
+/* Whether other inputs than those along the next `way` act from where the bit is. */
+static inline int are_others(const State *now, ScaledInputs inputs, double way) {
+    int changed = inputs.F_rss != now->inputs.F_rss || inputs.eta_pi != now->inputs.eta_pi;
+    if (are_ramps(&inputs) || are_ramps(&now->inputs))
+        changed = !same_ramps(inputs_here(now), inputs, way > 0 ? way : 1.0);
+    changed |= inputs.epsilon != now->inputs.epsilon || inputs.psi_star != now->inputs.psi_star;
+    return changed || inputs.W != now->inputs.W;
+}
+
 /* Drill on to `xi` under inputs that act from where the bit is. After FULL the same call goes on in larger rings. */
 static inline Status drill(Integrator *p, double xi, ScaledInputs inputs, Problem *problem) {
     State *now = &p->now;
-    int changed = inputs.F_rss != now->inputs.F_rss || inputs.eta_pi != now->inputs.eta_pi;
-    if (are_ramps(&inputs) || are_ramps(&now->inputs))
-        changed = !same_ramps(inputs_here(now), inputs, xi > now->xi ? xi - now->xi : 1.0);
-    changed |= inputs.epsilon != now->inputs.epsilon || inputs.psi_star != now->inputs.psi_star;
-    changed |= inputs.W != now->inputs.W;
+    int changed = are_others(now, inputs, xi - now->xi);
     if (changed || xi > now->step.end) {
         if (!set_out(p)) return FULL;
         Status status = changed ? steer(p, inputs, problem) : DONE;
@@ -118,6 +124,53 @@ static inline Status drill(Integrator *p, double xi, ScaledInputs inputs, Proble
         p->under_way = 0;
     }
     now->xi = xi;
+    return DONE;
+}
+
+/* Let the stabilizers have other clearances from where the bit is. After FULL the same call goes on. */
+static inline Status change_clearances(Integrator *p, const double *y_star, Problem *problem) {
+    State *now = &p->now;
+    double x[COMPONENTS];
+    if (!set_out(p) || !has_room(p)) return FULL;
+    ScaledInputs inputs = inputs_here(now);
+    Loads loads = present_loads(p);
+    step_state(&now->step, now->xi, x);
+    double Theta = inclination_under(p, x[ANGLE], &loads, inputs);
+    move_path(now, now->xi);
+    memcpy(now->y_star, y_star, (size_t)(p->scaled.n - 1) * sizeof *y_star);
+    now->cleared = now->xi;
+    clear(p);
+    Status status = restart(p, inputs, x, Theta, problem);
+    if (status != DONE) go_back(p);
+    p->under_way = 0;
+    return status;
+}
+
+/* Take steps up to `end`, but no farther than where the bit leaves its layer of the ground: `left` says whether it did.
+   After FULL the same call goes on. */
+static inline Status drill_in_layer(Integrator *p, const Ground *ground, double end, int *left, Problem *problem) {
+    State *now = &p->now;
+    double last = p->before.accepted + p->options.most_steps, l1 = p->length_scale, x, z;
+    double top = layer_top(ground, now->layer) / l1, bottom = layer_bottom(ground, now->layer) / l1;
+    for (;;) {
+        double begin = larger(now->step.xi, now->stay);
+        if (!p->exit_known) p->exit_side = first_exit(&now->step, now->path[1], top, bottom, begin, &p->exit);
+        p->exit_known = 1;
+        *left = p->exit <= end ? p->exit_side : 0;
+        if (*left) break;
+        if (end <= now->step.end) return DONE;
+        if (end - now->xi > p->options.most_steps * p->options.largest_step || now->accepted >= last)
+            return too_many(p, problem);
+        Status status = take_step(p, problem);
+        if (status != DONE) return status;
+    }
+    now->xi = p->exit, now->layer += *left;
+    position(now, &x, &z);
+    while (*left > 0 ? z * l1 - layer_bottom(ground, now->layer) > AT_TOP /* through a thin layer */
+                     : layer_top(ground, now->layer) - z * l1 > AT_TOP)
+        now->layer += *left;
+    now->stay = now->xi + STAY / l1;
+    p->exit_known = 0;
     return DONE;
 }
 
@@ -136,10 +189,11 @@ static inline Status drill_step(Integrator *p, Problem *problem) {
 static inline void prepare(Integrator *p, const Scaled *scaled, double length_scale, Options options) {
     Axial unloaded = {0.0, 0.0};
     memset(&p->now, 0, sizeof p->now);
-    p->law_known = p->under_way = 0;
+    p->law_known = p->exit_known = p->under_way = 0;
     p->scaled = *scaled;
     load_beam(&p->modes, scaled, unloaded);
     memcpy(p->modes.y_star, scaled->y_star, sizeof p->modes.y_star);
+    memcpy(p->now.y_star, scaled->y_star, sizeof p->now.y_star);
     p->length_scale = length_scale, p->options = options;
 }
 

@@ -8,20 +8,21 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "4864b0c7249f8d4b" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "b0b083401e1bd995" /* of this file, but for this line, and of problems.h */
 #define MOST_DRILLED 100000.0 /* m in a communication step */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: forces between closer ones are rounding errors */
 #define POINTS_ALONG_BHA 36 /* at which its distance from the hole is looked at */
 #define OFTEN 0.125 /* of its length, at most, from look to look */
 
 enum { MAX_STABILIZERS = 6, MAX_SECTIONS = 24, MAX_POINTS = 128 };
-enum { PARAMETER_COUNT = 12, INPUT_COUNT = 7, OUTPUT_COUNT = 18 };
+enum { PARAMETER_COUNT = 12, INPUT_COUNT = 7, OUTPUT_COUNT = 19 };
 
 /* How a drilling system is made up, which says how many values each quantity has. */
 typedef struct {
     int n, sections; /* numbers of stabilizers and of sections */
     int axial;       /* whether the load along the beam counts */
     int points;      /* number of points at which the body between the stabilizers may touch the wall */
+    int layered;     /* whether rock comes in layers by true vertical depth */
 } Structure;
 
 /* The parameters, in SI units. */
@@ -54,7 +55,7 @@ typedef struct {
 } Inputs;
 
 /* How many values a quantity has. */
-typedef enum { ONE, EACH_STABILIZER, EACH_NON_IDEAL, IF_UNIFORM, EACH_SECTION, IF_STEPPED, IF_AXIAL, EACH_POINT, IF_POINTS } Size;
+typedef enum { ONE, EACH_STABILIZER, EACH_NON_IDEAL, IF_UNIFORM, EACH_SECTION, IF_STEPPED, IF_AXIAL, EACH_POINT, IF_POINTS, IF_LAYERED } Size;
 
 /* A parameter or input, and its range: above < value, at_least <= value <= at_most. */
 typedef struct {
@@ -110,6 +111,7 @@ typedef enum {
     OUT_DISPLACEMENT, /* m: horizontal position of the bit from the start of the run */
     OUT_TRUE_VERTICAL_DEPTH, /* m: depth of the bit below the start of the run */
     OUT_ETA_PI, /* lateral penetration stiffness of the rock over the BHA's bending stiffness */
+    OUT_FORMATION, /* number of the formation by true vertical depth in which the bit is, from the top; 0 above the first */
 } Output;
 static const Size OUTPUT_SIZE[OUTPUT_COUNT] = {
     ONE, /* drilled_length */
@@ -130,6 +132,7 @@ static const Size OUTPUT_SIZE[OUTPUT_COUNT] = {
     ONE, /* displacement */
     ONE, /* true_vertical_depth */
     ONE, /* eta_pi */
+    IF_LAYERED, /* formation */
 };
 static const Name OUTPUT_NAME[OUTPUT_COUNT] = {
     Q_DRILLED_LENGTH,
@@ -150,9 +153,10 @@ static const Name OUTPUT_NAME[OUTPUT_COUNT] = {
     Q_DISPLACEMENT,
     Q_TRUE_VERTICAL_DEPTH,
     Q_ETA_PI,
+    Q_FORMATION,
 };
-static const int OUTPUT_IS_WHOLE[OUTPUT_COUNT] = { 0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0 };
-enum { MOST_PARAMETERS = 344, MOST_OUTPUTS = 35 }; /* values, of the largest assembly */
+static const int OUTPUT_IS_WHOLE[OUTPUT_COUNT] = { 0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1 };
+enum { MOST_PARAMETERS = 344, MOST_OUTPUTS = 36 }; /* values, of the largest assembly */
 
 /* How the integrator takes its steps: core/options.py says what each is. */
 typedef struct {

@@ -91,6 +91,10 @@ static inline void pass_snapshot(Tape *tape, const Scaled *scaled, Snapshot *sna
     pass(tape, 1, &now->inputs.W);
     pass(tape, 1, &now->cosine);
     pass(tape, 1, &now->inputs_xi);
+    now->layer = (int)pass_whole(tape, now->layer, 0, MOST_PIECES);
+    pass(tape, 1, &now->stay);
+    pass(tape, 1, &now->cleared);
+    pass(tape, n - 1, now->y_star);
     pass(tape, 2, now->path);
     pass(tape, DIRECTIONS, now->origin);
     pass(tape, 1, &step->xi);
@@ -150,6 +154,9 @@ static inline int is_consistent(const Drilling *d, const Snapshot *snapshot) {
     if (d->system.structure.axial ? !(now->inputs.W > 0) || !(fabs(now->cosine) <= 1)
                                   : now->inputs.W != 0 || now->cosine != 0)
         return 0;
+    if (now->layer > d->ground.layers || now->cleared > xi) return 0;
+    for (int i = 0; i < d->system.structure.n - 1; i++)
+        if (!(now->y_star[i] >= 0)) return 0;
     if (step->xi > xi || xi > step->end || !(step->h > 0) || !(step->next_h > 0)) return 0;
     return snapshot->passed[d->system.structure.n - 1] == 0; /* the last stabilizer is the last to pass a kink */
 }
@@ -218,9 +225,10 @@ static inline void become(Drilling *d, const Snapshot *snapshot, Tape tape) {
     p->now = snapshot->now, p->now.hole = hole, p->now.kinks = kinks, p->around = snapshot->around;
     find_places(&p->now, &p->scaled, p->now.step.xi);
     memcpy(p->now.kinks.ahead, snapshot->passed, sizeof p->now.kinks.ahead);
-    p->law_known = p->under_way = 0;
+    p->law_known = p->exit_known = p->under_way = 0;
     if (p->now.cosine != cosine) take_cosine(d, p->now.cosine);
     bear(p, p->now.inputs.W);
+    clear(p);
 }
 
 /* Go back to a state that this run has saved itself. */

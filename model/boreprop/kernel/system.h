@@ -46,6 +46,7 @@ static inline int value_count(Size size, Structure structure) {
         case IF_AXIAL: return structure.axial;
         case EACH_POINT: return structure.points;
         case IF_POINTS: return structure.points > 0;
+        case IF_LAYERED: return structure.layered;
     }
     return 0;
 }
