@@ -16,7 +16,7 @@ from ..core.options import Options, Statistics
 from ..core.problems import SENTENCES, Problem
 from ..core.quantities import ACTING, OUTPUTS, scalar_names, values_of
 from ..core.survey import Survey
-from ..core.system import BitRock, BottomHoleAssembly
+from ..core.system import BitRock, BottomHoleAssembly, check_in_plane
 from .compiler import library_path, sources_digest
 from .generate import NAMES, SYSTEM, quantities_digest
 
@@ -220,6 +220,7 @@ class NativeDrilling:
         options: Options = Options(),  # noqa: B008 - frozen
         ground: Ground | None = None,
     ) -> None:
+        check_in_plane(bit)
         structure = bha.structure._replace(layered=int(ground is not None and bool(ground.tops)))
         layers = None if ground is None else numbers(ground.numbers)
         given = values_of("bha", bha) | {"relative_tolerance": options.relative_tolerance}
