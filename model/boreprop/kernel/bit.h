@@ -12,7 +12,7 @@ typedef struct {
     double inputs_xi; /* where they were taken over */
     Regime regime;
     Places places;             /* of the regime */
-    double path[2];            /* ∫ sin Θ dξ, ∫ cos Θ dξ up to the start of the present step */
+    double path[AXES];         /* from the start of the run to that of the present step: sideways and down */
     double origin[DIRECTIONS]; /* of the lateral coordinates */
     double cosine; /* of the inclination at which the weight acts along the beam; 0 if the axial load does not count */
     Step step;

@@ -20,7 +20,6 @@
 #define CLOSER 8.0
 #define MOST_SLACK 1e-6                       /* of that slack */
 #define ORIGIN_LIMIT 8.0                      /* |Y| beyond which the origin of Y is moved to the bit */
-#define LARGEST_INCLINATION 6.283185307179586 /* beyond a full turn nothing is drilled */
 
 /* Go to the regime on the other side of the bound that a step has met. */
 static inline void pass_event(Integrator *p, const Step *step) {
@@ -28,11 +27,7 @@ static inline void pass_event(Integrator *p, const Step *step) {
 }
 
 /* Go on along the path to `xi` in the present step. */
-static inline void move_path(State *now, double xi) {
-    double x, z;
-    displacement(&now->step, xi, &x, &z);
-    now->path[0] += x, now->path[1] += z;
-}
+static inline void move_path(State *now, double xi) { move_along(&now->step, xi, now->path); }
 
 /* Move the origin of the lateral coordinates to the bit, where the state is `x`, if it is far. */
 static inline void keep_origin_near(State *now, double x[COMPONENTS]) {
@@ -107,10 +102,9 @@ static inline void choose_length(const Integrator *p, const Law *law, double xi,
 static inline void try_step(
     const Integrator *p, const Law *law, double xi, double h, const double x[COMPONENTS], Trial *trial
 ) {
-    Step step = {xi, h, {{0}}, xi + h, NONE, 0, INFINITY};
-    trial->step = step;
+    trial->step = next_step(&p->now.step, xi, h);
     look_up(&p->now.hole, &p->now.places, trial);
-    law_try(law, &p->options, x, trial);
+    law_try(law, &p->options, &p->now.step, x, trial);
 }
 
 /* Whether the numbers of a trial step are finite. */
@@ -202,8 +196,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     step->next_h =
         larger(plan.h < plan.resumed ? plan.resumed : 0.0, plan.h * smaller(growth(trial.error), LARGEST_GROWTH));
     step_state(step, step->end, end);
-    for (int c = ANGLE; c < LATERAL; c++)
-        if (!(fabs(end[c]) <= LARGEST_INCLINATION)) return failed(p, TURNS_OVER, step->end, problem);
+    if (turns_over(present_law(p), &trial, end)) return failed(p, TURNS_OVER, step->end, problem);
     append(&now->hole, step, inputs_ahead(now->inputs, last.end - now->inputs_xi));
     if (kink <= SMOOTHEST_KINK)
         add_kink(&now->kinks, p->scaled.n, last.end, kink, step_jump(&last, step, kink, last.end));

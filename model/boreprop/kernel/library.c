@@ -11,7 +11,7 @@ Run *boreprop_start(
     const int structure[4], const double *parameters, const Options *options, Count count, const double *measured_depth,
     const double *inclination, const Inputs *inputs, Problem *problem
 ) {
-    Survey survey = {count, measured_depth, inclination};
+    Survey survey = {count, measured_depth, inclination, NULL};
     Structure made = {structure[0], structure[1], structure[2], structure[3]};
     System system = system_of(made, parameters);
     Run *run = calloc(1, sizeof *run);

@@ -3,6 +3,7 @@
 #define BOREPROP_SYSTEM_H
 
 #include "checks.h"
+#include "dimensions.h"
 #include "linear.h"
 #include "quantities.h"
 
@@ -32,6 +33,7 @@ typedef struct {
     double section_w[MAX_SECTIONS];    /* its w̃ */
     double end_deflection;             /* δ_n */
     int stepped, axial;                /* whether the beam has sections or bears an axial load; whether it bears one */
+    double walk;                       /* ϖ */
 } Scaled;
 
 /* How many values a quantity has. */
@@ -144,10 +146,16 @@ static inline double force_scale(const System *system) {
     return 3.0 * system->flexural_stiffness / (length_scale(system) * length_scale(system));
 }
 
+/* From which side the toolface counts. */
+enum { FROM_HIGH_SIDE, FROM_NORTH, FROM_FRAME };
+
 /* The inputs where they were taken over: F_RSS and ηΠ, their changes per ξ, the ε = χ/η and ψ* of bit and rock, and the
    weight on the bit W, which is zero if the axial load does not count. */
 typedef struct {
     double F_rss, F_rss_slope, eta_pi, eta_pi_slope, epsilon, psi_star, W;
+#ifdef SPACE
+    double toolface, reference;
+#endif
 } ScaledInputs;
 
 /* The inputs a length `ahead` of where they were taken over. */
@@ -155,6 +163,16 @@ static inline ScaledInputs inputs_ahead(ScaledInputs inputs, double ahead) {
     inputs.F_rss += inputs.F_rss_slope * ahead;
     inputs.eta_pi += inputs.eta_pi_slope * ahead;
     return inputs;
+}
+
+/* Whether the pads aim at another side. */
+static inline int aims_anew(const ScaledInputs *inputs, const ScaledInputs *before) {
+#ifdef SPACE
+    return inputs->toolface != before->toolface || inputs->reference != before->reference;
+#else
+    (void)inputs, (void)before;
+    return 0;
+#endif
 }
 
 /* Whether inputs change along the way. */
