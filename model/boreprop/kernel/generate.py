@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import astuple, fields
+from fractions import Fraction
 from functools import cache
 from hashlib import sha256
 
@@ -216,8 +217,20 @@ static const double COEFFICIENTS[S][S] = {COEFFICIENTS};
 /* Parts of W times SLOPE[part]: its derivative at the check. */
 static const double SLOPE[S] = {SLOPE};
 
+/* Values at the nodes, less the start, times DIFFERENCE[node k][j]: the polynomial's derivative at node k, times h. */
+static const double DIFFERENCE[S][S] = {DIFFERENCE};
+
+/* The same times POLYNOMIAL[j][m]: its coefficient of t^(m+1). */
+static const double POLYNOMIAL[S][S] = {POLYNOMIAL};
+
 /* Values of f at the points times INTO_PARTS[point][part]: a part of f, in which the check has no share. */
 static const double INTO_PARTS[POINTS][S] = {INTO_PARTS};
+
+/* Values at the nodes, less the start, times DIFFERENCE[node][j]: the derivative at a node, times h. */
+static const double DIFFERENCE[S][S] = {DIFFERENCE};
+
+/* The same times POLYNOMIAL[j][m]: coefficient of t^(m+1). */
+static const double POLYNOMIAL[S][S] = {POLYNOMIAL};
 
 /* clang-format on */
 
@@ -308,6 +321,8 @@ def _bound(value: float) -> str:
 
 def radau_tables() -> str:
     """The header radau_tables.h."""
+    nodes = [point for k, point in enumerate(radau.POINTS) if k != radau.AT_CHECK]
+    interpolating = [_interpolating(nodes, node) for node in nodes]
     return RADAU_TABLES.format(
         S=radau.S,
         points=len(radau.POINTS),
@@ -319,7 +334,23 @@ def radau_tables() -> str:
         COEFFICIENTS=_columns(radau.COEFFICIENTS),
         SLOPE=_row(radau.SLOPE),
         INTO_PARTS=_columns(radau.INTO_PARTS),
+        DIFFERENCE=_rows([[_slope(own, node) for own in interpolating] for node in nodes]),
+        POLYNOMIAL=_rows([[float(coefficient) for coefficient in own[1:]] for own in interpolating]),
     )
+
+
+def _interpolating(nodes: Sequence[float], own: float) -> list[Fraction]:
+    """Coefficients of t^0 … of the polynomial that is one at a node, and zero at 0 and at the others."""
+    found = [Fraction(0), 1 / Fraction(own)]
+    for node in nodes:
+        if node != own:
+            scale = Fraction(own) - Fraction(node)
+            found = [(a - Fraction(node) * b) / scale for a, b in zip([Fraction(0), *found], [*found, Fraction(0)], strict=True)]
+    return found
+
+
+def _slope(polynomial: Sequence[Fraction], t: float) -> float:
+    return float(sum(m * coefficient * Fraction(t) ** (m - 1) for m, coefficient in enumerate(polynomial) if m))
 
 
 def _row(numbers: Sequence[float]) -> str:

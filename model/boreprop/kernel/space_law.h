@@ -39,7 +39,7 @@ typedef struct {
 typedef struct {
     int count, n, saturated, axial;
     const Beam *beam;
-    double y_star[MAX_STABILIZERS], walk_cosine, walk_sine;
+    double s_1, s_n, y_star[MAX_STABILIZERS], walk_cosine, walk_sine;
     ScaledInputs inputs;
     double inputs_xi; /* where the inputs are those that it was made under */
     double longest;   /* step under a changing ηΠ */
@@ -84,6 +84,7 @@ static inline void make_law(
     int n = scaled->n;
     law->count = places->count, law->n = n, law->axial = scaled->axial, law->saturated = regime.saturation != 0;
     law->beam = &modes->beam, law->inputs = inputs, law->inputs_xi = inputs_xi, law->bound_count = 0;
+    law->s_1 = scaled->s[0], law->s_n = scaled->s[n - 1];
     law->walk_cosine = cos(scaled->walk), law->walk_sine = sin(scaled->walk);
     law->longest = growth == 0 ? INFINITY : LONGEST_RAMP / growth;
     law->M = linear_of(&mode->M, places), law->F_0 = linear_of(&mode->F_0, places);
@@ -240,7 +241,7 @@ static inline int law_here(
 ) {
     ScaledInputs inputs = inputs_ahead(law->inputs, ahead);
     int n = law->n, m = law->touching.touching;
-    double a[2], eta_pi = inputs.eta_pi, by_F_0[2][2], answer[MOST_TOUCHING][MOST_TOUCHING];
+    double a[2], eta_pi = at->eta_pi = inputs.eta_pi, by_F_0[2][2], answer[MOST_TOUCHING][MOST_TOUCHING];
     double q_C[MAX_STABILIZERS][2], q_by[MOST_TOUCHING][COMPONENTS], M_by[2][COMPONENTS], F_0_by[2][COMPONENTS];
     for (int d = 0; d < 2; d++) a[d] = (x[LATERAL + d] - first[d]) / s_1 - x[ANGLE + d];
     Vector G = weight_across(view->down, a, law->axial, s_1), F_rss = pad_force(&inputs, view);
@@ -284,6 +285,280 @@ static inline int law_here(
             at->by[LATERAL + d][c] = (ANGLE + d == c) - by_F_0[d][0] * F_0_by[0][c] - by_F_0[d][1] * F_0_by[1][c];
         }
     return 1;
+}
+
+/* What the hole behind adds, from delayed lateral coordinates, `stride` numbers from direction to direction. */
+static inline void look_behind(const Law *law, const double *delayed, int place, int direction, Behind *behind) {
+    for (int d = 0; d < 2; d++) {
+        behind->M[d] = behind->F_0[d] = 0.0;
+        for (int i = 0; i < law->n - 1; i++) behind->q[i][d] = 0.0;
+        for (int j = 0; j < law->count; j++) {
+            double Y_j = delayed[j * place + d * direction];
+            behind->M[d] += law->M.delayed[j] * Y_j, behind->F_0[d] += law->F_0.delayed[j] * Y_j;
+            for (int i = 0; i < law->n - 1; i++) behind->q[i][d] += law->q[i].delayed[j] * Y_j;
+        }
+    }
+}
+
+/* The rows of the frame that the law looks at, along a step whose θ is a polynomial; returns 0 if it turns too far. */
+typedef struct {
+    int north;
+    Series of_down, of_north;
+} Views;
+
+static inline int make_views(const Law *law, const Frame *frame, const double theta[][S + 1], Views *views) {
+    views->north = law->inputs.reference == FROM_NORTH;
+    return make_series(theta, frame->row[DOWN], &views->of_down) &&
+           (!views->north || make_series(theta, frame->row[NORTH], &views->of_north));
+}
+
+static inline View view_at(const Views *views, double t) {
+    View view = {{0}, {0}};
+    series_at(&views->of_down, t, view.down);
+    if (views->north) series_at(&views->of_north, t, view.north);
+    return view;
+}
+
+enum { UNKNOWNS = S * COMPONENTS, MOST_ITERATIONS = 12 };
+#define REST 0.03      /* what may be neglected of the solution of a step, in tolerances: little beside its error */
+#define TOO_HARD 100.0 /* the error, over the tolerance, of a step that is not solved: the next is a third as long */
+#define FARTHEST 2.0   /* over the last step, up to which its polynomial is taken as a guess */
+
+/* One step of Newton's method on all stages. */
+typedef struct {
+    double row[UNKNOWNS][UNKNOWNS + 1];
+} Correction;
+
+/* Solve, in place; returns 0 if the matrix is singular. */
+static inline int eliminate(Correction *correction) {
+    double(*row)[UNKNOWNS + 1] = correction->row;
+    for (int column = 0; column < UNKNOWNS; column++) {
+        int pivot = column;
+        for (int i = column + 1; i < UNKNOWNS; i++)
+            if (fabs(row[i][column]) > fabs(row[pivot][column])) pivot = i;
+        if (!(fabs(row[pivot][column]) > 0)) return 0;
+        for (int j = column; pivot != column && j <= UNKNOWNS; j++) {
+            double value = row[pivot][j];
+            row[pivot][j] = row[column][j], row[column][j] = value;
+        }
+        for (int i = column + 1; i < UNKNOWNS; i++) {
+            double factor = row[i][column] / row[column][column];
+            if (factor == 0.0) continue;
+            for (int j = column + 1; j <= UNKNOWNS; j++) row[i][j] -= factor * row[column][j];
+        }
+    }
+    for (int i = UNKNOWNS - 1; i >= 0; i--) {
+        for (int j = i + 1; j < UNKNOWNS; j++) row[i][UNKNOWNS] -= row[i][j] * row[j][UNKNOWNS];
+        row[i][UNKNOWNS] /= row[i][i];
+    }
+    return 1;
+}
+
+/* What a step is solved with: the change of the state up to each node, and what its points need. */
+typedef struct {
+    double change[S][COMPONENTS], c[COMPONENTS][S + 1];
+    Behind behind[POINTS];
+    Views views;
+} Solving;
+
+static inline int point_of(int node) { return node < AT_CHECK ? node : node + 1; }
+
+/* The polynomial of the step, and the state at its points. */
+static inline void spread(const double x[COMPONENTS], Solving *solving, Trial *trial) {
+    for (int c = 0; c < COMPONENTS; c++) {
+        double *coefficient = solving->c[c];
+        coefficient[0] = x[c];
+        for (int m = 0; m < S; m++) {
+            coefficient[m + 1] = 0.0;
+            for (int j = 0; j < S; j++) coefficient[m + 1] += POLYNOMIAL[j][m] * solving->change[j][c];
+        }
+        for (int j = 0; j < S; j++) trial->x[c][point_of(j)] = x[c] + solving->change[j][c];
+        trial->x[c][AT_CHECK] = polynomial(coefficient, POINT[AT_CHECK]);
+    }
+}
+
+/* Let the law speak at a point of the step. */
+static inline int speak(const Law *law, const Solving *solving, Trial *trial, int point, double s_1, int slopes) {
+    double x[COMPONENTS], first[2] = {trial->delayed[0][0][point], trial->delayed[0][1][point]};
+    View view = view_at(&solving->views, POINT[point]);
+    for (int c = 0; c < COMPONENTS; c++) x[c] = trial->x[c][point];
+    return law_here(law, x, trial->ahead[point], &view, &solving->behind[point], first, s_1, slopes, &trial->at[point]);
+}
+
+/* A guess: the last step goes on, or the state stays as it is. */
+static inline void guess_changes(const Step *last, const double x[COMPONENTS], const Trial *trial, Solving *solving) {
+    double from = (trial->step.xi - last->xi) / last->h, by = trial->step.h / last->h;
+    int goes_on = last->end > last->xi && from + by <= 1 + FARTHEST;
+    for (int j = 0; j < S; j++)
+        for (int c = 0; c < COMPONENTS; c++)
+            solving->change[j][c] =
+                goes_on ? polynomial(last->x[c], from + by * POINT[point_of(j)]) - polynomial(last->x[c], from) : 0.0;
+    (void)x;
+}
+
+/* One correction; gives its size. Returns 0 if there is none. */
+static inline int correct(const Law *law, double s_1, double h, Solving *solving, Trial *trial, double *size) {
+    Correction correction;
+    for (int k = 0; k < S; k++) {
+        int point = point_of(k);
+        if (!speak(law, solving, trial, point, s_1, 1)) return 0;
+        const Reply *at = &trial->at[point];
+        for (int c = 0; c < COMPONENTS; c++) {
+            double *row = correction.row[k * COMPONENTS + c], rest = h * at->rate[c];
+            memset(row, 0, sizeof correction.row[0]);
+            for (int j = 0; j < S; j++) {
+                row[j * COMPONENTS + c] = DIFFERENCE[k][j];
+                rest -= DIFFERENCE[k][j] * solving->change[j][c];
+            }
+            for (int e = 0; e < COMPONENTS; e++) row[k * COMPONENTS + e] -= h * at->by[c][e];
+            row[UNKNOWNS] = rest;
+        }
+    }
+    if (!eliminate(&correction)) return 0;
+    *size = 0.0;
+    for (int k = 0; k < S; k++)
+        for (int c = 0; c < COMPONENTS; c++) {
+            double by = correction.row[k * COMPONENTS + c][UNKNOWNS];
+            solving->change[k][c] += by;
+            if (!isfinite(by)) return 0;
+            *size = larger(*size, fabs(by));
+        }
+    return 1;
+}
+
+/* Solve the step; returns 0 if no solution is found. */
+static inline int solve_step(
+    const Law *law, const Options *options, double s_1, const double x[COMPONENTS], Solving *solving, Trial *trial
+) {
+    double before = INFINITY, size = INFINITY;
+    for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
+        spread(x, solving, trial);
+        if (!make_views(law, &trial->step.frame, (const double(*)[S + 1])solving->c, &solving->views)) return 0;
+        before = size;
+        if (!correct(law, s_1, trial->step.h, solving, trial, &size)) return 0;
+        double rate = isfinite(before) ? size / before : 1.0;
+        if (size == 0.0 || (rate < 1 && size * rate / (1 - rate) <= REST * options->relative_tolerance)) {
+            spread(x, solving, trial);
+            return make_views(law, &trial->step.frame, (const double(*)[S + 1])solving->c, &solving->views);
+        }
+    }
+    return 0;
+}
+
+/* (1 − hJ/γ)⁻¹ times the defect, as in the plane; into the defect. */
+static inline int damp(double h, const double J[COMPONENTS][COMPONENTS], double defect[COMPONENTS]) {
+    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1];
+    for (int c = 0; c < COMPONENTS; c++) {
+        for (int e = 0; e < COMPONENTS; e++) matrix[c][e] = (c == e) - h / GAMMA[0].re * J[c][e];
+        matrix[c][COMPONENTS] = defect[c];
+    }
+    if (!solve_touching(COMPONENTS, 1, matrix)) return 0;
+    for (int c = 0; c < COMPONENTS; c++) defect[c] = matrix[c][COMPONENTS];
+    return 1;
+}
+
+/* Contacts from which those along the step are sought: those that hold in the state at its start. */
+static inline void guess_contacts(const Law *law, double s_1, const double x[COMPONENTS], Solving *solving, Trial *trial) {
+    (void)law, (void)s_1, (void)x, (void)solving, (void)trial;
+}
+
+/* Collocation from the state `x` over a trial step, whose place, length and delayed hole are given. */
+static inline void law_try(
+    const Law *law, const Options *options, const Step *last, const double x[COMPONENTS], Trial *trial
+) {
+    const double h = trial->step.h, s_1 = law->s_1;
+    double defect[COMPONENTS];
+    Solving solving;
+    for (int k = 0; k < POINTS; k++) {
+        trial->ahead[k] = trial->step.xi - law->inputs_xi + POINT[k] * h;
+        look_behind(law, &trial->delayed[0][0][k], DIRECTIONS * POINTS, POINTS, &solving.behind[k]);
+    }
+    guess_changes(last, x, trial, &solving);
+    guess_contacts(law, s_1, x, &solving, trial);
+    int found = solve_step(law, options, s_1, x, &solving, trial);
+    for (int k = 0; k < POINTS && found; k++) found = speak(law, &solving, trial, k, s_1, k == AT_CHECK);
+    const Reply *check = &trial->at[AT_CHECK];
+    for (int c = 0; c < COMPONENTS && found; c++)
+        defect[c] = polynomial_slope(solving.c[c], POINT[AT_CHECK]) - h * check->rate[c];
+    if (!found || !damp(h, check->by, defect)) {
+        for (int c = 0; c < COMPONENTS; c++) memset(trial->step.x[c], 0, sizeof trial->step.x[c]);
+        trial->error = TOO_HARD;
+        return;
+    }
+    memcpy(trial->step.x, solving.c, sizeof trial->step.x);
+    trial->error = 0.0;
+    for (int c = 0; c < COMPONENTS; c++) {
+        double weight = c < LATERAL ? options->theta_weight : 1.0;
+        trial->error = larger(trial->error, weight * fabs(defect[c]) / options->relative_tolerance);
+    }
+}
+
+/* How far a vector is. */
+static inline double size_of(const double a[2]) { return hypot(a[0], a[1]); }
+
+/* A bounded value, from what the law has said. */
+static inline double bounded_value(const Law *law, const Bound *bound, const Reply *at) {
+    int i = bound->part;
+    if (i == law->n - 1) return size_of(at->F_0) / at->eta_pi;
+    double delta[2] = {at->q[i][0], at->q[i][1]};
+    for (int k = 0; k < law->touching.touching; k++) {
+        if (law->touching.C[k] == i) return size_of(at->v[k]) - law->y_star[i];
+        for (int d = 0; d < 2; d++) delta[d] += compliance(law->beam, i, law->touching.C[k]) * at->F[k][d];
+    }
+    return size_of(delta);
+}
+
+/* A bounded value at one place of a trial step. */
+static inline double law_at(
+    const Law *law, const Bound *bound, const Trial *trial, double xi, const double x[COMPONENTS],
+    double delayed[][DIRECTIONS]
+) {
+    Behind behind;
+    Views views;
+    double t = (xi - trial->step.xi) / trial->step.h;
+    int point = 0;
+    while (point < POINTS - 1 && POINT[point] < t) point++;
+    Reply at = trial->at[point];
+    look_behind(law, &delayed[0][0], DIRECTIONS, 1, &behind);
+    make_views(law, &trial->step.frame, trial->step.x, &views);
+    View view = view_at(&views, t);
+    if (!law_here(law, x, xi - law->inputs_xi, &view, &behind, delayed[0], law->s_1, 0, &at)) return (double)NAN;
+    return bounded_value(law, bound, &at);
+}
+
+/* A bounded value at the points of a trial step. */
+static inline void law_along(const Law *law, const Bound *bound, const Trial *trial, double values[POINTS]) {
+    for (int k = 0; k < POINTS; k++) values[k] = bounded_value(law, bound, &trial->at[k]);
+}
+
+/* Go on to `xi` on the path north, east and down: ∫ T dξ, T = Q R(−ψ⃗)(0, 0, 1)ᵀ, by Gauss's three points. */
+static inline void move_along(const Step *step, double xi, double path[AXES]) {
+    double nodes[3] = {0.5 - sqrt(0.15), 0.5, 0.5 + sqrt(0.15)}, weights[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+    double length = xi - step->xi;
+    if (length == 0.0) return;
+    for (int axis = NORTH; axis <= DOWN; axis++) {
+        Series series;
+        make_series(step->x, step->frame.row[axis], &series);
+        for (int k = 0; k < 3; k++) {
+            double t = nodes[k] * length / step->h, row[3], turned[3], back[2];
+            series_at(&series, t, row);
+            for (int d = 0; d < 2; d++)
+                back[d] = polynomial_slope(step->x[LATERAL + d], t) / step->h - polynomial(step->x[ANGLE + d], t);
+            turned_row(row, back, turned);
+            path[axis] += weights[k] * length * turned[AHEAD];
+        }
+    }
+}
+
+#define RIGHT_ANGLE 1.5707963267948966
+
+/* Whether the bit, in the state `x` at the end of a trial step, has turned over: its axis is at more than a right angle to
+   the hole between it and the last stabilizer. */
+static inline int turns_over(const Law *law, const Trial *trial, const double x[COMPONENTS]) {
+    double turn[2];
+    for (int d = 0; d < 2; d++)
+        turn[d] = (x[LATERAL + d] - trial->delayed[law->n - 1][d][POINTS - 1]) / law->s_n - x[ANGLE + d];
+    return !(size_of(turn) <= RIGHT_ANGLE);
 }
 
 #endif
