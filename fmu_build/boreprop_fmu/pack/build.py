@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from boreprop.case.case import Case
+from boreprop.core.system import check_in_plane
 from boreprop.errors import InputError
 
 from ..native.binaries import BINARIES
@@ -53,6 +54,8 @@ def build_fmu(
     InputError
         If there is no such runtime, the name is not one of C, a binary is missing for a platform that is named, or was
         compiled from other sources.
+    ParameterError
+        If the bit walks.
     OSError
         If the file cannot be written; it is unchanged then.
     """
@@ -64,6 +67,7 @@ def build_fmu(
         raise InputError(f"platforms: must be left out for the runtime python, got {', '.join(platforms) or 'none'}")
     if runtime == "python" and not case.bha.structure.is_of_the_paper:
         raise InputError(f"runtime: must be native for a BHA with {case.bha.structure.beyond_the_paper}, got 'python'")
+    check_in_plane(case.bit)
     if runtime == "native" or (runtime == "auto" and (platforms is not None or is_native_here(binaries))):
         write_archive(pack_native(case, name, binaries, platforms), output)
     else:

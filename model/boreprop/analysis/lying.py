@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arrays import Floats
 from ..case.case import Case
-from ..core.system import BottomHoleAssembly
+from ..core.system import BottomHoleAssembly, check_in_plane
 from ..kernel.binding import Lie, lie
 
 MOST_STEPS = 60  # of Newton's method, which needs four to eight; a row that has not converged by then is bracketed
@@ -99,6 +99,7 @@ class _Steady:
     def __init__(self, case: Case, inclination: float, gravity: bool) -> None:
         self.case, self.inclination, self.weight = case, inclination, float(gravity)
         self.s, self.pressing = supports_of(case.bha), pressing_weight(case)
+        check_in_plane(case.bit)
         self.limit = case.bit.tilt_limit
         self.per_tilt = case.bit.lateral_steering_resistance * case.active_weight_on_bit  # N: ηΠ
         self.per_turn = case.bit.angular_steering_resistance * case.active_weight_on_bit * case.length_scale  # N·m: εηΠ

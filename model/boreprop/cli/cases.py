@@ -1,5 +1,6 @@
 """The case of a command that drills or analyses it, and the run of one that reads it."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -8,7 +9,7 @@ import typer
 from ..case.case import Case
 from ..case.file import load_case, read_case
 from ..case.usual import unusual
-from ..core.system import scale
+from ..core.system import check_in_plane, scale
 from ..errors import InputError, ParameterError
 from ..run.results import read_trajectory
 from ..run.trajectory import Trajectory
@@ -24,12 +25,17 @@ RunCase = Annotated[
 """The option --case of a command that reads a run: ``case_file: RunCase = None``."""
 
 
-def open_case(path: Path) -> Case:
-    """Read a case file; warn, once and in one line, of what is far from any assembly, and of a hole made longer."""
+def open_case(path: Path, *, in_plane: bool = True) -> Case:
+    """Read a case file; warn, once and in one line, of what is far from any assembly, and of a hole made longer.
+
+    A bit that walks is refused `in_plane`.
+    """
     case, notes = read_case(path)
     try:
+        if in_plane:
+            check_in_plane(case.bit)
         if case.bha.structure.is_of_the_paper:  # others are checked by the native engine
-            scale(case.bha, case.bit)
+            scale(case.bha, replace(case.bit, walk_angle=0.0))
     except ParameterError as error:  # of a number that no key has, so the case is not refused for a key
         raise InputError(f"{path}: {error}") from error
     found = notes + unusual(case)

@@ -20,6 +20,7 @@ Size = Literal[
 MAX_STABILIZERS = 6
 MAX_SECTIONS = 24
 MAX_POINTS = 128  # of the body at which it may touch the wall
+MOST_WALK = 89 / 180 * pi  # rad: at a right angle the tilt is no longer unique
 MOST_DRILLED = 1e5  # m in a communication step of an FMU: no hole is longer, and a step must end soon
 RELATIVE_TOLERANCE = 1e-7  # with it θ is within 5e-7 rad of the reference trajectories
 
@@ -195,6 +196,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("body_contact", "case", "", "", "", "whether the body between the stabilizers may touch the wall", kind="Boolean", key="bha.body_contact"),
     Quantity("body_contact_spacing", "case", "m", "", "", "distance between the points of the body that may touch the wall", above=0.0, key="bha.body_contact_spacing"),
     Quantity("axial_load", "case", "", "N", "", "whether the load along the BHA counts in its bending", kind="Boolean", size="axial", key="bha.axial_load", field="bha.axial_load"),
+    Quantity("bit_walk_angle", "case", "rad", "ϖ", "", "walk angle: from the lateral penetration of the bit to the lateral force, positive from the high side to the right looking down the hole", at_least=-MOST_WALK, at_most=MOST_WALK, nominal=0.1, start=0.0, key="bit.walk_angle_deg", field="bit.walk_angle"),
     Quantity("bit_diameter", "case", "m", "", "", "diameter of the hole", above=0.0, at_most=1.5, key="bit.diameter", field="bit_diameter"),
     Quantity("length", "case", "m", "", "", "length to drill", above=0.0, key="drilling.length", field="length"),
     Quantity("measured_depth", "case", "m", "", "", "stations along the existing hole, the last one is the bit if bit_depth does not say where it is", size="column", key="hole.measured_depth", field="survey.measured_depth"),

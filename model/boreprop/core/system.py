@@ -158,16 +158,20 @@ class BitRock:
         χ = H₃/H₁, dimensionless.
     tilt_limit
         ψ*: the tilt at which the bit gauge meets the hole wall, rad.
+    walk_angle
+        ϖ: the angle from the lateral penetration of the bit to the lateral force, positive from the high side to the
+        right looking down the hole, rad. What drills in a plane has none.
 
     Raises
     ------
     ParameterError
-        If a value is not positive, or the tilt limit exceeds a right angle.
+        If a value is not positive, or the tilt limit exceeds a right angle, or the walk angle 89°.
     """
 
     lateral_steering_resistance: float
     angular_steering_resistance: float
     tilt_limit: float
+    walk_angle: float = 0.0
 
     def __post_init__(self) -> None:
         check_part("bit", self)
@@ -193,14 +197,23 @@ class Scaled:
         return tuple(after - before for before, after in pairwise((0.0, *self.s)))
 
 
+def check_in_plane(bit: BitRock) -> None:
+    """Raise `ParameterError` if the bit walks, for then nothing stays in a plane."""
+    if bit.walk_angle:
+        constraint = "must be 0 for what drills in a plane; boreprop spiral takes it"
+        raise ParameterError("bit_walk_angle", constraint, bit.walk_angle)
+
+
 def scale(bha: BottomHoleAssembly, bit: BitRock) -> Scaled:
-    """The dimensionless numbers of a drilling system, section II of the paper.
+    """The dimensionless numbers of a drilling system that drills in a plane, section II of the paper.
 
     Raises
     ------
     ParameterError
-        If one of them is not finite, though the parameters are in their ranges, or the beam is not the paper's.
+        If one of them is not finite, though the parameters are in their ranges, the beam is not the paper's, or the bit
+        walks.
     """
+    check_in_plane(bit)
     if not bha.structure.is_of_the_paper:
         raise ParameterError(
             "bha",

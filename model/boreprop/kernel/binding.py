@@ -15,7 +15,7 @@ from ..core.options import Options, Statistics
 from ..core.problems import SENTENCES, Problem
 from ..core.quantities import ACTING, OUTPUTS, scalar_names, values_of
 from ..core.survey import Survey
-from ..core.system import BitRock, BottomHoleAssembly
+from ..core.system import BitRock, BottomHoleAssembly, check_in_plane
 from .compiler import library_path, sources_digest
 from .generate import NAMES, SYSTEM, quantities_digest
 
@@ -216,6 +216,7 @@ class NativeDrilling:
         weight_on_bit: float = 0.0,
         options: Options = Options(),  # noqa: B008 - frozen
     ) -> None:
+        check_in_plane(bit)
         structure = bha.structure
         given = values_of("bha", bha) | {"relative_tolerance": options.relative_tolerance}
         self.bit = bit

@@ -1,0 +1,1 @@
+"""Programs that compute reference solutions, and the trajectories of the planar model."""
