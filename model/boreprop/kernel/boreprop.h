@@ -2,7 +2,9 @@
 #ifndef BOREPROP_H
 #define BOREPROP_H
 
+#ifndef SPACE
 #include "lying.h"
+#endif
 #include "run.h"
 #include "sentence.h"
 
@@ -25,8 +27,8 @@ EXPORT void boreprop_sentence(const Problem *problem, char line[MESSAGE]);
    table of quantities; NULL, and the problem, if a value is out of range. The caller ends it with `boreprop_end`. The
    tolerance is that of the parameters; the other options are not checked. */
 EXPORT Run *boreprop_start(
-    const int structure[4], const double *parameters, const Options *options, Count count, const double *measured_depth,
-    const double *inclination, const Inputs *inputs, Problem *problem
+    const int structure[5], const double *parameters, const Options *options, Count count, const double *measured_depth,
+    const double *inclination, const double *azimuth, const Inputs *inputs, Problem *problem
 );
 EXPORT void boreprop_end(Run *run);
 
@@ -60,7 +62,7 @@ EXPORT int boreprop_restore(Run *run, const double *state, Count count, Problem 
 /* How a BHA lies in holes that are given, row by row as `lie` of lying.h does, under a weight on bit, N, and its own at an
    inclination, rad. Returns how many rows are done; if not all are, there is a problem. */
 EXPORT Count boreprop_lie(
-    const int structure[4], const double *parameters, double weight_on_bit, double inclination, Count rows,
+    const int structure[5], const double *parameters, double weight_on_bit, double inclination, Count rows,
     const double *loads, double *answers, Count count, const double *s, double *shapes, Problem *problem
 );
 

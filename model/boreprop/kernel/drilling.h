@@ -26,8 +26,16 @@ static inline int check_rock(Inputs inputs, Problem *problem) {
            check_finite(Q_INVERSE_EPSILON, 0, 1 / (chi / eta), problem);
 }
 
+/* Whether toolface and walk, which count in space, are in their ranges. */
+static inline int check_aim(Inputs inputs, Problem *problem) {
+    return DIRECTIONS == 1 ||
+           (check_quantity(&INPUT_TABLE[IN_RSS_TOOLFACE], 0, inputs.rss_toolface, problem) &&
+            check_quantity(&INPUT_TABLE[IN_TOOLFACE_REFERENCE], 0, inputs.toolface_reference, problem) &&
+            check_quantity(&INPUT_TABLE[IN_BIT_WALK_ANGLE], 0, inputs.bit_walk_angle, problem));
+}
+
 static inline int check_inputs(Inputs inputs, Problem *problem) {
-    return check_rock(inputs, problem) && check_quantity(&INPUT_TABLE[IN_RSS_FORCE], 0, inputs.rss_force, problem) &&
+    return check_rock(inputs, problem) && check_aim(inputs, problem) && check_quantity(&INPUT_TABLE[IN_RSS_FORCE], 0, inputs.rss_force, problem) &&
            check_finite(Q_RSS_FORCE_SLOPE, 0, inputs.rss_force_slope, problem) &&
            check_quantity(&INPUT_TABLE[IN_ACTIVE_WEIGHT_ON_BIT], 0, inputs.active_weight_on_bit, problem) &&
            check_finite(Q_ACTIVE_WEIGHT_ON_BIT_SLOPE, 0, inputs.active_weight_on_bit_slope, problem);
@@ -65,7 +73,12 @@ static inline int take_given(Drilling *d, Inputs inputs, Problem *problem) {
         eta_pi(system, eta, inputs.active_weight_on_bit_slope) * length_scale(system),
         inputs.angular_steering_resistance / eta,
         inputs.bit_tilt_limit,
-        system->structure.axial ? whole_weight(inputs) / F_star : 0.0
+        system->structure.axial ? whole_weight(inputs) / F_star : 0.0,
+#ifdef SPACE
+        inputs.rss_toolface,
+        inputs.toolface_reference,
+        inputs.bit_walk_angle,
+#endif
     };
     if (!check_inputs(inputs, problem) || (system->structure.axial && !check_weight(d, inputs, problem)) ||
         !check_finite(Q_SCALED_FORCE, 0, scaled.F_rss, problem) ||
@@ -148,6 +161,9 @@ static inline Status drilling_step(Drilling *d, Problem *problem) {
 
 static inline void drilling_cancel(Drilling *d) { go_back(&d->integrator); }
 
+#ifdef SPACE
+#include "space_outputs.h"
+#else
 /* What the outputs are computed from: the state where the bit is. */
 typedef struct {
     double l1, F_star, eta_pi, theta, Y, Theta, psi, F_0, F[MAX_PLACES], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
@@ -217,9 +233,25 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_DISPLACEMENT: return at->x * l1;
         case OUT_TRUE_VERTICAL_DEPTH: return at->z * l1;
         case OUT_ETA_PI: return at->eta_pi;
+        /* in space only */
+        case OUT_BIT_AZIMUTH:
+        case OUT_BOREHOLE_AZIMUTH:
+        case OUT_BIT_TILT_HIGH:
+        case OUT_BIT_TILT_RIGHT:
+        case OUT_BIT_LATERAL_FORCE_HIGH:
+        case OUT_BIT_LATERAL_FORCE_RIGHT:
+        case OUT_STABILIZER_FORCE_HIGH:
+        case OUT_STABILIZER_FORCE_RIGHT:
+        case OUT_STABILIZER_DEFLECTION_HIGH:
+        case OUT_STABILIZER_DEFLECTION_RIGHT:
+        case OUT_NORTH:
+        case OUT_EAST:
+            break;
     }
     return NAN;
 }
+
+#endif
 
 /* How many values `drilling_outputs` writes. */
 static inline int output_count(Structure structure) {

@@ -40,14 +40,17 @@ SIZES = {
     "axial": "IF_AXIAL",
     "points": "EACH_POINT",
     "body": "IF_POINTS",
+    "space": "IF_SPACE",
+    "space n-1": "EACH_NON_IDEAL_IN_SPACE",
 }
 ROOMS = {
     "n": "[MAX_STABILIZERS]",
     "n-1": "[MAX_STABILIZERS - 1]",
+    "space n-1": "[MAX_STABILIZERS - 1]",
     "sections": "[MAX_SECTIONS]",
     "points": "[MAX_POINTS]",
 }
-LARGEST = Structure(MAX_STABILIZERS, MAX_SECTIONS, 1, MAX_POINTS)
+LARGEST = Structure(MAX_STABILIZERS, MAX_SECTIONS, 1, MAX_POINTS, 1)
 
 NAMES = {quantity.name: quantity.name for quantity in QUANTITIES} | {
     **{name: name for name in (f"{quantity.name}_slope" for quantity in INPUTS if quantity.slope)},
@@ -88,6 +91,7 @@ typedef struct {{
     int n, sections; /* numbers of stabilizers and of sections */
     int axial;       /* whether the load along the beam counts */
     int points;      /* number of points at which the body between the stabilizers may touch the wall */
+    int space;       /* whether the hole may leave its vertical plane */
 }} Structure;
 
 /* The parameters, in SI units. */
@@ -217,12 +221,6 @@ static const double COEFFICIENTS[S][S] = {COEFFICIENTS};
 /* Parts of W times SLOPE[part]: its derivative at the check. */
 static const double SLOPE[S] = {SLOPE};
 
-/* Values at the nodes, less the start, times DIFFERENCE[node k][j]: the polynomial's derivative at node k, times h. */
-static const double DIFFERENCE[S][S] = {DIFFERENCE};
-
-/* The same times POLYNOMIAL[j][m]: its coefficient of t^(m+1). */
-static const double POLYNOMIAL[S][S] = {POLYNOMIAL};
-
 /* Values of f at the points times INTO_PARTS[point][part]: a part of f, in which the check has no share. */
 static const double INTO_PARTS[POINTS][S] = {INTO_PARTS};
 
@@ -242,7 +240,7 @@ def acting(inputs: Table = INPUTS) -> list[tuple[str, str, str]]:
     """Name, unit and meaning of the members of the C struct Inputs."""
     members = []
     for quantity in inputs:
-        if quantity.field:  # the rate of penetration, which no case has, does not act on the drilling system
+        if quantity.acts:
             members.append((quantity.name, quantity.unit, quantity.meaning))
             if quantity.slope:
                 members.append((f"{quantity.name}_slope", f"{quantity.unit}/m", "its change per metre drilled"))

@@ -8,11 +8,11 @@ const char *boreprop_quantities_digest(void) { return QUANTITIES_DIGEST; }
 void boreprop_sentence(const Problem *problem, char line[MESSAGE]) { sentence(problem, line); }
 
 Run *boreprop_start(
-    const int structure[4], const double *parameters, const Options *options, Count count, const double *measured_depth,
-    const double *inclination, const Inputs *inputs, Problem *problem
+    const int structure[5], const double *parameters, const Options *options, Count count, const double *measured_depth,
+    const double *inclination, const double *azimuth, const Inputs *inputs, Problem *problem
 ) {
-    Survey survey = {count, measured_depth, inclination, NULL};
-    Structure made = {structure[0], structure[1], structure[2], structure[3]};
+    Survey survey = {count, measured_depth, inclination, azimuth};
+    Structure made = {structure[0], structure[1], structure[2], structure[3], structure[4]};
     System system = system_of(made, parameters);
     Run *run = calloc(1, sizeof *run);
     met(problem, NO_MEMORY, MOST_PIECES, 0.0);
@@ -55,11 +55,12 @@ int boreprop_restore(Run *run, const double *state, Count count, Problem *proble
     return run_restore(run, state, count, problem) == DONE;
 }
 
+#ifndef SPACE
 Count boreprop_lie(
-    const int structure[4], const double *parameters, double weight_on_bit, double inclination, Count rows,
+    const int structure[5], const double *parameters, double weight_on_bit, double inclination, Count rows,
     const double *loads, double *answers, Count count, const double *s, double *shapes, Problem *problem
 ) {
-    Structure made = {structure[0], structure[1], structure[2], structure[3]};
+    Structure made = {structure[0], structure[1], structure[2], structure[3], structure[4]};
     System system = system_of(made, parameters);
     Lying *bha = calloc(1, sizeof *bha);
     Count k = 0;
@@ -72,3 +73,4 @@ Count boreprop_lie(
     free(bha);
     return k;
 }
+#endif

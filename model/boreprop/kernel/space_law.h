@@ -38,7 +38,7 @@ typedef struct {
 /* The right-hand side in one regime under given inputs, and the bounds within which it holds. */
 typedef struct {
     int count, n, saturated, axial;
-    const Beam *beam;
+    const Modes *modes;
     double s_1, s_n, y_star[MAX_STABILIZERS], walk_cosine, walk_sine;
     ScaledInputs inputs;
     double inputs_xi; /* where the inputs are those that it was made under */
@@ -61,7 +61,7 @@ static inline void find_gains(Law *law, const Mode *mode, const Places *places) 
         law->gains[i] = fabs(M.delayed[i] / M.theta) + fabs(F_0.delayed[i]) / eta_pi;
         for (int k = 0; k < law->n - 1; k++) {
             Linear delta = linear_of(&mode->delta[k], places), F = linear_of(&mode->F[k], places);
-            double k_i = compliance(law->beam, k, k);
+            double k_i = compliance(&law->modes->beam, k, k);
             law->gains[i] = larger(law->gains[i], larger(fabs(delta.delayed[i]), k_i * fabs(F.delayed[i])));
         }
     }
@@ -83,9 +83,9 @@ static inline void make_law(
     double growth = fabs(inputs.eta_pi_slope / inputs.eta_pi);
     int n = scaled->n;
     law->count = places->count, law->n = n, law->axial = scaled->axial, law->saturated = regime.saturation != 0;
-    law->beam = &modes->beam, law->inputs = inputs, law->inputs_xi = inputs_xi, law->bound_count = 0;
+    law->modes = modes, law->inputs = inputs, law->inputs_xi = inputs_xi, law->bound_count = 0;
     law->s_1 = scaled->s[0], law->s_n = scaled->s[n - 1];
-    law->walk_cosine = cos(scaled->walk), law->walk_sine = sin(scaled->walk);
+    law->walk_cosine = cos(inputs.walk), law->walk_sine = sin(inputs.walk);
     law->longest = growth == 0 ? INFINITY : LONGEST_RAMP / growth;
     law->M = linear_of(&mode->M, places), law->F_0 = linear_of(&mode->F_0, places);
     law->touching = touching_of(modes, regime.contact);
@@ -246,7 +246,7 @@ static inline int law_here(
     for (int d = 0; d < 2; d++) a[d] = (x[LATERAL + d] - first[d]) / s_1 - x[ANGLE + d];
     Vector G = weight_across(view->down, a, law->axial, s_1), F_rss = pad_force(&inputs, view);
     Vector high = {{0.0, 0.0}, {{0}}, {{0}}};
-    if (law->beam->end != 0.0) high = side_of(view->down, -1.0);
+    if (law->modes->beam.end != 0.0) high = side_of(view->down, -1.0);
     for (int d = 0; d < 2; d++) {
         at->G[d] = G.value[d], at->F_rss[d] = F_rss.value[d];
         at->M[d] = row_here(&law->M, x, d, &G, &F_rss, &high) + behind->M[d];
@@ -257,8 +257,8 @@ static inline int law_here(
     if (m && !solve_contacts(&law->touching, q_C, at->v, at->F, slopes ? answer : NULL)) return 0;
     for (int k = 0; k < m; k++)
         for (int d = 0; d < 2; d++) {
-            at->M[d] += law->beam->M_F[law->touching.C[k]] * at->F[k][d];
-            at->F_0[d] += law->beam->F0_F[law->touching.C[k]] * at->F[k][d];
+            at->M[d] += law->modes->beam.M_F[law->touching.C[k]] * at->F[k][d];
+            at->F_0[d] += law->modes->beam.F0_F[law->touching.C[k]] * at->F[k][d];
         }
     tilt_under(law, eta_pi, inputs.psi_star, at->F_0, at->psi, by_F_0);
     double rate = 1 / (inputs.epsilon * eta_pi);
@@ -276,8 +276,8 @@ static inline int law_here(
             for (int c = 0; c < COMPONENTS; c++) {
                 double F_by = 0.0;
                 for (int j = 0; j < 2 * m; j++) F_by += answer[2 * k + d][j] * q_by[j][c];
-                M_by[d][c] += law->beam->M_F[law->touching.C[k]] * F_by;
-                F_0_by[d][c] += law->beam->F0_F[law->touching.C[k]] * F_by;
+                M_by[d][c] += law->modes->beam.M_F[law->touching.C[k]] * F_by;
+                F_0_by[d][c] += law->modes->beam.F0_F[law->touching.C[k]] * F_by;
             }
     for (int d = 0; d < 2; d++)
         for (int c = 0; c < COMPONENTS; c++) {
@@ -458,8 +458,23 @@ static inline int damp(double h, const double J[COMPONENTS][COMPONENTS], double 
 }
 
 /* Contacts from which those along the step are sought: those that hold in the state at its start. */
-static inline void guess_contacts(const Law *law, double s_1, const double x[COMPONENTS], Solving *solving, Trial *trial) {
-    (void)law, (void)s_1, (void)x, (void)solving, (void)trial;
+static inline void guess_contacts(const Law *law, const double x[COMPONENTS], const Solving *solving, Trial *trial) {
+    Contact nothing = {{0}, 0, {0}};
+    Law without = *law;
+    Reply at;
+    View view;
+    double v[MAX_STABILIZERS][2];
+    if (law->touching.touching < 2) return;
+    without.touching.touching = 0;
+    memcpy(view.down, trial->step.frame.row[DOWN], sizeof view.down);
+    memcpy(view.north, trial->step.frame.row[NORTH], sizeof view.north);
+    const double first[2] = {trial->delayed[0][0][0], trial->delayed[0][1][0]};
+    law_here(&without, x, trial->ahead[0], &view, &solving->behind[0], first, law->s_1, 0, &at);
+    memcpy(v, at.q, sizeof v);
+    settle_discs(law->modes, at.q, v, nothing);
+    for (int point = 0; point < POINTS; point++)
+        for (int k = 0; k < law->touching.touching; k++)
+            memcpy(trial->at[point].v[k], v[law->touching.C[k]], sizeof v[0]);
 }
 
 /* Collocation from the state `x` over a trial step, whose place, length and delayed hole are given. */
@@ -474,7 +489,7 @@ static inline void law_try(
         look_behind(law, &trial->delayed[0][0][k], DIRECTIONS * POINTS, POINTS, &solving.behind[k]);
     }
     guess_changes(last, x, trial, &solving);
-    guess_contacts(law, s_1, x, &solving, trial);
+    guess_contacts(law, x, &solving, trial);
     int found = solve_step(law, options, s_1, x, &solving, trial);
     for (int k = 0; k < POINTS && found; k++) found = speak(law, &solving, trial, k, s_1, k == AT_CHECK);
     const Reply *check = &trial->at[AT_CHECK];
@@ -503,7 +518,7 @@ static inline double bounded_value(const Law *law, const Bound *bound, const Rep
     double delta[2] = {at->q[i][0], at->q[i][1]};
     for (int k = 0; k < law->touching.touching; k++) {
         if (law->touching.C[k] == i) return size_of(at->v[k]) - law->y_star[i];
-        for (int d = 0; d < 2; d++) delta[d] += compliance(law->beam, i, law->touching.C[k]) * at->F[k][d];
+        for (int d = 0; d < 2; d++) delta[d] += compliance(&law->modes->beam, i, law->touching.C[k]) * at->F[k][d];
     }
     return size_of(delta);
 }

@@ -33,7 +33,6 @@ typedef struct {
     double section_w[MAX_SECTIONS];    /* its w̃ */
     double end_deflection;             /* δ_n */
     int stepped, axial;                /* whether the beam has sections or bears an axial load; whether it bears one */
-    double walk;                       /* ϖ */
 } Scaled;
 
 /* How many values a quantity has. */
@@ -48,13 +47,16 @@ static inline int value_count(Size size, Structure structure) {
         case IF_AXIAL: return structure.axial;
         case EACH_POINT: return structure.points;
         case IF_POINTS: return structure.points > 0;
+        case IF_SPACE: return structure.space;
+        case EACH_NON_IDEAL_IN_SPACE: return structure.space ? structure.n - 1 : 0;
     }
     return 0;
 }
 
 /* Whether the values of a quantity are numbered. */
 static inline int is_list(Size size) {
-    return size == EACH_STABILIZER || size == EACH_NON_IDEAL || size == EACH_SECTION || size == EACH_POINT;
+    return size == EACH_STABILIZER || size == EACH_NON_IDEAL || size == EACH_SECTION || size == EACH_POINT ||
+           size == EACH_NON_IDEAL_IN_SPACE;
 }
 
 /* Whether a structure is one that there is room for. */
@@ -154,7 +156,7 @@ enum { FROM_HIGH_SIDE, FROM_NORTH, FROM_FRAME };
 typedef struct {
     double F_rss, F_rss_slope, eta_pi, eta_pi_slope, epsilon, psi_star, W;
 #ifdef SPACE
-    double toolface, reference;
+    double toolface, reference, walk; /* γ and where it counts from; ϖ */
 #endif
 } ScaledInputs;
 
@@ -165,10 +167,11 @@ static inline ScaledInputs inputs_ahead(ScaledInputs inputs, double ahead) {
     return inputs;
 }
 
-/* Whether the pads aim at another side. */
+/* Whether the pads aim at another side, or the bit walks otherwise. */
 static inline int aims_anew(const ScaledInputs *inputs, const ScaledInputs *before) {
 #ifdef SPACE
-    return inputs->toolface != before->toolface || inputs->reference != before->reference;
+    return inputs->toolface != before->toolface || inputs->reference != before->reference ||
+           inputs->walk != before->walk;
 #else
     (void)inputs, (void)before;
     return 0;
