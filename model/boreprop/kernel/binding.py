@@ -402,7 +402,7 @@ class SpaceDrilling(NativeDrilling):
         given = np.asarray(azimuth or np.zeros(stations), dtype=float)
         self._start(SPATIAL, bha.structure._replace(space=1), bha, bit, survey, given, acting, options)
 
-    def advance(  # type: ignore[override]
+    def advance(
         self,
         drilled_length: float,
         rss_force: float,

@@ -138,8 +138,9 @@ def compile_library(
         Macros: name → what takes its place.
     platform
         A name of `PLATFORMS`: compile with ziglang, for machines as old as those of glibc 2.17 or macOS 11. The bytes
-        then depend on the sources, what they include, `defines`, the name of `output` and the version of ziglang, and on
-        nothing else. A library for win64 can call what ucrtbase.dll has, and snprintf and vsnprintf of printf's family.
+        then depend on the sources, what they include, `defines`, the name of `output` and the version of ziglang, and
+        on nothing else. A library for win64 can call what ucrtbase.dll has, and of printf's family snprintf and
+        vsnprintf.
         None: compile for this machine, with $CC and $CFLAGS, else with cc, gcc or clang and $CFLAGS, else with ziglang.
 
     Returns
@@ -158,7 +159,8 @@ def compile_library(
     folders = [Path(folder).resolve() for folder in (source.parent, *include)]
     compiler = _compiler(platform, folders)
     flags = [*(f"-I{folder}" for folder in folders), *(f"-D{name}={value}" for name, value in defines.items())]
-    sources, environment = [source.resolve(), *(path.resolve() for path in also), *compiler.sources], compiler.environment
+    sources = [*(path.resolve() for path in (source, *also)), *compiler.sources]
+    environment = compiler.environment
     output = output.resolve()
     # In a folder of its own, since linkers leave more than the library. They write its name, as it is given, into it.
     with temporary_folder(f".{output.name}.", output.parent) as draft:
@@ -254,6 +256,4 @@ def build_library(output: Path | None = None, platform: str | None = None) -> Pa
     """Compile the kernel, to `output` or `library_path`; the rest is as in `compile_library`."""
     defines = {"BOREPROP_SOURCES_DIGEST": f'"{sources_digest()}"'}
     output = output or library_path(platform)
-    return compile_library(
-        FOLDER / "library.c", output, also=[FOLDER / "space.c"], defines=defines, platform=platform
-    )
+    return compile_library(FOLDER / "library.c", output, also=[FOLDER / "space.c"], defines=defines, platform=platform)

@@ -11,7 +11,7 @@
 
 #include "modes.h"
 
-enum { TOUCHES = -1 }; /* the contact beyond the bound of a free offset, as `change` has it */
+enum { TOUCHES = -1 };                        /* the contact beyond the bound of a free offset, as `change` has it */
 enum { MOST_TOUCHING = 2 * MAX_STABILIZERS }; /* numbers: two for each stabilizer in contact */
 
 /* The direction of a vector whose length is known to be at least `least` while its regime holds: a function w of the
@@ -65,8 +65,8 @@ static inline int solve_touching(int size, int sides, double matrix[MOST_TOUCHIN
 /* The supports of a contact problem: which of the non-ideal stabilizers touch, C, and what belongs to them. */
 typedef struct {
     int touching, C[MAX_STABILIZERS];
-    double k[MAX_STABILIZERS], y[MAX_STABILIZERS];           /* by number in C */
-    double K_inv[MAX_STABILIZERS][MAX_STABILIZERS];          /* of those in C */
+    double k[MAX_STABILIZERS], y[MAX_STABILIZERS];  /* by number in C */
+    double K_inv[MAX_STABILIZERS][MAX_STABILIZERS]; /* of those in C */
 } Touching;
 
 static inline Touching touching_of(const Modes *modes, Contact contact) {
@@ -170,9 +170,7 @@ static inline double off_balance(
 }
 
 /* Bring one stabilizer after the other to where it ought to be for the others: each time F gets nearer to its minimum. */
-static inline void sweep(
-    const Modes *modes, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2], int sweeps
-) {
+static inline void sweep(const Modes *modes, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2], int sweeps) {
     double wanted[MAX_STABILIZERS][2];
     for (int k = 0; k < sweeps; k++)
         for (int i = 0; i < modes->beam.n - 1; i++) {

@@ -35,7 +35,8 @@ static inline int check_aim(Inputs inputs, Problem *problem) {
 }
 
 static inline int check_inputs(Inputs inputs, Problem *problem) {
-    return check_rock(inputs, problem) && check_aim(inputs, problem) && check_quantity(&INPUT_TABLE[IN_RSS_FORCE], 0, inputs.rss_force, problem) &&
+    return check_rock(inputs, problem) && check_aim(inputs, problem) &&
+           check_quantity(&INPUT_TABLE[IN_RSS_FORCE], 0, inputs.rss_force, problem) &&
            check_finite(Q_RSS_FORCE_SLOPE, 0, inputs.rss_force_slope, problem) &&
            check_quantity(&INPUT_TABLE[IN_ACTIVE_WEIGHT_ON_BIT], 0, inputs.active_weight_on_bit, problem) &&
            check_finite(Q_ACTIVE_WEIGHT_ON_BIT_SLOPE, 0, inputs.active_weight_on_bit_slope, problem);
@@ -116,6 +117,10 @@ static inline Status drilling_prepare(
     Drilling *d, const System *system, Options options, void *memory, Count capacity, Problem *problem
 ) {
     if (!check_system(system, problem)) return FAILED;
+    if (DIRECTIONS > 1 && system->structure.points) {
+        wrong(problem, ONLY_IN_THE_PLANE, Q_BODY_POINT_POSITION, 0, system->structure.points, NAN);
+        return FAILED;
+    }
     if (!check_positive(Q_FORCE_SCALE, force_scale(system), problem)) return FAILED;
     Scaled scaled = scale(system);
     if (!check_finite(Q_SCALED_REACH, 0, scaled.s[scaled.n - 1], problem) ||
@@ -245,8 +250,7 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_STABILIZER_DEFLECTION_HIGH:
         case OUT_STABILIZER_DEFLECTION_RIGHT:
         case OUT_NORTH:
-        case OUT_EAST:
-            break;
+        case OUT_EAST: break;
     }
     return NAN;
 }

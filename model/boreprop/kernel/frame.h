@@ -9,8 +9,8 @@
 #include "numbers.h"
 #include "radau_tables.h"
 
-enum { NORTH, EAST, DOWN };   /* axes of the rock, with a row of the frame each */
-enum { HIGH, RIGHT, AHEAD };  /* of the vectors e₂, e₃ and d: columns of the frame */
+enum { NORTH, EAST, DOWN };  /* axes of the rock, with a row of the frame each */
+enum { HIGH, RIGHT, AHEAD }; /* of the vectors e₂, e₃ and d: columns of the frame */
 
 typedef struct {
     double row[3][3];
@@ -72,7 +72,8 @@ static inline void straighten(Frame *frame) {
     for (int k = 0; k < 3; k++) north[k] -= along * down[k];
     size = sqrt(dot_3(north, north));
     for (int k = 0; k < 3; k++) north[k] /= size;
-    for (int k = 0; k < 3; k++) east[k] = down[(k + 1) % 3] * north[(k + 2) % 3] - down[(k + 2) % 3] * north[(k + 1) % 3];
+    for (int k = 0; k < 3; k++)
+        east[k] = down[(k + 1) % 3] * north[(k + 2) % 3] - down[(k + 2) % 3] * north[(k + 1) % 3];
 }
 
 /* The frame at t on a way along which θ is a polynomial, from the frame at its start. */
@@ -104,7 +105,7 @@ static inline void turned_row(const double row[3], const double a[2], double tur
     turned[AHEAD] = row[AHEAD] * (1 - cosine * square) + sine * along;
 }
 
-static inline Frame turned_by(const Frame *frame, const double a[2]) {
+static inline Frame turn_frame(const Frame *frame, const double a[2]) {
     Frame turned;
     for (int axis = NORTH; axis <= DOWN; axis++) turned_row(frame->row[axis], a, turned.row[axis]);
     straighten(&turned);

@@ -342,8 +342,8 @@ def _interpolating(nodes: Sequence[float], own: float) -> list[Fraction]:
     found = [Fraction(0), 1 / Fraction(own)]
     for node in nodes:
         if node != own:
-            scale = Fraction(own) - Fraction(node)
-            found = [(a - Fraction(node) * b) / scale for a, b in zip([Fraction(0), *found], [*found, Fraction(0)], strict=True)]
+            at, scale = Fraction(node), Fraction(own) - Fraction(node)
+            found = [(a - at * b) / scale for a, b in zip([Fraction(0), *found], [*found, Fraction(0)], strict=True)]
     return found
 
 

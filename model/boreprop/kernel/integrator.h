@@ -18,8 +18,8 @@
 /* By this factor a step is tried shorter where each regime meets a bound before its first point, and the slack by which
    values may lie beyond their bounds at the points is made larger. */
 #define CLOSER 8.0
-#define MOST_SLACK 1e-6                       /* of that slack */
-#define ORIGIN_LIMIT 8.0                      /* |Y| beyond which the origin of Y is moved to the bit */
+#define MOST_SLACK 1e-6  /* of that slack */
+#define ORIGIN_LIMIT 8.0 /* |Y| beyond which the origin of Y is moved to the bit */
 
 /* Go to the regime on the other side of the bound that a step has met. */
 static inline void pass_event(Integrator *p, const Step *step) {

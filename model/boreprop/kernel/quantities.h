@@ -8,7 +8,7 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "d487a7c5b8628292" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "714e31000e75bb75" /* of this file, but for this line, and of problems.h */
 #define MOST_DRILLED 100000.0 /* m in a communication step */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: forces between closer ones are rounding errors */
 #define POINTS_ALONG_BHA 36 /* at which its distance from the hole is looked at */
@@ -51,8 +51,8 @@ typedef struct {
     double lateral_steering_resistance; /* lateral over axial drilling resistance */
     double angular_steering_resistance; /* angular over axial drilling resistance */
     double bit_tilt_limit; /* rad: tilt at which the bit gauge meets the wall */
-    double bit_walk_angle; /* rad: walk angle: from the lateral penetration of the bit to the lateral force, positive from the high side to the right looking down the hole */
     double weight_on_bit; /* N: all of the weight on bit, which presses the BHA along its axis; 0: the active weight */
+    double bit_walk_angle; /* rad: walk angle: from the lateral penetration of the bit to the lateral force, positive from the high side to the right looking down the hole */
     double rss_toolface; /* rad: side to which the pads push, looking down the hole: 0 up or north, π/2 to the right */
     double toolface_reference; /* from where the toolface counts: 0 from the high side, 1 from north, 2 from the frame of the bit */
 } Inputs;
@@ -83,7 +83,7 @@ static const Quantity PARAMETER_TABLE[PARAMETER_COUNT] = {
     {Q_RELATIVE_TOLERANCE, ONE, offsetof(System, relative_tolerance), -INFINITY, 1e-12, 0.01},
 };
 
-typedef enum { IN_RSS_FORCE, IN_ACTIVE_WEIGHT_ON_BIT, IN_RATE_OF_PENETRATION, IN_LATERAL_STEERING_RESISTANCE, IN_ANGULAR_STEERING_RESISTANCE, IN_BIT_TILT_LIMIT, IN_BIT_WALK_ANGLE, IN_WEIGHT_ON_BIT, IN_RSS_TOOLFACE, IN_TOOLFACE_REFERENCE } Input;
+typedef enum { IN_RSS_FORCE, IN_ACTIVE_WEIGHT_ON_BIT, IN_RATE_OF_PENETRATION, IN_LATERAL_STEERING_RESISTANCE, IN_ANGULAR_STEERING_RESISTANCE, IN_BIT_TILT_LIMIT, IN_WEIGHT_ON_BIT, IN_BIT_WALK_ANGLE, IN_RSS_TOOLFACE, IN_TOOLFACE_REFERENCE } Input;
 static const Quantity INPUT_TABLE[INPUT_COUNT] = {
     {Q_RSS_FORCE, ONE, 0, -INFINITY, -INFINITY, INFINITY},
     {Q_ACTIVE_WEIGHT_ON_BIT, ONE, 0, 0.0, -INFINITY, INFINITY},
@@ -91,8 +91,8 @@ static const Quantity INPUT_TABLE[INPUT_COUNT] = {
     {Q_LATERAL_STEERING_RESISTANCE, ONE, 0, 0.0, -INFINITY, INFINITY},
     {Q_ANGULAR_STEERING_RESISTANCE, ONE, 0, 0.0, -INFINITY, INFINITY},
     {Q_BIT_TILT_LIMIT, ONE, 0, 0.0, -INFINITY, 1.5707963267948966},
-    {Q_BIT_WALK_ANGLE, IF_SPACE, 0, -INFINITY, -1.5533430342749532, 1.5533430342749532},
     {Q_WEIGHT_ON_BIT, IF_AXIAL, 0, -INFINITY, 0.0, INFINITY},
+    {Q_BIT_WALK_ANGLE, IF_SPACE, 0, -INFINITY, -1.5533430342749532, 1.5533430342749532},
     {Q_RSS_TOOLFACE, IF_SPACE, 0, -INFINITY, -INFINITY, INFINITY},
     {Q_TOOLFACE_REFERENCE, IF_SPACE, 0, -INFINITY, 0.0, 2.0},
 };

@@ -55,7 +55,9 @@ static inline double mean_inclination(const Present *at, const double from[2], c
 
 /* The part of a vector in (e₂, e₃) to the high side, and that to the right of it. */
 static inline double part_high(const Present *at, const double a[2]) { return a[0] * at->high[0] + a[1] * at->high[1]; }
-static inline double part_right(const Present *at, const double a[2]) { return a[1] * at->high[0] - a[0] * at->high[1]; }
+static inline double part_right(const Present *at, const double a[2]) {
+    return a[1] * at->high[0] - a[0] * at->high[1];
+}
 
 /* One output, the value with this index if it has several. If an output of the table were missing, it would not compile. */
 static inline double output(const Drilling *d, const Present *at, Output which, int i) {
@@ -75,9 +77,7 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_BIT_TILT_HIGH: return part_high(at, is->psi);
         case OUT_BIT_TILT_RIGHT: return part_right(at, is->psi);
         case OUT_AVERAGE_INCLINATION: /* λ_i (⟨Θ⟩_i − θ) = e_i − e_{i−1} */
-            return mean_inclination(
-                at, i ? at->is.e[i - 1] : nothing, at->is.e[i], lambda_(&d->integrator.scaled, i)
-            );
+            return mean_inclination(at, i ? at->is.e[i - 1] : nothing, at->is.e[i], lambda_(&d->integrator.scaled, i));
         case OUT_STABILIZER_DEFLECTION: return size_of(at->is.delta[i]) * l1;
         case OUT_STABILIZER_DEFLECTION_HIGH: return part_high(at, at->is.delta[i]) * l1;
         case OUT_STABILIZER_DEFLECTION_RIGHT: return part_right(at, at->is.delta[i]) * l1;
@@ -91,9 +91,9 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_BIT_LATERAL_FORCE_RIGHT: return part_right(at, is->F_0) * F_star;
         case OUT_BIT_MOMENT: return size_of(is->M) * F_star * l1;
         case OUT_BOREHOLE_CURVATURE: return size_of(turned) / l1;
-        case OUT_BODY_CONTACT_FORCE: return 0.0;
-        case OUT_BODY_CONTACT_POSITION: return 0.0;
-        case OUT_WALL_DISTANCE: return INFINITY;
+        case OUT_BODY_CONTACT_FORCE: /* the body has no points in space */
+        case OUT_BODY_CONTACT_POSITION:
+        case OUT_WALL_DISTANCE: break;
         case OUT_NORTH: return at->path[NORTH] * l1;
         case OUT_EAST: return at->path[EAST] * l1;
         case OUT_DISPLACEMENT: return hypot(at->path[NORTH], at->path[EAST]) * l1;

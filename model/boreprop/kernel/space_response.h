@@ -9,7 +9,7 @@ typedef struct {
     Regime regime;
     double Theta[DIRECTIONS], F_0[DIRECTIONS];
     Frame frame;
-    Reply at;                                                           /* with F and v by stabilizer */
+    Reply at; /* with F and v by stabilizer */
     double delta[MAX_STABILIZERS][DIRECTIONS], e[MAX_STABILIZERS][DIRECTIONS];
 } Response;
 

@@ -96,7 +96,7 @@ static inline void head_back(const Survey *survey, Count k, Heading *heading) {
     double direction[3], turn[DIRECTIONS];
     direction_at(survey, k, direction);
     turn_towards(&heading->frame, direction, turn);
-    heading->frame = turned_by(&heading->frame, turn);
+    heading->frame = turn_frame(&heading->frame, turn);
     for (int d = 0; d < DIRECTIONS; d++) heading->angle[d] += turn[d];
 }
 #else
