@@ -89,15 +89,19 @@ static inline int speak(const Law *law, const Solving *solving, Trial *trial, in
     return law_here(law, x, trial->ahead[point], &view, &solving->behind[point], first, s_1, slopes, &trial->at[point]);
 }
 
-/* A guess: the last step goes on, or the state stays as it is. */
+/* A guess: the last step goes on or, where it is too short for that, the hole goes straight on. */
 static inline void guess_changes(const Step *last, const double x[COMPONENTS], const Trial *trial, Solving *solving) {
     double from = (trial->step.xi - last->xi) / last->h, by = trial->step.h / last->h;
     int goes_on = last->end > last->xi && from + by <= 1 + FARTHEST;
-    for (int j = 0; j < S; j++)
-        for (int c = 0; c < COMPONENTS; c++)
-            solving->change[j][c] =
-                goes_on ? polynomial(last->x[c], from + by * POINT[point_of(j)]) - polynomial(last->x[c], from) : 0.0;
-    (void)x;
+    for (int c = 0; c < COMPONENTS; c++) {
+        double slope = c < LATERAL ? 0.0 : last->end > last->xi ? polynomial_slope(last->x[c], from) * by
+                                                                : x[c - LATERAL] * trial->step.h;
+        double start = polynomial(last->x[c], from);
+        for (int j = 0; j < S; j++) {
+            double t = POINT[point_of(j)];
+            solving->change[j][c] = goes_on ? polynomial(last->x[c], from + by * t) - start : slope * t;
+        }
+    }
 }
 
 /* One correction; gives its size. Returns 0 if there is none. */
