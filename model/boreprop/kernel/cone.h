@@ -84,6 +84,10 @@ static inline Touching touching_of(const Modes *modes, Contact contact) {
 
 #define SAME_OFFSET 1e-14 /* relative: so near to the solution no correction brings v nearer */
 enum { MOST_CORRECTIONS = 25 };
+/* Over the largest v: after a change as small as this the next would be below rounding, and one that is NEARLY as small and
+   does not shrink is rounding itself, which stabilizers close together enlarge. */
+#define NEXT_IS_NOTHING 1e-8
+#define NEARLY 1e-3
 
 /* The v of those that touch under their q̃, from a guess in `v`; returns 0 if none is found. Where `answer` is given, it
    becomes dF/dq̃, row by row, over the directions of each of those that touch. */
@@ -92,6 +96,7 @@ static inline int solve_contacts(
     double answer[MOST_TOUCHING][MOST_TOUCHING]
 ) {
     int m = of->touching, size = 2 * m, found = 0;
+    double before = INFINITY;
     double beyond[MAX_STABILIZERS][2], slope[MAX_STABILIZERS][2][2];
     double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1];
     if (m == 1) v[0][0] = q[0][0], v[0][1] = q[0][1];
@@ -118,7 +123,8 @@ static inline int solve_contacts(
                 change = larger(change, fabs(by)), scale = larger(scale, larger(fabs(v[a][d]), of->y[a]));
             }
         if (!isfinite(change)) return 0;
-        found = change <= 1e-8 * scale; /* the next change is below rounding */
+        found = change <= NEXT_IS_NOTHING * scale || (change <= NEARLY * scale && change > before / 2);
+        before = change;
         if (found)
             for (int a = 0; a < m; a++) beyond_disc(v[a], of->y[a], beyond[a], slope[a]);
     }
@@ -144,10 +150,12 @@ static inline int solve_contacts(
     return 1;
 }
 
+enum { MOST_ROUNDS = 60, SMOOTHER = 14 };
+#define SHARPER 0.1       /* of μ, from step to step: after SMOOTHER of them it is rounding */
+#define LEAST_SHARE 1e-12 /* of a step of Newton's method */
+
 /* Whether v lies beyond the disc, so that the stabilizer touches; without clearance it always does. */
 static inline int is_beyond(const double v[2], double y) { return y == 0.0 || hypot(v[0], v[1]) > y; }
-
-enum { MOST_ROUNDS = 60, SWEEPS = 8, LAST_SWEEPS = 20000 };
 
 /* How far v is from a solution over all stabilizers, at most; gives where each ought to be for the others. */
 static inline double off_balance(
@@ -169,53 +177,125 @@ static inline double off_balance(
     return off;
 }
 
-/* Bring one stabilizer after the other to where it ought to be for the others: each time F gets nearer to its minimum. */
-static inline void sweep(const Modes *modes, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2], int sweeps) {
-    double wanted[MAX_STABILIZERS][2];
-    for (int k = 0; k < sweeps; k++)
-        for (int i = 0; i < modes->beam.n - 1; i++) {
-            off_balance(modes, q, v, wanted);
-            memcpy(v[i], wanted[i], sizeof wanted[i]);
+/* One try to bring v to a solution: the forces of those that touch as it is, and where all stabilizers are under them.
+   Returns how far it then is from one; infinity if there are no such forces. */
+static inline double try_contacts(
+    const Modes *modes, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2], double tried[MAX_STABILIZERS][2]
+) {
+    Contact now = {{0}, 0, {0}};
+    double own[MAX_STABILIZERS][2], q_C[MAX_STABILIZERS][2], F[MAX_STABILIZERS][2], wanted[MAX_STABILIZERS][2];
+    int count = modes->beam.n - 1;
+    for (int i = 0; i < count; i++) now.of[i] = is_beyond(v[i], modes->y_star[i]) ? TOUCHES : 0;
+    Touching of = touching_of(modes, now);
+    for (int a = 0; a < of.touching; a++)
+        memcpy(own[a], v[of.C[a]], sizeof own[a]), memcpy(q_C[a], q[of.C[a]], sizeof q_C[a]);
+    if (!solve_contacts(&of, q_C, own, F, NULL)) return INFINITY;
+    for (int i = 0; i < count; i++) memcpy(tried[i], q[i], sizeof tried[i]);
+    for (int a = 0; a < of.touching; a++)
+        for (int i = 0; i < count; i++)
+            for (int d = 0; d < 2; d++) tried[i][d] += compliance(&modes->beam, i, of.C[a]) * F[a][d];
+    for (int a = 0; a < of.touching; a++) memcpy(tried[of.C[a]], own[a], sizeof own[a]);
+    return off_balance(modes, q, tried, wanted);
+}
+
+/* The minimum that F is, with |F_i| made smooth: √(|F_i|² + μ²), in forces times √k_i. */
+typedef struct {
+    int count;
+    double C[MAX_STABILIZERS][MAX_STABILIZERS], root[MAX_STABILIZERS]; /* K⁻¹_ij/√(k_i k_j), √k_i */
+    double q[MAX_STABILIZERS][2], y[MAX_STABILIZERS], mu;
+} Smooth;
+
+static inline double smooth_value(const Smooth *smooth, double u[MAX_STABILIZERS][2]) {
+    double value = 0.0;
+    for (int i = 0; i < smooth->count; i++) {
+        for (int d = 0; d < 2; d++) {
+            double sum = 0.0;
+            for (int j = 0; j < smooth->count; j++) sum += smooth->C[i][j] * u[j][d];
+            value += u[i][d] * (sum / 2 + smooth->q[i][d]);
+        }
+        value += smooth->y[i] * sqrt(u[i][0] * u[i][0] + u[i][1] * u[i][1] + smooth->mu * smooth->mu);
+    }
+    return value;
+}
+
+/* One step of Newton's method towards the minimum, shortened until it goes down; returns 0 where it does not. */
+static inline int go_down(const Smooth *smooth, double u[MAX_STABILIZERS][2]) {
+    int count = smooth->count, size = 2 * count;
+    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1], value = smooth_value(smooth, u), next[MAX_STABILIZERS][2];
+    for (int i = 0; i < count; i++) {
+        double length = sqrt(u[i][0] * u[i][0] + u[i][1] * u[i][1] + smooth->mu * smooth->mu), w = smooth->y[i] / length;
+        for (int d = 0; d < 2; d++) {
+            double *row = matrix[2 * i + d];
+            row[size] = -smooth->q[i][d] - w * u[i][d];
+            for (int j = 0; j < count; j++) {
+                row[size] -= smooth->C[i][j] * u[j][d];
+                for (int c = 0; c < 2; c++) row[2 * j + c] = d == c ? smooth->C[i][j] : 0.0;
+            }
+            for (int c = 0; c < 2; c++) row[2 * i + c] += (d == c ? w : 0.0) - w * u[i][d] * u[i][c] / (length * length);
+        }
+    }
+    if (!solve_touching(size, 1, matrix)) return 0;
+    for (double share = 1.0; share > LEAST_SHARE; share /= 2) {
+        for (int i = 0; i < count; i++)
+            for (int d = 0; d < 2; d++) next[i][d] = u[i][d] + share * matrix[2 * i + d][size];
+        if (smooth_value(smooth, next) < value) {
+            memcpy(u, next, sizeof next);
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* v near the solution, whatever the start: the minimum is followed while μ goes to zero. It is convex, so that Newton's
+   method ends at it. */
+static inline void come_near(const Modes *modes, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2]) {
+    Smooth smooth = {.count = modes->beam.n - 1};
+    double u[MAX_STABILIZERS][2] = {{0}};
+    for (int i = 0; i < smooth.count; i++) smooth.root[i] = sqrt(compliance(&modes->beam, i, i));
+    for (int i = 0; i < smooth.count; i++) {
+        smooth.y[i] = modes->y_star[i] / smooth.root[i];
+        for (int j = 0; j < smooth.count; j++)
+            smooth.C[i][j] = compliance(&modes->beam, i, j) / (smooth.root[i] * smooth.root[j]);
+        for (int d = 0; d < 2; d++) {
+            smooth.q[i][d] = q[i][d] / smooth.root[i];
+            smooth.mu = larger(smooth.mu, fabs(smooth.q[i][d]));
+        }
+    }
+    for (int k = 0; k < SMOOTHER; k++, smooth.mu *= SHARPER)
+        for (int step = 0; step < MOST_CORRECTIONS && go_down(&smooth, u); step++) continue;
+    for (int i = 0; i < smooth.count; i++)
+        for (int d = 0; d < 2; d++) {
+            v[i][d] = q[i][d] - smooth.root[i] * u[i][d];
+            for (int j = 0; j < smooth.count; j++)
+                v[i][d] += compliance(&modes->beam, i, j) * u[j][d] / smooth.root[j];
         }
 }
 
-/* The contacts that hold under q̃, with their v: semismooth Newton from the guess in `v`; where a correction does not bring
-   it nearer, sweeps do, which always end at the solution. */
+/* The contacts that hold under q̃, with their v: Newton's method with the contacts as they are in the guess `v`, again while
+   that brings it nearer; else from near the solution. */
 static inline Contact settle_discs(
     const Modes *modes, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2], Contact contact
 ) {
-    int count = modes->beam.n - 1;
-    double wanted[MAX_STABILIZERS][2], scale = 0.0;
+    int count = modes->beam.n - 1, came_near = 0;
+    double wanted[MAX_STABILIZERS][2], tried[MAX_STABILIZERS][2], best[MAX_STABILIZERS][2], scale = 0.0, least;
     for (int i = 0; i < count; i++)
         scale = larger(scale, larger(modes->y_star[i], larger(fabs(q[i][0]), fabs(q[i][1]))));
     double off = off_balance(modes, q, v, wanted);
-    for (int round = 0; round < MOST_ROUNDS && off > SAME_OFFSET * scale; round++) {
-        Contact now = {{0}, 0, {0}};
-        double tried[MAX_STABILIZERS][2], of_touching[MAX_STABILIZERS][2], q_C[MAX_STABILIZERS][2];
-        double F[MAX_STABILIZERS][2];
-        for (int i = 0; i < count; i++) now.of[i] = is_beyond(v[i], modes->y_star[i]) ? TOUCHES : 0;
-        Touching of = touching_of(modes, now);
-        for (int a = 0; a < of.touching; a++)
-            for (int d = 0; d < 2; d++) of_touching[a][d] = v[of.C[a]][d], q_C[a][d] = q[of.C[a]][d];
-        int solved = solve_contacts(&of, q_C, of_touching, F, NULL);
-        memcpy(tried, q, sizeof tried);
-        for (int a = 0; a < of.touching && solved; a++) {
-            for (int i = 0; i < count; i++)
-                for (int d = 0; d < 2; d++) tried[i][d] += compliance(&modes->beam, i, of.C[a]) * F[a][d];
-        }
-        for (int a = 0; a < of.touching && solved; a++) memcpy(tried[of.C[a]], of_touching[a], sizeof of_touching[a]);
-        double next = solved ? off_balance(modes, q, tried, wanted) : INFINITY;
-        if (next < off) off = next, memcpy(v, tried, sizeof tried);
-        else if (off <= ROUNDING * scale) break;
-        else {
-            sweep(modes, q, v, SWEEPS);
-            off = off_balance(modes, q, v, wanted);
-        }
-    }
-    for (int k = 0; k < LAST_SWEEPS && off > ROUNDING * scale; k += SWEEPS) {
-        sweep(modes, q, v, SWEEPS);
+    memcpy(best, v, sizeof best), least = off;
+    for (int round = 0; round < MOST_ROUNDS && least > SAME_OFFSET * scale; round++) {
+        double next = try_contacts(modes, q, v, tried);
+        int nearer = next < off / 2;
+        if (nearer) off = next, memcpy(v, tried, sizeof tried);
+        else if (next < off) memcpy(v, tried, sizeof tried), off = next;
+        if (off < least) least = off, memcpy(best, v, sizeof best);
+        if (nearer) continue;
+        if (came_near || least <= ROUNDING * scale) break;
+        came_near = 1;
+        come_near(modes, q, v);
         off = off_balance(modes, q, v, wanted);
+        if (off < least) least = off, memcpy(best, v, sizeof best);
     }
+    memcpy(v, best, sizeof best);
     for (int i = 0; i < count; i++) contact.of[i] = is_beyond(v[i], modes->y_star[i]) ? TOUCHES : 0;
     return contact;
 }
