@@ -223,7 +223,8 @@ static inline int go_down(const Smooth *smooth, double u[MAX_STABILIZERS][2]) {
     int count = smooth->count, size = 2 * count;
     double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1], value = smooth_value(smooth, u), next[MAX_STABILIZERS][2];
     for (int i = 0; i < count; i++) {
-        double length = sqrt(u[i][0] * u[i][0] + u[i][1] * u[i][1] + smooth->mu * smooth->mu), w = smooth->y[i] / length;
+        double length = sqrt(u[i][0] * u[i][0] + u[i][1] * u[i][1] + smooth->mu * smooth->mu),
+               w = smooth->y[i] / length;
         for (int d = 0; d < 2; d++) {
             double *row = matrix[2 * i + d];
             row[size] = -smooth->q[i][d] - w * u[i][d];
@@ -231,7 +232,8 @@ static inline int go_down(const Smooth *smooth, double u[MAX_STABILIZERS][2]) {
                 row[size] -= smooth->C[i][j] * u[j][d];
                 for (int c = 0; c < 2; c++) row[2 * j + c] = d == c ? smooth->C[i][j] : 0.0;
             }
-            for (int c = 0; c < 2; c++) row[2 * i + c] += (d == c ? w : 0.0) - w * u[i][d] * u[i][c] / (length * length);
+            for (int c = 0; c < 2; c++)
+                row[2 * i + c] += (d == c ? w : 0.0) - w * u[i][d] * u[i][c] / (length * length);
         }
     }
     if (!solve_touching(size, 1, matrix)) return 0;
@@ -266,8 +268,7 @@ static inline void come_near(const Modes *modes, double q[MAX_STABILIZERS][2], d
     for (int i = 0; i < smooth.count; i++)
         for (int d = 0; d < 2; d++) {
             v[i][d] = q[i][d] - smooth.root[i] * u[i][d];
-            for (int j = 0; j < smooth.count; j++)
-                v[i][d] += compliance(&modes->beam, i, j) * u[j][d] / smooth.root[j];
+            for (int j = 0; j < smooth.count; j++) v[i][d] += compliance(&modes->beam, i, j) * u[j][d] / smooth.root[j];
         }
 }
 

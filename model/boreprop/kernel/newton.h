@@ -94,8 +94,9 @@ static inline void guess_changes(const Step *last, const double x[COMPONENTS], c
     double from = (trial->step.xi - last->xi) / last->h, by = trial->step.h / last->h;
     int goes_on = last->end > last->xi && from + by <= 1 + FARTHEST;
     for (int c = 0; c < COMPONENTS; c++) {
-        double slope = c < LATERAL ? 0.0 : last->end > last->xi ? polynomial_slope(last->x[c], from) * by
-                                                                : x[c - LATERAL] * trial->step.h;
+        double slope = c < LATERAL            ? 0.0
+                       : last->end > last->xi ? polynomial_slope(last->x[c], from) * by
+                                              : x[c - LATERAL] * trial->step.h;
         double start = polynomial(last->x[c], from);
         for (int j = 0; j < S; j++) {
             double t = POINT[point_of(j)];
