@@ -54,7 +54,7 @@ class SpatialCase:
 
     def advance(self, run: SpaceDrilling, xi: float, **changes: Any) -> None:
         """Drill on under the inputs of the case."""
-        aim = {"rss_toolface": self.toolface, "toolface_reference": self.reference} | changes
+        aim: dict[str, Any] = {"rss_toolface": self.toolface, "toolface_reference": self.reference, **changes}
         run.advance(xi, self.force, self.eta_pi, **aim)
 
     def rows(self, places: Vector | list[float], **options: float) -> list[Outputs]:

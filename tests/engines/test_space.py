@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import atan2, cos, degrees, pi, radians, sin
+from typing import Any
 
 import numpy as np
 import pytest
@@ -89,7 +90,7 @@ def test_a_toolface_against_gravity_leads_elsewhere_than_one_that_the_frame_hold
 
 
 def test_a_spiral_ends_as_its_closed_form_says() -> None:
-    """ω and |T| of the equations for a relative equilibrium, with the paper's BHA and ψ* = 2°, as far as they are given.
+    """ω and |T| of the equations for a relative equilibrium, with the paper's BHA and ψ* = 2°, to their printed digits.
 
     The axis of the spiral is inclined by a tenth of a degree, and very slowly becomes vertical.
     """
@@ -159,7 +160,7 @@ def test_sections_and_a_load_along_the_beam_count_as_in_the_plane() -> None:
         axial_load=True,
     )
     bit, survey = BitRock(20.0, 1.0, 0.02), Survey((0.0, 17.0), (0.7, 0.72))
-    inputs = {"active_weight_on_bit": 8e3, "rss_force": 4e3, "weight_on_bit": 8e4}
+    inputs: dict[str, Any] = {"active_weight_on_bit": 8e3, "rss_force": 4e3, "weight_on_bit": 8e4}
     options = Options(relative_tolerance=1e-9)
     planar = NativeDrilling(bha, bit, survey, options=options, **inputs)
     spatial = SpaceDrilling(bha, bit, survey, (0.3, 0.3), options=options, **inputs)
@@ -296,7 +297,7 @@ def is_frame(matrix: Vector) -> bool:
 def test_a_slope_of_force_is_many_small_steps_of_it() -> None:
     given = replace(TURNING, eta_pi=0.3)
     ramp, stairs = given.begin(relative_tolerance=1e-9), given.begin(relative_tolerance=1e-9)
-    aim = {"rss_toolface": given.toolface, "toolface_reference": given.reference}
+    aim: dict[str, Any] = {"rss_toolface": given.toolface, "toolface_reference": given.reference}
     ramp.advance(4.0, 2e-3, 0.3, rss_force_slope=1e-3, active_weight_on_bit_slope=0.02, **aim)
     for start in np.arange(0.0, 4.0, 0.01):
         middle = start + 0.005
@@ -341,7 +342,7 @@ def test_in_a_vertical_hole_the_frame_faces_where_the_last_bend_leads() -> None:
 
 
 def test_what_cannot_be_in_space_is_refused() -> None:
-    body = {"body_point_positions": (0.5, 1.5), "body_point_clearances": (0.01, 0.01)}
+    body: dict[str, Any] = {"body_point_positions": (0.5, 1.5), "body_point_clearances": (0.01, 0.01)}
     bha = BottomHoleAssembly((1.0, 2.0), (1e-3,), 0.2, 1e-3, 1 / 3, **body)
     survey = Survey((0.0, 1.0), (0.1, 0.1))
     with pytest.raises(ParameterError, match="body_point_position: must be left out where the hole may leave"):

@@ -83,7 +83,7 @@ static inline Touching touching_of(const Modes *modes, Contact contact) {
 }
 
 #define SAME_OFFSET 1e-14 /* relative: so near to the solution no correction brings v nearer */
-enum { MOST_CORRECTIONS = 25 };
+enum { MOST_CORRECTIONS = 15 };
 /* Over the largest v: after a change as small as this the next would be below rounding, and one that is NEARLY as small and
    does not shrink is rounding itself, which stabilizers close together enlarge. */
 #define NEXT_IS_NOTHING 1e-8
@@ -150,9 +150,8 @@ static inline int solve_contacts(
     return 1;
 }
 
-enum { MOST_ROUNDS = 60, SMOOTHER = 14 };
-#define SHARPER 0.1       /* of μ, from step to step: after SMOOTHER of them it is rounding */
-#define LEAST_SHARE 1e-12 /* of a step of Newton's method */
+enum { MOST_ROUNDS = 60, SMOOTHER = 14, MOST_HALVINGS = 40 };
+#define SHARPER 0.1 /* of μ, from step to step: after SMOOTHER of them it is rounding */
 
 /* Whether v lies beyond the disc, so that the stabilizer touches; without clearance it always does. */
 static inline int is_beyond(const double v[2], double y) { return y == 0.0 || hypot(v[0], v[1]) > y; }
@@ -237,7 +236,8 @@ static inline int go_down(const Smooth *smooth, double u[MAX_STABILIZERS][2]) {
         }
     }
     if (!solve_touching(size, 1, matrix)) return 0;
-    for (double share = 1.0; share > LEAST_SHARE; share /= 2) {
+    double share = 1.0;
+    for (int halving = 0; halving < MOST_HALVINGS; halving++, share /= 2) {
         for (int i = 0; i < count; i++)
             for (int d = 0; d < 2; d++) next[i][d] = u[i][d] + share * matrix[2 * i + d][size];
         if (smooth_value(smooth, next) < value) {
