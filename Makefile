@@ -33,7 +33,7 @@ wheels: .venv/dev.installed  # wheels for all platforms and the source distribut
 	$(BIN)/python -m pytest tests/wheels --wheels dist -n auto --dist loadfile -rap
 
 test: .venv/dev.compiled  # the whole suite
-	$(BIN)/python -m pytest -n auto
+	$(BIN)/python -m pytest -n auto --dist worksteal
 
 soak: .venv/dev.compiled  # new examples of the property tests, then the fuzzers: make soak MINUTES=40 [SEED=…]
 	$(BIN)/python tests/soak.py --minutes $(MINUTES) $(if $(SEED),--seed $(SEED))
@@ -59,6 +59,7 @@ bench: .venv/bench.compiled  # speed, side by side with something else
 	$(BIN)/python benchmarks/stability_chart.py
 	$(BIN)/python benchmarks/study.py
 	$(BIN)/python benchmarks/native.py
+	$(BIN)/python benchmarks/ground.py
 
 clean:
 	rm -rf .venv out dist build .*_cache .hypothesis model/boreprop/kernel/boreprop_kernel.* fmu_build/boreprop_fmu/binaries

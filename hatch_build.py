@@ -1,4 +1,4 @@
-"""Compiles the kernel and the native FMU while the package is built.
+"""Compiles the kernel and the native FMU while the package is built, and makes its description of the README.
 
 An installation compiles them for its own machine if it can; without a compiler all goes on. With a platform in
 `BOREPROP_PLATFORM` (linux64, win64, …) ziglang compiles, or the build fails: a wheel for that platform, on whatever
@@ -6,6 +6,7 @@ machine it is built, with the FMU's binaries for all platforms in it. `build_whe
 """
 
 import os
+import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,6 +14,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+from hatchling.metadata.plugin.interface import MetadataHookInterface
 from packaging.tags import platform_tags
 
 
@@ -69,3 +71,15 @@ class CompilingHook(BuildHookInterface[Any]):
 def own_tag() -> str:
     """The platform of a wheel with what is compiled for this machine by its own compiler."""
     return next(tag for tag in platform_tags() if not tag.startswith(("manylinux", "musllinux")))
+
+
+class DescribingHook(MetadataHookInterface):
+    """On a package index the README stands without the files beside it: what leads to them is left out."""
+
+    def update(self, metadata: dict[str, Any]) -> None:
+        """Give the README without its pictures and their captions, its list of pages, and its links to files."""
+        text = Path(self.root, "README.md").read_text(encoding="utf-8")
+        text = re.sub(r"^!\[.*\n\n\*.*\*\n\n", "", text, flags=re.MULTILINE)
+        text = re.sub(r"^## Documentation\n(?:\n|[`|].*\n)*", "", text, flags=re.MULTILINE)
+        text = re.sub(r"\[([^]]+)\]\((?!\w+://)[^)]+\)", r"\1", text)
+        metadata["readme"] = {"content-type": "text/markdown", "text": text}

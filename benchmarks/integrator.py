@@ -10,7 +10,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from statistics import median
-from time import perf_counter
+from time import process_time
 
 import numpy as np
 from rich.console import Console
@@ -52,10 +52,10 @@ def rk4_error(name: str, m: int) -> float:
 
 
 def seconds(function: Callable[..., object], *arguments: object) -> float:
-    """Time of one call."""
-    begin = perf_counter()
+    """CPU time of one call."""
+    begin = process_time()
     function(*arguments)
-    return perf_counter() - begin
+    return process_time() - begin
 
 
 def main() -> None:

@@ -22,7 +22,7 @@ Coarse tolerances save less than half of the time, as stability then limits the 
 from contextlib import chdir
 from itertools import pairwise
 from tempfile import TemporaryDirectory
-from time import perf_counter
+from time import process_time
 from typing import Any
 
 import numpy as np
@@ -80,10 +80,10 @@ def seconds(dde: Any, case: dict[str, Any], tolerance: float = TOLERANCE) -> flo
     for at, Y_at, Theta in zip(xi, Y, inclination, strict=True):
         dde.add_past_point(at, [WEIGHT * inclination[-1], Y_at - Y[-1]], [0.0, Theta])
     dde.set_integration_parameters(atol=tolerance, rtol=0.0, first_step=FIRST_STEP, safety_factor=SAFETY)
-    begin = perf_counter()
+    begin = process_time()
     dde.adjust_diff(START)
     dde.integrate(case["length"])
-    return perf_counter() - begin
+    return process_time() - begin
 
 
 def error(dde: Any, rows: np.ndarray) -> float:

@@ -51,9 +51,9 @@ def start(engine: Engine) -> Drilling | NativeDrilling:
 def seconds(engine: Engine) -> float:
     """Time of one run over 60 ℓ₁, from the parameters on."""
     case = paper_case()
-    begin = perf_counter()
+    begin = process_time()
     start(engine).advance(case.length, 0.0, case.active_weight_on_bit)
-    return perf_counter() - begin
+    return process_time() - begin
 
 
 def error(engine: Engine) -> float:

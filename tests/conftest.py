@@ -21,6 +21,7 @@ from boreprop.kernel.compiler import NoCompilerError, build_library, host_platfo
 from boreprop_fmu.native.binaries import BINARIES, binary_path, build_binaries, compile_binary, is_current
 from boreprop_fmu.pack.build import build_fmu
 from flavours import NATIVE, PYTHON, Flavour
+from forking import run_script
 from places import EXAMPLES
 
 # The suite tries the same examples everywhere, on machines slow and fast; `make soak` tries new ones. Hypothesis would
@@ -39,6 +40,10 @@ pytest_plugins = ["built_wheels", "studies", "steering_cases", "native_fmu", "nu
 for name in ("CI", "COLUMNS", "FORCE_COLOR", "GITHUB_ACTIONS", "LINES", "NO_COLOR", "PY_COLORS", "TTY_COMPATIBLE"):
     os.environ.pop(name, None)
 os.environ.pop("SOURCE_DATE_EPOCH", None)  # and what an FMU says of its date
+
+
+# what commands are slow to import
+OF_COMMANDS = ("boreprop.case.file", "boreprop_fmu.cli", "fmpy.simulation", "scipy.optimize", "scipy.spatial")
 
 
 Command = Callable[..., subprocess.CompletedProcess[str]]
@@ -147,9 +152,7 @@ def command(tmp_path: Path) -> Command:
     def run(name: str, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
         program = shutil.which(name, path=sysconfig.get_path("scripts"))
         assert program, f"{name} is not installed"
-        return subprocess.run(
-            [program, *map(str, arguments)], cwd=tmp_path, capture_output=True, text=True, encoding="utf-8", timeout=300
-        )
+        return run_script([program, *arguments], OF_COMMANDS, tmp_path)
 
     return run
 

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from .case.formations import Formation as Formation
     from .case.paper import paper_case as paper_case
     from .core.errors import BorepropError as BorepropError
+    from .core.ground import Wear as Wear
     from .core.survey import Survey as Survey
     from .core.system import BitRock as BitRock
     from .core.system import BottomHoleAssembly as BottomHoleAssembly
@@ -55,6 +56,7 @@ _HOMES = {  # public name → module
     "Stopped": "run.trajectory",
     "Survey": "core.survey",
     "Trajectory": "run.trajectory",
+    "Wear": "core.ground",
     "critical_dogleg": "analysis.tipping",
     "critical_eta_pi": "analysis.stability.roots",
     "engine": "run.engines",

@@ -4,7 +4,7 @@ from collections import Counter
 
 import pytest
 
-from boreprop.analysis.rippling import find_rippling
+from boreprop.analysis.rippling import last_wave
 from boreprop.analysis.tipping import drill_until_steady
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
@@ -23,7 +23,7 @@ def rippling_at(fate: str, lengths: tuple[float, ...]) -> Counter[float]:
     said: Counter[float] = Counter()
     for entry in NEAR_BIT[fate]:
         run = simulate(near_bit_case(entry), engine="native")
-        said.update(length for length in lengths if find_rippling(up_to(run, length)).ripples)
+        said.update(length for length in lengths if last_wave(up_to(run, length)).ripples)
     return said
 
 

@@ -71,7 +71,10 @@ def test_a_parameter_takes_the_place_of_what_formations_say_of_it() -> None:
     ("text", "message"),
     [
         ("[formation]\nmeasured_depth = 1.0", "formation: must be tables [[formation]], got"),
-        ("[[formation]]\ntilt_limit_deg = 1.0", "formation[1].measured_depth: must be given, got nothing"),
+        (
+            "[[formation]]\ntilt_limit_deg = 1.0",
+            "formation[1].measured_depth: must be given, or true_vertical_depth, and not both, got nothing",
+        ),
         (
             "[[formation]]\nmeasured_depth = 1.0",
             "formation[1].lateral_steering_resistance: must be given, or another of",
@@ -119,3 +122,117 @@ def test_a_bit_that_is_not_that_of_the_schedule_at_the_start_is_refused() -> Non
     )
     with pytest.raises(InputError, match=r"bit.tilt_limit_deg: must be left out, or 1.0 as drilling.schedule has it"):
         parse_case(text, Path("case.toml"))
+
+
+DEEP = """
+[[formation]]
+true_vertical_depth         = 990.0
+lateral_steering_resistance = 20.0
+
+[[formation]]
+true_vertical_depth = 1010.0
+tilt_limit_deg      = 0.25
+"""
+WEAR = "[bit.wear]\nweight_per_metre = 30.0\nlargest_weight = 500.0\n"
+
+
+def deep(text: str = DEEP) -> Case:
+    """The paper's case, its bit at a true vertical depth of 1000 m, with more text in its file."""
+    return parse_case(dump_case(replace(paper_case(), true_vertical_depth=1000.0)) + text, Path("case.toml"))
+
+
+def test_formations_by_true_vertical_depth_count_from_that_of_the_bit() -> None:
+    case = deep()
+    assert case.ground is not None
+    assert case.ground.tops == (-10.0, 10.0)
+    assert case.ground.rock == ((0.0, 0.0, 0.0), (20.0, 0.0, 0.0), (20.0, 0.0, radians(0.25)))
+    assert case.bit.lateral_steering_resistance == 20.0  # at the start
+    assert "true_vertical_depth = 1000.0" in dump_case(case)
+
+
+@pytest.mark.parametrize("text", [DEEP, WEAR, WEAR + DEEP])
+def test_a_case_with_ground_is_written_and_read_back(text: str) -> None:
+    case = deep(text)
+    assert case.ground is not None
+    assert parse_case(dump_case(case), Path("again.toml")) == case
+    assert parse_case(dump_case(case), Path("again.toml")).ground == case.ground
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (DEEP + LAYERS, "formation: true_vertical_depth: must be given of all formations, or of none, got (990.0, "),
+        (DEEP.replace("990.0", "1015.0"), "formation: true_vertical_depth: must increase, got (1015.0, 1010.0)"),
+        (DEEP.replace("990.0", "'a'"), "formation[1].true_vertical_depth: must be a number, got 'a'"),
+        (
+            DEEP.replace("= 990.0", "= 990.0\nmeasured_depth = 5.0"),
+            "formation[1].measured_depth: must be given, or true_vertical_depth, and not both, got ",
+        ),
+        (WEAR.replace("500.0", "0.0"), "bit.wear.largest_weight: must be > 0, got 0.0"),
+        (WEAR.replace("500.0", "true"), "bit.wear.largest_weight: must be a number, got True"),
+        (WEAR.replace("largest_weight = 500.0\n", ""), "bit.wear.largest_weight: must be given, got nothing"),
+        (WEAR + "gauge = 1.0\n", "bit.wear.gauge: must be one of weight_per_metre, largest_weight, got 1.0"),
+    ],
+)
+def test_ground_that_cannot_be_is_refused_with_its_key(text: str, message: str) -> None:
+    with pytest.raises(InputError) as refused:
+        deep("\n" + text)
+    assert message in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_wear_that_is_no_table_is_refused() -> None:
+    text = dump_case(paper_case()).replace("[bit]\n", "[bit]\nwear = 3.0\n")
+    with pytest.raises(
+        InputError, match=r"bit\.wear: must be a table with weight_per_metre and largest_weight, got 3\.0"
+    ):
+        parse_case(text, Path("case.toml"))
+
+
+def test_a_true_vertical_depth_that_is_no_number_is_refused() -> None:
+    text = dump_case(paper_case()).replace("[hole]\n", '[hole]\ntrue_vertical_depth = "deep"\n')
+    with pytest.raises(InputError, match=r"hole\.true_vertical_depth: must be a valid number, got 'deep'"):
+        parse_case(text, Path("case.toml"))
+
+
+SCHEDULE = '[drilling]\nschedule = {drilled_length = [0.0, 5.0], "stabilizer_clearance[1]" = [0.00366, 0.008]}\n'
+
+
+def test_clearances_are_columns_of_a_schedule(tmp_path: Path) -> None:
+    inline = parse_case(dump_case(paper_case()).replace("[drilling]\n", SCHEDULE), Path("case.toml"))
+    text = dump_case(paper_case()).replace("[drilling]\n", '[drilling]\nschedule = "log.csv"\n')
+    (tmp_path / "case.toml").write_text(text)
+    (tmp_path / "log.csv").write_text("measured_depth,stabilizer_clearance[1]\n0,3.66e-3\n12.32,8e-3\n")
+    clearances = ("stabilizer_clearance[1]", (3.66e-3, 8e-3))
+    assert inline.inputs == InputSchedule((0.0, 5.0), (clearances,))
+    assert load_case(tmp_path / "case.toml").inputs == InputSchedule((0.0, 5.0), (clearances,))
+    assert parse_case(dump_case(inline), Path("again.toml")) == inline
+    assert with_parameters(inline, {"stabilizer_clearance[1]": 1e-3}).inputs is None
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "message"),
+    [
+        (
+            "0.00366, 0.008",
+            "0.001, 0.008",
+            r"bha.stabilizer_clearances\[1\]: must be 0.001 as drilling.schedule has it",
+        ),
+        ("0.00366, 0.008", "0.00366, -1.0", r"stabilizer_clearance\[1\]\[2\]: must be >= 0"),
+        ("clearance[1]", "clearance[2]", r"stabilizer_clearance\[2\]: must be of one of the 1 non-ideal stabilizers"),
+        ("0.00366, 0.008", "0.00366, 'a'", r"stabilizer_clearance\[1\].*must be a valid number, got 'a'"),
+    ],
+)
+def test_clearances_that_cannot_be_are_refused(before: str, after: str, message: str) -> None:
+    text = dump_case(paper_case()).replace("[drilling]\n", SCHEDULE.replace(before, after))
+    with pytest.raises(InputError, match=message):
+        parse_case(text, Path("case.toml"))
+
+
+def test_clearances_as_wide_as_the_hole_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(
+        dump_case(paper_case()).replace("[drilling]\n", SCHEDULE.replace("0.008", "0.2"))
+    )
+    message = r"drilling.schedule.stabilizer_clearance\[1\]: must be < bit.diameter/2 = 0.10795, got 0.2"
+    with pytest.raises(InputError, match=message):
+        load_case(tmp_path / "case.toml")

@@ -40,6 +40,7 @@ def test_every_field_of_a_case_is_in_the_table(part: str, made: type) -> None:
         *PARTS,
         "inputs",
         "formations",
+        "wear",
     }  # which hold inputs by their names
 
 

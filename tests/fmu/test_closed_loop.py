@@ -26,6 +26,7 @@ from boreprop.core.drilling import Drilling
 from boreprop.core.quantities import INPUTS, quantity_of, scalar_names
 from boreprop.run.results import read_trajectory
 from boreprop.run.trajectory import Trajectory
+from forking import run_script
 from places import EXAMPLES
 
 CLOSED_LOOP = EXAMPLES / "closed_loop"
@@ -43,8 +44,7 @@ ecos = pytest.mark.skipif(not has_ecos(), reason="no ecospy, or no libtbb.so.12 
 
 
 def script(name: str, *arguments: object) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, str(CLOSED_LOOP / name), *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, encoding="utf-8", timeout=300)
+    return run_script([CLOSED_LOOP / name, *map(str, arguments)], ("numpy", "fmpy.simulation", "fmpy.ssp.simulation"))
 
 
 def make_ssp(path: Path, *arguments: object) -> Path:
@@ -104,6 +104,7 @@ def controller() -> Any:
     slave.start_inclination, slave.build_length = 1.0, 1.0
     slave.proportional_gain, slave.force_limit = 1e3, 100.0
     slave.enter_initialization_mode()
+    slave.next_survey = 0.0
     return slave
 
 
@@ -162,8 +163,8 @@ def test_the_plan_in_it_is_the_plan_of_the_example(ssp: Path) -> None:
     assert given.start_inclination == before
     assert given.build_length == pytest.approx(end - start, abs=1e-9)
     assert given.build_rate == pytest.approx((after - before) / (end - start), rel=1e-12)
-    first, second, _ = CASE.bha.stabilizer_positions
-    assert given.sensor_distance == pytest.approx((first + second) / 2)
+    assert (given.sensor_distance,) == CASE.bha.sensor_positions
+    assert (given.survey_interval,) == CASE.bha.sensor_intervals
 
 
 def test_the_controllers_module_is_named_after_its_content(unpacked: Path) -> None:

@@ -2,13 +2,11 @@
 
 import json
 import os
-import subprocess
-import sys
 from dataclasses import replace
+from functools import partial
 from itertools import product
 from math import degrees, inf, radians
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -22,15 +20,9 @@ from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
 from conftest import Command, Pack
 from flavours import Flavour, both_flavours
-from places import HOSTS
+from scenarios import report
 
-
-def host(scenario: str, *arguments: object) -> Any:
-    """What a scenario of fmu_host.py gives."""
-    command = [sys.executable, str(HOSTS / "fmu_host.py"), scenario, *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", timeout=300)
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+host = partial(report, "fmu_host")
 
 
 def assert_agrees(rows: list[dict[str, float]], expected: Trajectory, tolerance: float) -> None:

@@ -1,6 +1,5 @@
 """The same FMU in two importers that share no code: fmpy (Python) and libcosim (C++). In processes of their own."""
 
-import json
 import subprocess
 import sys
 from pathlib import Path
@@ -11,16 +10,14 @@ import pytest
 
 from flavours import both_flavours
 from places import HOSTS
+from scenarios import report
 
 pytest.importorskip("libcosimpy")
 
 
 def host(scenario: str, *arguments: object) -> Any:
-    """What a scenario of fmu_cosim_host.py gives; libcosim logs on stdout before it."""
-    command = [sys.executable, str(HOSTS / "fmu_cosim_host.py"), scenario, *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", timeout=120)
-    assert done.returncode == 0, done.stdout + done.stderr
-    return np.array(json.loads(done.stdout.splitlines()[-1]))
+    """What a scenario of fmu_cosim_host.py gives."""
+    return np.array(report("fmu_cosim_host", scenario, *arguments))
 
 
 @pytest.fixture(scope="module")

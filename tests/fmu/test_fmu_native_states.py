@@ -34,9 +34,9 @@ def test_a_state_that_is_not_whole_and_its_own_is_refused_and_changes_nothing(on
     one.initialize(rss_force=1e3)
     one.steps(5, 0.9)
     state = one.state()
-    assert state.startswith(b"boreprop-native-fmu-state-5 " + one.description.guid.encode())
+    assert state.startswith(b"boreprop-native-fmu-state-6 " + one.description.guid.encode())
     for content in spoilt(state).values():
-        with refused(one, "state: must be one of this FMU, boreprop-native-fmu-state-5 "):
+        with refused(one, "state: must be one of this FMU, boreprop-native-fmu-state-6 "):
             one.set_state(content)
         assert one.state() == state
 

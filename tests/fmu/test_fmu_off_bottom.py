@@ -1,10 +1,7 @@
 """Off bottom, as while a pipe is connected: no weight, no progress, and the hole waits. In a process of its own."""
 
-import json
-import subprocess
-import sys
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 import pytest
 from fmpy import read_model_description
@@ -12,15 +9,9 @@ from fmpy import read_model_description
 from boreprop.case.case import Case
 from boreprop.core.drilling import Drilling
 from flavours import Flavour, both_flavours
-from places import HOSTS
+from scenarios import report
 
-
-def host(scenario: str, *arguments: object) -> Any:
-    """What a scenario of fmu_off_bottom_host.py gives."""
-    command = [sys.executable, str(HOSTS / "fmu_off_bottom_host.py"), scenario, *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", timeout=60)
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+host = partial(report, "fmu_off_bottom_host")
 
 
 def under(case: Case, rss_force: float) -> dict[str, float]:

@@ -1,12 +1,9 @@
 """Where the axis of a BHA leaves the hole, the FMU's log says so, once. In a process of its own."""
 
-import json
-import subprocess
-import sys
 from dataclasses import replace
+from functools import partial
 from math import radians
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -19,7 +16,8 @@ from boreprop.report.tables.sag import outside_the_hole
 from boreprop.run.simulate import simulate
 from conftest import Command, Pack
 from flavours import LOGGED, Flavour, both_flavours
-from places import EXAMPLES, HOSTS
+from places import EXAMPLES
+from scenarios import report
 
 COLLARS = BottomHoleAssembly((13.716, 22.86, 50.292), (0.0, 0.0), 0.3, 1332.9, 9.575e6)  # 27 m of 7 in without a blade
 
@@ -38,12 +36,7 @@ def drops(inclination_deg: float, rss_force: float) -> Case:
     )
 
 
-def host(scenario: str, *arguments: object) -> Any:
-    """What a scenario of fmu_outside_host.py gives."""
-    command = [sys.executable, str(HOSTS / "fmu_outside_host.py"), scenario, *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", timeout=60)
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+host = partial(report, "fmu_outside_host")
 
 
 def told(case: Case, length: float) -> str:

@@ -1,8 +1,6 @@
 """The rules of the standard: which calls may be made when, what is logged and how, what a host may say of a run."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -10,16 +8,14 @@ import pytest
 
 from boreprop.core.quantities import PARAMETERS, scalar_names
 from flavours import LOGGED, Flavour, both_flavours
-from places import HOSTS
+from scenarios import play
 
 OK: tuple[str, list[Any]] = ("ok", [])
 
 
 def host(scenario: str, fmu: Path) -> tuple[Any, str]:
     """What a scenario of fmu_rules_host.py gives, and what went to stderr."""
-    command = [sys.executable, str(HOSTS / "fmu_rules_host.py"), scenario, str(fmu)]
-    done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", timeout=120)
-    assert done.returncode == 0, done.stderr
+    done = play("fmu_rules_host", scenario, fmu)
     return json.loads(done.stdout), done.stderr
 
 

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import zipfile
 from dataclasses import replace
+from functools import partial
 from math import inf, nan
 from pathlib import Path
 from typing import Any
@@ -26,16 +27,12 @@ from boreprop.core.system import BottomHoleAssembly
 from conftest import Pack
 from flavours import LOGGED, NATIVE, PYTHON, Flavour, both_flavours
 from places import HOSTS
+from scenarios import report
 
 SOURCES = {"boreprop": boreprop.__file__, "boreprop_fmu": boreprop_fmu.__file__}
 
 
-def host(scenario: str, *arguments: object) -> Any:
-    """What a scenario of fmu_trust_host.py gives."""
-    command = [sys.executable, str(HOSTS / "fmu_trust_host.py"), scenario, *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", timeout=300)
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+host = partial(report, "fmu_trust_host")
 
 
 def assert_close(row: dict[str, float], expected: dict[str, float], tolerance: float) -> None:
@@ -55,13 +52,14 @@ def version(folder: Path, name: str, case: Path, flavour: Flavour) -> Path:
         place.rename(place.with_stem(f"{place.stem}_before"))
         shutil.copy(path, place)
     program = (
-        "import sys; from pathlib import Path; from boreprop_fmu.native.binaries import build_binaries\n"
-        "if sys.argv[3] == 'native': list(build_binaries())\n"
+        "import sys; from pathlib import Path; from boreprop.kernel.compiler import host_platform\n"
+        "from boreprop_fmu.native.binaries import binary_path, compile_binary\n"
+        "if sys.argv[3] == 'native': compile_binary(binary_path(host_platform()), None)\n"
         "from boreprop_fmu.pack.build import build_fmu; from boreprop import load_case\n"
         "build_fmu(load_case(Path(sys.argv[1])), Path(sys.argv[2]), runtime=sys.argv[3])"
     )
     fmu = folder / "Borehole.fmu"
-    environment = {**os.environ, "PYTHONPATH": str(folder)}
+    environment = {**os.environ, "CFLAGS": "-O0", "PYTHONPATH": str(folder)}  # which is quick to compile
     subprocess.run([sys.executable, "-c", program, case, fmu, flavour.runtime], env=environment, check=True)
     return fmu
 

@@ -70,8 +70,8 @@ class Instance:
 
     def set_names(self, values: dict[str, object]) -> None:
         for name, value in values.items():
-            put = {"Real": self.slave.setReal, "String": self.slave.setString}[self.variables[name].type]
-            put([self.variables[name].valueReference], [value])
+            put = {"Real": self.slave.setReal, "Integer": self.slave.setInteger, "String": self.slave.setString}
+            put[self.variables[name].type]([self.variables[name].valueReference], [value])
 
     def get(self, name: str) -> Any:
         get = {"Real": self.slave.getReal, "Integer": self.slave.getInteger, "String": self.slave.getString}
@@ -146,6 +146,27 @@ def follow(fmu: str, schedule: str, step: str, count: str, time: str, rate: str)
             assert one.step(float(step)) == "ok", one.log
             rows.append(one.row())
         return {"rows": rows, "modules": modules(one)}
+
+
+def act(fmu: str, actions: str) -> object:
+    """What actions give: ["set", values] and ["step", size] a status, ["row"] a row; ["save"] and ["back"] nothing."""
+    answers: list[object] = []
+    with instance(fmu) as one:
+        one.initialize()
+        saved, time = b"", 0.0
+        for kind, *given in json.loads(actions):
+            if kind == "set":
+                answers.append(attempt(one.set_names, *given))
+            elif kind == "step":
+                answers.append(one.step(*given))
+            elif kind == "row":
+                answers.append(one.row())
+            elif kind == "save":
+                saved, time = one.state(), one.time
+            else:
+                one.set_state(saved)
+                one.time = time
+    return answers
 
 
 def respond(fmu: str) -> object:

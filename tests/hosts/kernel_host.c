@@ -39,7 +39,8 @@ static double number(void) {
 
 static int lead(char **arguments) {
     void *(*start)(
-        const int *, const double *, const double *, long long, const double *, const double *, const double *,
+        const int *, const double *, const double *, long long, const double *, const double *, const double *, int,
+        const double *,
         const double *, void *
     );
     long long (*follow)(void *, long long, const double *, const double *, const int *, double *, void *);
@@ -63,7 +64,7 @@ static int lead(char **arguments) {
     }
     for (int i = 0; i < count[STRUCTURE]; i++) structure[i] = (int)list[STRUCTURE][i];
     void *run = start(
-        structure, list[PARAMETERS], list[OPTIONS], count[DEPTHS], list[DEPTHS], list[INCLINATIONS], list[AZIMUTHS],
+        structure, list[PARAMETERS], list[OPTIONS], count[DEPTHS], list[DEPTHS], list[INCLINATIONS], list[AZIMUTHS], 0, NULL,
         list[INPUTS], problem
     );
     must(run != NULL, "the run must start");

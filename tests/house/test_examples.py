@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import degrees, pi, radians
+from runpy import run_path
 
 import numpy as np
 import pytest
@@ -154,3 +155,26 @@ def test_the_case_of_the_paper_ripples() -> None:
     run = simulate(paper)
     found = find_rippling(run)
     assert found.wavelength == pytest.approx(1.386 * paper.bha.length_scale, rel=0.01)
+
+
+def test_interbedded_drops_in_soft_rock_and_with_a_blunt_bit_and_a_force_by_layers_holds_it() -> None:
+    """What docs/gallery.md says of it."""
+    script = run_path(str(EXAMPLES / "interbedded.py"))
+    case = load_case(EXAMPLES / "interbedded.toml")
+    worn = simulate(case)
+    held = script["held"](case, worn)
+    rates = [script["dropped"](run) for run in (simulate(replace(case, wear=None)), worn, simulate(held))]
+    sharp, blunt, straight = (np.array([rate[number] for number in range(1, 9)]) for rate in rates)
+    soft, hard = [1, 3, 6], [0, 2, 5, 7]
+    assert sharp[soft] == pytest.approx(-0.4, abs=0.05)
+    assert sharp[hard] == pytest.approx(-0.05, abs=0.02)
+    assert (np.diff(blunt[hard]) < 0.0).all()
+    assert blunt[7] == pytest.approx(-0.3, abs=0.05)
+    assert np.abs(straight).max() < 0.1
+    assert degrees(simulate(held)["borehole_inclination"][-1]) == pytest.approx(45.0, abs=0.2)
+    forces = held.schedule.rss_force
+    assert [round(force / 1e3, 1) for force in (min(forces), max(forces), forces[-1])] == [0.6, 2.3, 1.8]
+    last_soft = worn["formation"] == 7
+    assert worn["eta_pi"][last_soft].max() == pytest.approx(0.07, abs=0.005)
+    waves = np.degrees(worn["borehole_inclination"][last_soft])
+    assert np.ptp(waves[-60:]) > 4 * np.ptp(waves[60:120])  # they grow

@@ -40,7 +40,7 @@ def planned(tree: Path) -> str:
 
 
 def test_what_is_there_is_not_made_again(tree: Path) -> None:
-    assert planned(tree).strip() == ".venv/bin/python -m pytest -n auto"
+    assert planned(tree).strip() == ".venv/bin/python -m pytest -n auto --dist worksteal"
 
 
 @pytest.mark.parametrize("changed", C)

@@ -199,7 +199,8 @@ def tree(tmp_path: Path) -> Path:
 
 def run(tree: Path, *words: str, compiler: str | None = None) -> subprocess.CompletedProcess[str]:
     paths = os.pathsep.join([str(tree / "model"), str(tree / "fmu_build")])
-    environment = os.environ | {"PYTHONPATH": paths} | ({"CC": compiler} if compiler else {})
+    quickly = {"CFLAGS": "-O0"}
+    environment = os.environ | quickly | {"PYTHONPATH": paths} | ({"CC": compiler} if compiler else {})
     return subprocess.run(
         [sys.executable, "-m", *words], cwd=tree, env=environment, capture_output=True, text=True, check=False
     )

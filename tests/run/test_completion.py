@@ -9,7 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case, InputSchedule, Schedule
+from boreprop.case.formations import Formation
+from boreprop.core.ground import Wear
 from boreprop.core.quantities import BY_NAME, OUTPUTS, scalar_names
 from boreprop.core.survey import Survey
 from boreprop.core.system import BottomHoleAssembly
@@ -43,6 +45,42 @@ def runs(case: Case) -> dict[int, Trajectory]:
         3: BottomHoleAssembly((3.0, 6.5, 11.0), (2e-3, 4e-3), 0.5, 1100.0, 8e6),
     }
     return {n: simulate(replace(case, bha=bha, schedule=STEERED), length=20.0) for n, bha in bhas.items()}
+
+
+@pytest.fixture(scope="module")
+def interbedded(case: Case) -> list[Trajectory]:
+    """Runs in rock by depth or by length, with a bit that becomes blunt and clearances that open."""
+    layers = (
+        Formation(None, 20.0, tilt_limit=0.01, true_vertical_depth=5.0),
+        Formation(None, 6.0, tilt_limit=0.003, true_vertical_depth=12.0),
+    )
+    clearances = ("stabilizer_clearance[1]", (3.66e-3, 0.0, 8e-3))
+    rock = ("lateral_steering_resistance", (10.0, 25.0, 5.0)), ("bit_tilt_limit", (0.02, 0.004, 0.01))
+    worn = replace(case, schedule=STEERED, wear=Wear(30.0, 400.0))
+    opening = InputSchedule((0.0, 6.3, 13.0), (clearances,))
+    return [
+        simulate(each, length=20.0)
+        for each in (
+            replace(worn, inputs=opening, formations=layers),
+            replace(worn, inputs=InputSchedule((0.0, 6.3, 13.0), (*rock, clearances))),
+        )
+    ]
+
+
+def test_what_follows_of_a_row_is_that_of_its_rock_bit_and_clearances(interbedded: list[Trajectory]) -> None:
+    changing = ("lateral_steering_resistance", "bit_tilt_limit", "stabilizer_clearance")  # as in files of other tools
+    for run in interbedded:
+        for missing in (
+            ("eta_pi",),
+            ("active_weight_on_bit",),
+            ("bit_tilt", "borehole_inclination", "bit_tilt_saturation"),
+            ("stabilizer_force", "stabilizer_contact"),
+        ):
+            completed = complete(without(run, *missing, *changing))
+            for name in run:
+                if variable(name) in missing:
+                    scale = max(1.0, float(np.abs(run[name]).max()))
+                    np.testing.assert_allclose(completed[name], run[name], rtol=0, atol=1e-8 * scale, err_msg=name)
 
 
 # Row by row

@@ -12,7 +12,7 @@ import pytest
 
 from boreprop.analysis.axis import axis_ripple
 from boreprop.analysis.hole import bit_positions
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case, InputSchedule, Schedule
 from boreprop.case.file import load_case
 from boreprop.core.survey import Survey
 from boreprop.errors import InputError
@@ -195,6 +195,23 @@ def test_the_plot_of_the_bit_tilt_shows_its_limits(recorded: Path, case: Case) -
         ends = read(recorded, f"plots/bit_tilt/{side}_limit", "Scalars:scalars")
         assert (min(ends), max(ends)) == (0, 1000 * LENGTH)
         np.testing.assert_allclose(list(ends.values()), np.degrees(limit))
+
+
+def test_limits_and_blades_are_those_of_the_rock_and_the_clearances_where_the_bit_is(
+    case: Case, tmp_path: Path
+) -> None:
+    tilts, clearances = ("bit_tilt_limit", (0.02, 0.005)), ("stabilizer_clearance[1]", (3.66e-3, 1e-2))
+    run = simulate(replace(case, inputs=InputSchedule((0.0, 15.0), (tilts, clearances))), sample_interval=1.0)
+    record(run, save=tmp_path / "run.rrd")
+    ends = read(tmp_path / "run.rrd", "plots/bit_tilt/upper_limit", "Scalars:scalars")
+    assert list(ends) == [0, 14_000, 15_000, 1000 * LENGTH]
+    np.testing.assert_allclose(np.ravel(list(ends.values())), np.degrees([0.02, 0.02, 0.005, 0.005]), atol=5.1e-5)
+    blades = stacked(tmp_path / "run.rrd", "bit_frame/stabilizers", "LineStrips2D:strips")[
+        :, 0, :, 0
+    ]  # of the first one
+    lateral = choose_scales([run], whole=True, section=np.zeros((1, 2))).lateral
+    wide = case.bit_diameter - 2 * np.where(run["drilled_length"] < 15.0, 3.66e-3, 1e-2)
+    np.testing.assert_allclose(np.abs(np.diff(blades, axis=1))[:, 0], lateral * wide, rtol=1e-5)
 
 
 @pytest.mark.parametrize(

@@ -26,7 +26,7 @@ from boreprop_viz.track import DEPTH_TIMELINE, TIMELINE
 
 LENGTH = 60.0
 RATE = 0.5  # m/s
-SIZE = 960, 600
+SIZE = 720, 450
 BLANK = 1e-3  # of a picture: a line across it is three times that
 
 pytestmark = [

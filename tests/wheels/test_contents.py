@@ -55,6 +55,21 @@ def test_its_name_and_its_tags_say_for_which_machines_it_is(
     assert about["Root-Is-Purelib"] == "false"
 
 
+def test_its_description_is_the_readme_without_what_leads_to_other_files(contents: dict[str, bytes]) -> None:
+    head, _, text = metadata(contents, "METADATA").decode().partition("\n\n")
+    assert "\nDescription-Content-Type: text/markdown" in head
+    assert not re.findall(r"\]\((?!https?://)|docs/", text)
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert [line for line in text.splitlines() if line not in readme.splitlines()] == [
+        line.replace("[Install](docs/install.md)", "Install") for line in readme.splitlines() if "[Install]" in line
+    ]
+    assert readme[readme.index("From Python:") : readme.index("## Documentation")] in text
+    assert [line for line in text.splitlines() if line.startswith("    ")] == [
+        line for line in readme.splitlines() if line.startswith("    ")
+    ]
+    assert text.rstrip().splitlines()[-1] == readme.rstrip().splitlines()[-1]
+
+
 def test_it_holds_the_packages_and_the_libraries_and_nothing_else(contents: dict[str, bytes], target: str) -> None:
     sources = {
         f"{name}/{path.relative_to(ROOT / root / name).as_posix()}": path

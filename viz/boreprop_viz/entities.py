@@ -9,6 +9,7 @@ import rerun as rr
 
 from boreprop.analysis.axis import AXIS_REACH, axis_ripple
 from boreprop.core.quantities import BY_NAME
+from boreprop.run.ground import on_rows
 from boreprop.run.trajectory import Trajectory
 from boreprop.units import SMALL_LENGTH, UNITS
 
@@ -67,9 +68,9 @@ def log_bit(track: Track, shapes: Shapes) -> None:
 def log_tilt(track: Track, shapes: Shapes) -> None:
     """The axis of the bit, the direction of the hole, and the limits of the angle between them."""
     at, reach = moments(shapes.rows), AHEAD * float(shapes.frame.stabilizer[-1])
-    limit = track.case.bit.tilt_limit
+    limit = on_rows(track.case, shapes.rows, "bit_tilt_limit")
     directions = {
-        "limits": shapes.hole_turn[:, None] + np.array([-limit, limit]),
+        "limits": shapes.hole_turn[:, None] + np.multiply.outer(limit, (-1.0, 1.0)),
         "hole_axis": shapes.hole_turn[:, None],
         "bit_axis": shapes.bit_turn[:, None],
     }
@@ -136,17 +137,20 @@ def log_plots(track: Track, shapes: Shapes) -> None:
     """The curves of all plots for which the run has columns."""
     rows = shapes.rows
     for name, plot in PLOTS.items():
-        curves = {track.entity(curve(name, scalar)): scalar for scalar in plot.names(rows.n)}
+        curves = {track.entity(curve(name, scalar)): scalar for scalar in plot.names(rows.structure)}
         for entity, scalar in (curves | {planned_curve(track, name): plot.planned}).items():
             if scalar in rows.columns:
                 send_curve(track, entity, moments(rows), plot.unit.factor * rows[scalar])
 
 
 def log_tilt_limits(track: Track, shapes: Shapes) -> None:
-    """±ψ*, from the first row to the last."""
-    ends, limit = moments(shapes.rows).where(np.array([0, -1])), UNITS["rad"].factor * track.case.bit.tilt_limit
+    """±ψ*, from the first row to the last, with both ends of each change."""
+    limit = UNITS["rad"].factor * on_rows(track.case, shapes.rows, "bit_tilt_limit")
+    changes = np.flatnonzero(np.diff(limit))
+    at = np.unique([0, *changes, *(changes + 1), len(limit) - 1])
+    ends = moments(shapes.rows).where(at)
     for side, sign in (("lower", -1.0), ("upper", 1.0)):
-        send_curve(track, track.entity(f"plots/bit_tilt/{side}_limit"), ends, np.full(2, sign * limit))
+        send_curve(track, track.entity(f"plots/bit_tilt/{side}_limit"), ends, sign * limit[at])
 
 
 def find_ripple(track: Track, stretch: Stretch, begin: float, rippled: float) -> tuple[Array, Array]:

@@ -28,7 +28,7 @@ SOFTWARE_DRIVERS = sorted(Path("/usr/share/vulkan/icd.d").glob("lvp_icd*.json"))
 LOG = "warn,re_renderer=error,egui_wgpu=error"  # without warnings that the software driver is slow
 # the settings of a viewer in the light theme; those of another version it would not read
 LIGHT = f'{{"egui": "(options:(theme_preference:Light))", "rerun.version": "{version("rerun-sdk")}"}}'
-GREETING = 30  # frames drawn first, since a note of the viewer's covers the first 16
+GREETING = 30  # frames drawn first without a window, since a note of the viewer's covers the first 16
 PATIENCE = 60.0  # s to wait for an answer: a viewer on a busy machine may take half of it to start
 
 
@@ -107,10 +107,7 @@ def viewer(recording: Path, width: int = 1600, height: int = 1000, *, light: boo
             client = wait_for(lambda: connected(process, port), "the viewer must answer")
             client.open(str(recording.resolve(strict=True)))
             wait_for(lambda: not client.get_state().loading, f"{recording}: must load")
-            if light:  # a window is drawn anew for a picture only
-                for _ in range(GREETING):
-                    client.take_screenshot()
-            else:
+            if not light:
                 client.capture_profile_trace(str(Path(folder, "profile")), num_frames=GREETING)  # draws as many
             yield Viewer(client)
         finally:

@@ -11,6 +11,7 @@ from boreprop.analysis.rippling import find_rippling
 from boreprop.case.case import Case
 from boreprop.core.quantities import BY_NAME
 from boreprop.run.completion import case_of
+from boreprop.run.ground import largest_along
 from boreprop.run.trajectory import Trajectory
 from boreprop.units import UNITS
 
@@ -126,11 +127,11 @@ def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) ->
     ranges = {name: plot_range(PLOTS[name], some) if whole else None for name, some in curves.items() if some}
     starts = {case.survey.measured_depth[-1] for case in cases}
     ripples = [RIPPLES * wave.axis_amplitude for wave in waves] or [
-        FULL_RIPPLE * wavelength * max(case.bit.tilt_limit for case in cases)
+        FULL_RIPPLE * wavelength * max(largest_along(case, "bit_tilt_limit") for case in cases)
     ]
     most_steps = MOST_STEPS_OF_RIPPLE if len(runs) == 1 else MOST_STEPS_OF_RIPPLES
     length, duration = extent(runs, cases, whole)
-    limit = TILTS * max(case.bit.tilt_limit for case in cases)
+    limit = TILTS * max(largest_along(case, "bit_tilt_limit") for case in cases)
     start = starts.pop() if len(starts) == 1 else None
     begin = min(float(run["drilled_length"][0]) for run in runs)
     return Scales(
@@ -174,12 +175,12 @@ def largest_force(run: Trajectory) -> float:
 def likely_force(case: Case) -> float:
     """A force of the size to be expected in a case, N: that which bends half the BHA by ψ*/2, or that of the pads."""
     stiffness = 3 * case.bha.flexural_stiffness / case.bha.half_length**2
-    return max(stiffness * case.bit.tilt_limit / 2, *map(abs, case.schedule.rss_force))
+    return max(stiffness * largest_along(case, "bit_tilt_limit") / 2, *map(abs, case.schedule.rss_force))
 
 
 def severities(cases: Sequence[Case]) -> tuple[float, ...]:
     """Round dogleg severities, increasing to that of a hole that turns by 2 ψ* over half the BHA, in the unit shown."""
-    highest = max(2 * case.bit.tilt_limit / case.bha.half_length for case in cases)
+    highest = max(2 * largest_along(case, "bit_tilt_limit") / case.bha.half_length for case in cases)
     found = [round_down(UNITS["rad/m"].factor * highest)]
     while len(found) < len(BY_SEVERITY) - 1:
         found.append(round_down(0.9 * found[-1]))

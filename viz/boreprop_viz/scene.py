@@ -15,6 +15,7 @@ from boreprop.analysis.hole import HoleAxis, bit_positions
 from boreprop.analysis.plan import planned_hole
 from boreprop.analysis.sag import BeamInHole
 from boreprop.case.case import Case
+from boreprop.core.quantities import CLEARANCES
 from boreprop.core.survey import Survey
 from boreprop.run.trajectory import Trajectory
 
@@ -111,8 +112,13 @@ class Shapes:
     @property
     def blades(self) -> Array:
         """Both ends of the blades of each stabilizer, (m, n, 2)."""
-        reach = np.multiply.outer(self.frame.blade_radius, (-1.0, 1.0))
-        return self.bha_axis[:, self.frame.at_stabilizer, None] + reach
+        radius = np.tile(self.frame.blade_radius, (self.rows.row_count, 1))
+        for i, name in enumerate(CLEARANCES):  # which may change along a run
+            if name in self.rows:
+                radius[:, i] = np.maximum(self.frame.radius - self.rows[name], 0.0)
+        reach: Array = np.multiply.outer(radius, (-1.0, 1.0))
+        ends: Array = self.bha_axis[:, self.frame.at_stabilizer, None] + reach
+        return ends
 
     @property
     def contact_points(self) -> Array:

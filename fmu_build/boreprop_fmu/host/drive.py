@@ -13,9 +13,10 @@ from fmpy.fmi1 import FMICallException
 from boreprop.case.case import RATE, InputSchedule, Schedule
 from boreprop.case.packed import read_packed_case
 from boreprop.core.checks import check_number
-from boreprop.core.quantities import names_of_runs
+from boreprop.core.quantities import CLEARANCES, names_of_runs
 from boreprop.errors import InputError
 from boreprop.run.course import Course
+from boreprop.run.ground import rock_in_layers
 from boreprop.run.trajectory import Stopped, Trajectory
 
 from .instance import interruptions, open_instance, read_description, uninterrupted
@@ -95,7 +96,8 @@ class FmuRun:
             if name not in self._variables:
                 raise InputError(f"{fmu}: must have a variable {name!r}, got {', '.join(self._variables) or 'none'}")
         n = sum(name.startswith("average_inclination[") for name in self._variables)
-        own = [name for name in names_of_runs(n) if name in self._variables]
+        scheduled = [name for name in CLEARANCES if self._course and name in self._course.names]
+        own = [name for name in (*names_of_runs(n), *scheduled) if name in self._variables]
         self.columns = ["time", *own]
 
     def __len__(self) -> int:
@@ -108,12 +110,13 @@ class FmuRun:
             with open_instance(
                 self.fmu, self._description, messages, start=self.start, stop=self.stop, warn=self._heed
             ) as slave:
-                if self._tolerance is not None:
-                    slave.setReal([self._variables["relative_tolerance"].valueReference], [self._tolerance])
-                inputs = GivenInputs(slave, self._variables, self._course, self.start)
-                read = self._reader(slave)
-                self._advance(time, time, inputs)
-                slave.exitInitializationMode()
+                with uninterrupted(handlers):
+                    if self._tolerance is not None:
+                        slave.setReal([self._variables["relative_tolerance"].valueReference], [self._tolerance])
+                    inputs = GivenInputs(slave, self._variables, self._course, self.start)
+                    read = self._reader(slave)
+                    self._advance(time, time, inputs)
+                    slave.exitInitializationMode()
                 for k in range(len(self)):
                     point = self.start + k * self.step
                     with uninterrupted(handlers):
@@ -145,6 +148,8 @@ class FmuRun:
                 raise
             stopped = str(error)
         columns = dict(zip(self.columns, rows[:done].T.copy(), strict=True))
+        if self.case is not None and self.case.in_layers:
+            columns |= rock_in_layers(self.case, columns["formation"])
         trajectory = Trajectory(columns, self.case, stopped)
         if stopped:
             raise Stopped(stopped, trajectory)

@@ -57,7 +57,7 @@ static int settable(const Component *c, fmi2ValueReference reference, const char
     char why[LINE];
     const Variable *variable = variable_at(c, reference);
     if (variable->role == OUTPUT) explain(why, "%s: must not be set, it is an output, got %s", variable->name, got);
-    else if (variable->role == PARAMETER && c->phase == STEPPING)
+    else if (variable->role == PARAMETER && c->phase == STEPPING && !is_tunable(variable))
         explain(why, "%s: must not change after initialization, got %s", variable->name, got);
     else return 1;
     fail(c, fmi2Error, why);

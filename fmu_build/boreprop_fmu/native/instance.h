@@ -64,12 +64,13 @@ static fmi2Status fail_by(const Component *c, fmi2Status status, const Problem *
 /* The drilling system */
 
 /* A drilling system that has not begun; NULL with `why` if the parameters are bad. */
-static Run *new_run(const Variables *all, const double value[MOST_VARIABLES], char why[LINE]) {
+static Run *new_run(const PackedCase *packed, const double value[MOST_VARIABLES], char why[LINE]) {
+    const Variables *all = &packed->variables;
     System system = system_of(all->structure, value + all->first_parameter);
     Run *run = calloc(1, sizeof *run);
     Problem problem;
     if (!run) explain(why, "run: must fit into the memory");
-    else if (run_prepare(run, &system, USUAL_OPTIONS, &problem) == DONE) return run;
+    else if (run_prepare(run, &system, packed->ground, USUAL_OPTIONS, &problem) == DONE) return run;
     else tell(&problem, why);
     run_end(run);
     return NULL;
@@ -138,7 +139,7 @@ static int begin_drilling(Component *c, char why[LINE]) {
     char fault[LINE];
     if (c->survey_file[0] && !(numbers = read_survey(c->survey_file, &survey, fault)))
         return explain(why, "%.*s (survey_file)", LINE - 32, fault);
-    c->run = new_run(&c->packed.variables, c->value, why);
+    c->run = new_run(&c->packed, c->value, why);
     if (c->run && run_start(c->run, &survey, present_inputs(c), &problem) != DONE) {
         tell(&problem, why);
         run_end(c->run);
@@ -205,22 +206,39 @@ static double *kept_state(const Drilling *drilling, char why[LINE]) {
     return state;
 }
 
+/* Let the run drill on to a length under inputs, with the clearances as they are set; 0 with `why` if that fails, and
+   nothing has moved. */
+static int advance(Component *c, double to, Inputs inputs, char why[LINE]) {
+    Drilling *drilling = &c->run->drilling;
+    const double *clearances = c->value + c->packed.variables.first_clearance;
+    double *before = NULL;
+    Problem problem;
+    Status status = DONE;
+    if (!c->run_has_inputs && has_other_clearances(drilling, clearances)) {
+        if (!(before = kept_state(drilling, why))) return 0;
+        status = run_change_clearances(c->run, clearances, &problem);
+    }
+    if (status == DONE) status = run_advance(c->run, to, inputs, &problem);
+    if (status != DONE && before) drilling_return(drilling, before);
+    free(before);
+    return status == DONE || tell(&problem, why);
+}
+
 /* Give the run, where it is, the present inputs; 0 with `why` if that fails. Off bottom for a moment only: `give_back` is
    to be called next, and it goes on as if it had never stopped. */
 static int take_inputs(Component *c, double **before, char why[LINE]) {
-    Problem problem;
     *before = NULL;
     if (!ready(c, why)) return 0;
     Drilling *drilling = &c->run->drilling;
     int off_bottom = c->value[IN_ACTIVE_WEIGHT_ON_BIT] == 0.0;
     if (off_bottom && !(*before = kept_state(drilling, why))) return 0;
-    if (c->run_has_inputs || run_advance(c->run, drilling_length(drilling), present_inputs(c), &problem) == DONE) {
+    if (c->run_has_inputs || advance(c, drilling_length(drilling), present_inputs(c), why)) {
         c->run_has_inputs = !off_bottom;
         return 1;
     }
     free(*before); /* nothing has moved */
     *before = NULL;
-    return tell(&problem, why);
+    return 0;
 }
 
 static void give_back(Component *c, double *before) {

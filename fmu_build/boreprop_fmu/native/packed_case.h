@@ -4,6 +4,7 @@
 #define BOREPROP_PACKED_CASE_H
 
 #include "files.h"
+#include "ground.h"
 #include "survey.h"
 #include "variables.h"
 
@@ -21,6 +22,8 @@ typedef struct {
     double start[MOST_VARIABLES]; /* by value reference; 0 for outputs */
     Survey survey;
     double *stations; /* the numbers of the survey; to be freed */
+    Ground ground;
+    double *layers; /* the numbers of the ground, NULL without any; to be freed */
 } PackedCase;
 
 /* What is read line by line. */
@@ -106,14 +109,37 @@ static int read_stations(CaseFile *file, PackedCase *packed, char why[LINE]) {
     return explain(why, "%s: %s", file->path, fault);
 }
 
+/* The ground, number by number as ground.h has them; 0 numbers if there is none. */
+static int read_ground(CaseFile *file, PackedCase *packed, char why[LINE]) {
+    char name[48];
+    long count;
+    if (!read_count(file, "ground", 0, (long)strlen(file->at) / 2 + (long)ground_size(0), &count, why)) return 0;
+    if (!count) return 1;
+    int layers = (int)((count - ground_size(0)) / (ROCK + 1));
+    if (layers < 0 || ground_size(layers) != count)
+        return explain(
+            why, "%s:%ld: ground: must be as many numbers as layers have, got %ld", file->path, file->line, count
+        );
+    packed->layers = calloc((size_t)count, sizeof *packed->layers);
+    if (!packed->layers) return explain(why, "%s: must fit into the memory, got %ld numbers", file->path, count);
+    for (long k = 0; k < count; k++) {
+        snprintf(name, sizeof name, "ground[%ld]", k + 1);
+        if (!read_number(file, name, &packed->layers[k], why)) return 0;
+    }
+    packed->ground = ground_of(layers, packed->layers);
+    return 1;
+}
+
 static int read_structure(CaseFile *file, Structure *structure, char why[LINE]) {
-    long n, sections, axial, points;
+    long n, sections, axial, points, layered, sensors;
     if (!read_count(file, "stabilizers", 1, MAX_STABILIZERS, &n, why)) return 0;
     if (!read_count(file, "sections", 0, MAX_SECTIONS, &sections, why)) return 0;
     if (!read_count(file, "axial_load", 0, 1, &axial, why)) return 0;
     if (!read_count(file, "body_points", 0, MAX_POINTS, &points, why)) return 0;
+    if (!read_count(file, "layered", 0, 1, &layered, why)) return 0;
+    if (!read_count(file, "sensors", 0, MAX_SENSORS, &sensors, why)) return 0;
     structure->n = (int)n, structure->sections = (int)sections, structure->axial = (int)axial;
-    structure->points = (int)points;
+    structure->points = (int)points, structure->layered = (int)layered, structure->sensors = (int)sensors;
     return 1;
 }
 
@@ -123,12 +149,15 @@ static int read_lines(CaseFile *file, PackedCase *packed, char why[LINE]) {
     Structure structure;
     if (!read_identity(file, packed, why) || !read_structure(file, &structure, why)) return 0;
     list_variables(all, structure);
-    for (int i = 0; i < all->count; i++)
-        if (all->at[i].role != OUTPUT && all->at[i].kind == REAL &&
-            !read_number(file, all->at[i].name, &packed->start[i], why))
-            return 0;
+    for (int i = 0; i < all->count; i++) {
+        const Variable *own = &all->at[i];
+        if (own->role == OUTPUT || own->kind == STRING) continue;
+        if (!read_number(file, own->name, &packed->start[i], why)) return 0;
+        if (!is_value_of(own->kind, packed->start[i]))
+            return explain(why, "%s:%ld: %s: must be a whole number", file->path, file->line, own->name);
+    }
     if (!read_radius(file, packed, why)) return 0;
-    if (!read_stations(file, packed, why)) return 0;
+    if (!read_stations(file, packed, why) || !read_ground(file, packed, why)) return 0;
     if (!*file->at) return 1;
     file->at[strcspn(file->at, "\r\n")] = '\0';
     quoted(file->at, shown);

@@ -38,7 +38,11 @@ static int restore(Component *c, const Saved *saved, char why[LINE]) {
     Problem problem;
     if (size < least) return explain(why, "state: must be one of this FMU, got one of %lu bytes", (unsigned long)size);
     for (int i = 0; i < FIXED; i++) fixed[i] = get_double(&from);
-    for (int i = 0; i < all->count; i++) value[i] = get_double(&from);
+    for (int i = 0; i < all->count; i++) {
+        value[i] = get_double(&from);
+        if (!is_value_of(all->at[i].kind, value[i]))
+            return explain(why, "state: must be one of this FMU, got one whose %s is no Integer", all->at[i].name);
+    }
     double text = fixed[8];
     int phase = fixed[0] >= 0.0 && fixed[0] <= 8.0 ? (int)fixed[0] : 0;
     if (!(phase == INSTANTIATED || phase == INITIALIZATION || phase == STEPPING || phase == TERMINATED) ||
@@ -57,7 +61,7 @@ static int restore(Component *c, const Saved *saved, char why[LINE]) {
             explain(why, "state: must be one of this FMU, got one with text that is not UTF-8");
             count = -1;
         }
-        if (count > 0) run = new_run(all, value, why);
+        if (count > 0) run = new_run(&c->packed, value, why);
         if (run && run_restore(run, numbers, count, &problem) != DONE) {
             tell(&problem, why);
             run_end(run);

@@ -18,12 +18,11 @@ static int drill_on(Component *c, double to, const double end[INPUT_COUNT], char
     weight = larger(weight, least), end_weight = larger(end_weight, least);
     Inputs inputs = held_inputs(c);
     inputs.rss_force = force, inputs.active_weight_on_bit = weight;
-    Problem problem;
     if (way > 0) {
         inputs.rss_force_slope = (end[IN_RSS_FORCE] - force) / way;
         inputs.active_weight_on_bit_slope = (end_weight - weight) / way;
     }
-    if (run_advance(c->run, to, inputs, &problem) != DONE) return tell(&problem, why);
+    if (!advance(c, to, inputs, why)) return 0;
     if (way > 0) c->weight = end_weight;
     c->run_has_inputs = held && (stays || (way > 0 && !axial));
     return 1;

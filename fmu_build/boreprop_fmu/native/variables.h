@@ -3,6 +3,7 @@
 #define BOREPROP_VARIABLES_H
 
 #include "system.h"
+#include <limits.h>
 
 typedef enum { INPUT, OUTPUT, PARAMETER } Role;
 typedef enum { REAL, INTEGER, BOOLEAN, STRING } Kind;
@@ -20,9 +21,15 @@ enum { MOST_VARIABLES = INPUT_COUNT + MOST_OUTPUTS + MOST_PARAMETERS + 1 };
 typedef struct {
     Structure structure;
     int count;
-    int first_output, first_parameter, eta_pi, relative_tolerance, survey_file; /* value references */
+    /* value references */
+    int first_output, first_parameter, first_clearance, eta_pi, relative_tolerance, survey_file;
     Variable at[MOST_VARIABLES];
 } Variables;
+
+/* Whether a number can be the value of a variable of this kind. */
+static int is_value_of(Kind kind, double value) {
+    return kind != INTEGER || (fabs(value) <= INT_MAX && value == floor(value));
+}
 
 static void add_variables(Variables *all, int place, Name quantity, Size size, Role role, Kind kind) {
     for (int i = 0; i < value_count(size, all->structure); i++) {
@@ -44,11 +51,19 @@ static void list_variables(Variables *all, Structure structure) {
     }
     all->first_parameter = all->count;
     for (int k = 0; k < PARAMETER_COUNT; k++) {
+        Kind kind = PARAMETER_TABLE[k].is_whole ? INTEGER : REAL;
         if (PARAMETER_TABLE[k].name == Q_RELATIVE_TOLERANCE) all->relative_tolerance = all->count;
-        add_variables(all, k, PARAMETER_TABLE[k].name, PARAMETER_TABLE[k].size, PARAMETER, REAL);
+        if (PARAMETER_TABLE[k].name == Q_STABILIZER_CLEARANCE) all->first_clearance = all->count;
+        add_variables(all, k, PARAMETER_TABLE[k].name, PARAMETER_TABLE[k].size, PARAMETER, kind);
     }
     all->survey_file = all->count;
     add_variables(all, 0, Q_SURVEY_FILE, ONE, PARAMETER, STRING);
+}
+
+/* Whether a variable is a parameter that may change along a run. */
+static int is_tunable(const Variable *variable) {
+    return variable->role == PARAMETER && variable->kind == REAL &&
+           PARAMETER_TABLE[variable->quantity].name == Q_STABILIZER_CLEARANCE;
 }
 
 #endif

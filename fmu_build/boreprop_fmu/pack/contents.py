@@ -50,7 +50,7 @@ def describe(
     description = model_description(
         identifier,
         guid,
-        case.bha.structure,
+        case.structure,
         start_values(case),
         stop_time=case.length,
         step_size=STEP_SIZE,

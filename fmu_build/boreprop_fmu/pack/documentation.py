@@ -143,7 +143,7 @@ def page(case: Case, identifier: str, runtime: str, start: Mapping[str, float | 
         f"{n} stabilizer{'s' * (n > 1)}, the last one {case.bha.stabilizer_positions[-1]:g} m from the bit; "
         f"the existing hole ends at {degrees(case.survey.inclination[-1]):.3g}°"
     )
-    lines = [_line(quantity, names, start) for quantity in VARIABLES if (names := quantity.names(case.bha.structure))]
+    lines = [_line(quantity, names, start) for quantity in VARIABLES if (names := quantity.names(case.structure))]
     warning = steadily_outside(case)
     outside = f" Of this case, drilled on steadily: {warning}." if warning else ""
     left_out = "\n".join(f"<tr><td>{what}</td><td>{change}</td></tr>" for what, change in LEFT_OUT.items())

@@ -53,7 +53,7 @@ def pack_sources(identifier: str) -> dict[str, bytes]:
 
 def case_text(case: Case, guid: str) -> bytes:
     """The case as lines "name value", in SI units, in the order in which packed_case.h reads them."""
-    structure, start, survey = case.bha.structure, start_values(case), case.survey
+    structure, start, survey = case.structure, start_values(case), case.survey
     lines: dict[str, object] = {"guid": guid, "quantities": quantities_digest(), **structure._asdict()}
     del lines["space"]  # an FMU drills in the plane
     names = scalar_names(INPUTS + PARAMETERS, structure)
@@ -62,6 +62,9 @@ def case_text(case: Case, guid: str) -> bytes:
     lines["stations"] = len(survey.measured_depth)
     for column, values in (("measured_depth", survey.measured_depth), ("inclination", survey.inclination)):
         lines |= {f"{column}[{k}]": float(value) for k, value in enumerate(values, start=1)}
+    ground = case.ground.numbers if case.ground else []
+    lines["ground"] = len(ground)
+    lines |= {f"ground[{k}]": float(value) for k, value in enumerate(ground, start=1)}
     return "".join(f"{name} {value}\n" for name, value in lines.items()).encode()
 
 

@@ -46,14 +46,14 @@ def pack_python(case: Case, identifier: str) -> dict[str, bytes]:
     code = pack_code()
 
     def numbers(guid: str) -> dict[str, bytes]:
-        n = len(case.bha.stabilizer_positions)
         packed = {
             "guid": guid,
             "log_switch": log_switch(),
-            "stabilizers": n,
+            "structure": case.structure,
             "start": start_values(case),
             "bit_diameter": case.bit_diameter,
             "survey": asdict(case.survey),
+            "ground": case.ground and asdict(case.ground),
         }
         return {**describe(case, identifier, guid), "resources/fmu.json": json.dumps(packed, indent=1).encode()}
 

@@ -23,14 +23,15 @@ from boreprop.core.checks import check_number, check_quantity
 from boreprop.core.columns import read_columns
 from boreprop.core.drilling import Drilling
 from boreprop.core.errors import BorepropError, ParameterError, TableError
+from boreprop.core.ground import ground_of
 from boreprop.core.options import Options
-from boreprop.core.quantities import MOST_DRILLED, VARIABLES, Quantity, columns_of, fields_of
+from boreprop.core.quantities import MOST_DRILLED, VARIABLES, Quantity, Structure, columns_of, fields_of
 from boreprop.core.sag import Watch
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop_fmu.python.process import forget, give_ctrl_c_back, open_log, write_to_user
 
-STATE_FORMAT = "boreprop-fmu-state-6"
+STATE_FORMAT = "boreprop-fmu-state-7"
 INSTANTIATED, INITIALIZATION, STEPPING, TERMINATED = "instantiated", "initialization", "stepping", "terminated"
 BEFORE_THE_END = (INSTANTIATED, INITIALIZATION, STEPPING)
 TIGHTEST, LOOSEST = 1e-12, 1e-5  # tolerance that a host may choose: some choose 1e-3 always, too coarse for a hole
@@ -56,9 +57,10 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         self.guid: str = packed["guid"]
         logger, place = kwargs.get("logger"), packed["log_switch"]
         self._log_switch = logger + place if logger and place else None
-        self._n: int = packed["stabilizers"]
+        self._structure = Structure(*packed["structure"])
+        self._ground = packed["ground"] and ground_of(packed["ground"])
         self._survey = Survey(**{name: tuple(values) for name, values in packed["survey"].items()})
-        self._scalars = [(name, quantity) for quantity in VARIABLES for name in quantity.names(self._n)]
+        self._scalars = [(name, quantity) for quantity in VARIABLES for name in quantity.names(self._structure)]
         self._given: dict[str, Any] = packed["start"]  # inputs and parameters
         self._weight: float = self._given["active_weight_on_bit"]  # the last that drilled, N
         self._chosen: set[str] = set()  # those of them that have been set
@@ -124,7 +126,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         self._call("fmi2SetReal", BEFORE_THE_END, self._set, vrs, values, "Real")
 
     def set_integer(self, vrs: list[int], values: list[int]) -> None:
-        """There are no Integer inputs and parameters."""
+        """Take parameters over, all or none."""
         self._call("fmi2SetInteger", BEFORE_THE_END, self._set, vrs, values, "Integer")
 
     def set_boolean(self, vrs: list[int], values: list[bool]) -> None:
@@ -176,17 +178,18 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
 
     def _bit(self) -> BitRock:
         """Bit and rock as they are given."""
-        return BitRock(**fields_of("bit", self._given, self._n))
+        return BitRock(**fields_of("bit", self._given, self._structure))
 
     def _build(self, survey: Survey) -> Drilling:
         given = self._given
         return Drilling(
-            BottomHoleAssembly(**fields_of("bha", given, self._n)),
+            BottomHoleAssembly(**fields_of("bha", given, self._structure)),
             self._bit(),
             survey,
             active_weight_on_bit=given["active_weight_on_bit"] or self._weight,
             rss_force=given["rss_force"],
             options=Options(given["relative_tolerance"]),
+            ground=self._ground,
         )
 
     def _read_survey(self) -> Survey:
@@ -244,12 +247,16 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
             self._bit()
         else:
             drills = drilled_length > drilling.drilled_length
-            drilling.advance(drilled_length, given["rss_force"], weight, bit=self._bit())
+            self._advance(drilling, drilled_length, weight)
             self._weight, self._stale = weight if drills else self._weight, True
         self._time, self._anchor = current_time + step_size, anchor
         if warning := self._watch.look(drilling):
             self._log(warning, Fmi2Status.warning)
             open_log(self._log_switch)  # else few would hear of it: hosts leave logging off
+
+    def _advance(self, drilling: Drilling, length: float, weight: float) -> None:
+        clearances = fields_of("bha", self._given, self._structure)["stabilizer_clearances"]
+        drilling.advance_with(clearances, length, self._given["rss_force"], weight, bit=self._bit())
 
     def _refresh(self) -> None:
         """Outputs of the present hole under the present inputs.
@@ -257,9 +264,9 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         Off bottom they are those of the last weight that drilled, but for ηΠ, and only looked at: the run goes on as if
         it had never stopped.
         """
-        drilling, force, weight = self._ready(), self._given["rss_force"], self._given["active_weight_on_bit"]
+        drilling, weight = self._ready(), self._given["active_weight_on_bit"]
         before = None if weight else drilling.save()
-        drilling.advance(drilling.drilled_length, force, weight or self._weight, bit=self._bit())
+        self._advance(drilling, drilling.drilled_length, weight or self._weight)
         self._outputs = drilling.outputs()
         if before:
             drilling.restore(before)
@@ -301,7 +308,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
                 raise ParameterError(name, "must not be set, it is an output", value)
             if value is None:
                 raise ParameterError(name, "must be text", value)
-            if stepping and quantity.role == "parameter" and value != given[name]:
+            if stepping and quantity.role == "parameter" and not quantity.tunable and value != given[name]:
                 raise ParameterError(name, "must not change after initialization", value)
             new[name] = value
         changed = [name for name, value in new.items() if value != given[name]]

@@ -5,6 +5,7 @@ Lengths are measured from there along the hole, so they are negative in the exis
 """
 
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -17,6 +18,7 @@ from ..run.trajectory import Trajectory
 NEAREST = 1e-9  # m: steps of the search for the nearest point end when they are shorter
 POINTS_BEHIND = 200  # of the existing hole behind a run: close enough to miss no more than mm
 MOST_STEPS = 50  # three or four are usual
+KEPT = 8  # holes of surveys: the cases of a study share one
 LEAST_SLOPE = 0.2  # keeps the steps short where a point is nearly as far away as the centre of the hole's curvature
 
 
@@ -62,7 +64,7 @@ class SurveyedHole:
         chord = along * np.sinc(turn / (2 * np.pi))
         return self.position[station] + np.stack((chord * np.sin(mean), chord * np.cos(mean)), axis=-1)
 
-    @property
+    @cached_property
     def curvature(self) -> Floats:
         """Curvature, rad/m, above the first station, of each piece, and below the last station, shape (N + 1,)."""
         return np.concatenate(([0.0], np.diff(self.inclination) / np.diff(self.length), [0.0]))
@@ -129,10 +131,15 @@ class HoleAxis:
 
 def existing_hole(survey: Survey, reach: float, spacing: float) -> HoleAxis:
     """The existing hole, above the survey straight until it is `reach` long, with a point every `spacing` metres."""
-    hole = SurveyedHole.of(survey, survey.measured_depth[-1])
+    hole = _surveyed(survey)
     top = min(float(hole.length[0]), -reach)
     length = np.union1d(hole.length, np.linspace(top, 0.0, int(np.ceil(-top / spacing)) + 1))
     return HoleAxis(length, hole.at(length))
+
+
+@lru_cache(KEPT)
+def _surveyed(survey: Survey) -> SurveyedHole:
+    return SurveyedHole.of(survey, survey.measured_depth[-1])
 
 
 def hole_of(run: Trajectory, survey: Survey, reach: float) -> HoleAxis:

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from ..arrays import Floats
 from ..core.system import BottomHoleAssembly
 from ..errors import InputError
+from ..run.ground import STEADY
 from ..run.trajectory import Trajectory
 from .waves import (
     FEWEST_ROWS,
@@ -51,7 +52,6 @@ MOST_OF_LONGEST = 2.0  # … or as many as fit into this many of the longest wav
 FALLING = 0.03  # loss of size per wave: a wave that falls faster, to half within 23 waves, is dying
 FALLING_IN_ONE_MODE = 1e-4  # the same for a wave that changes no mode, whose exponential decay is this well determined
 HALF = 0.5  # of its size at the end: a wave counts as present since it has had this size
-INPUTS = ("rss_force", "active_weight_on_bit")  # a wave can sustain itself only while these are constant
 PHASES = 64  # points of a wave at which its mode is determined
 
 
@@ -237,7 +237,7 @@ def _wave_of(run: Trajectory, longest: float | None) -> _Found:
     """The wave with which a run ends, with its last waves and their rows."""
     if longest is None:
         longest = longest_wave(run.case.bha) if run.case else inf
-    inputs = [run[name] for name in INPUTS if name in run.columns]
+    inputs = [run[name] for name in STEADY if name in run.columns]
     return _find(run["drilled_length"], run["borehole_inclination"], longest, modes_of(run), inputs)
 
 

@@ -15,7 +15,7 @@ from ..errors import MissingColumn
 from ..run.completion import case_of
 from ..run.trajectory import Trajectory
 from ..units import BUILD_LENGTH
-from .hole import chord_inclination, hole_of
+from .hole import bit_positions, hole_of
 from .rippling import Rippling, State, find_rippling, visible_waves
 from .sag import Sag, largest_sag
 
@@ -196,6 +196,7 @@ def mean_inclination(run: Trajectory, survey: Survey, over: float) -> Floats:
 
     The run starts at the end of the survey; above the first station of the survey the hole is straight.
     """
-    inclination = chord_inclination(hole_of(run, survey, over), run["drilled_length"], over)
+    behind = hole_of(run, survey, over).at(run["drilled_length"] - over)
+    inclination: Floats = np.arctan2(*(bit_positions(run) - behind).T)
     turns = np.abs(inclination[1:] - inclination[:-1])
     return np.unwrap(inclination) if turns.max(initial=0.0) > pi else inclination  # unwrap only a hole past vertical

@@ -3,16 +3,19 @@
 from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import repeat
 from operator import attrgetter
 from typing import NamedTuple
 
-from ..core.checks import check_increasing, check_number, check_part, check_quantity, checked_float
+from ..core.checks import check_increasing, check_number, check_part, check_quantity, check_value, checked_float
 from ..core.errors import ParameterError
-from ..core.quantities import BY_NAME, INPUTS
+from ..core.ground import Ground, Wear
+from ..core.quantities import BY_NAME, CLEARANCES, INPUTS, ROCK, Structure, quantity_of
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly, eta_pi
-from .formations import Formation
+from .formations import DEPTHS, Formation
+from .sensors import with_clearances
 
 CLOSE = 0.005  # m: depths are given to the centimetre, so a first entry this little beyond the bit is at it
 
@@ -122,10 +125,11 @@ class InputSchedule:
     drilled_length
         Lengths from the start of the run at which an entry begins, m, shape (k,). The first is 0, and they increase.
     inputs
-        Name of each input in the table of quantities, and its value at each of these lengths, in SI units, shape (k,).
+        Name of each input in the table of quantities, or of a clearance, and its value at each of these lengths, in SI
+        units, shape (k,).
     interpolation
-        "held" or "linear". Bit and rock, the whole weight on bit and the rate of penetration are always constant from
-        each entry to the next.
+        "held" or "linear". Bit and rock, clearances, the whole weight on bit and the rate of penetration are always
+        constant from each entry to the next.
 
     Raises
     ------
@@ -150,7 +154,8 @@ class InputSchedule:
     def __post_init__(self) -> None:
         _check_entries(self.drilled_length, dict(self.inputs), self.interpolation)
         for name, values in self.inputs:
-            check_quantity(name, values)
+            for index, value in enumerate(values, 1):
+                check_value(name, value, index)
             if name == RATE:
                 for index, value in enumerate(values, 1):
                     check_number(name, value, index=index, above=0.0)
@@ -159,7 +164,8 @@ class InputSchedule:
         """Each input over the drilled length."""
         linear = self.interpolation == "linear"
         return {
-            name: Profile(self.drilled_length, values, linear and BY_NAME[name].slope) for name, values in self.inputs
+            name: Profile(self.drilled_length, values, linear and quantity_of(name).slope)
+            for name, values in self.inputs
         }
 
     def without(self, name: str) -> "InputSchedule | None":
@@ -230,13 +236,18 @@ class Case:
     weight_on_bit
         All of the weight on bit, N, which presses a BHA with `axial_load`; 0: it is the active weight on bit.
     formations
-        Bit and rock from increasing measured depths on, in place of `bit`, which is then the one at the start.
+        Bit and rock from increasing depths on, all measured or all true vertical ones, in place of `bit`, which is then
+        the one at the start.
+    true_vertical_depth
+        That of the bit at the start, m, from which those of formations count.
+    wear
+        How the bit becomes blunt; None: it stays sharp.
 
     Raises
     ------
     ParameterError
         If the diameter, the weight or the length is not finite and positive, the diameter is beyond 1.5 m, the depths
-        of formations do not increase, or they give what `inputs` gives.
+        of formations do not increase or are of both kinds, or they give what `inputs` gives.
 
     Examples
     --------
@@ -256,39 +267,87 @@ class Case:
     inputs: InputSchedule | None = None
     weight_on_bit: float = 0.0
     formations: tuple[Formation, ...] = ()
+    true_vertical_depth: float = 0.0
+    wear: Wear | None = None
 
     def __post_init__(self) -> None:
-        check_increasing("measured_depth", tuple(formation.measured_depth for formation in self.formations))
+        if self.in_layers and not all(formation.measured_depth is None for formation in self.formations):
+            depths = tuple(formation.depth for formation in self.formations)
+            raise ParameterError("true_vertical_depth", "must be given of all formations, or of none", depths)
+        name = DEPTHS[self.in_layers]
+        check_increasing(name, tuple(formation.depth for formation in self.formations))
+        check_quantity("bit_true_vertical_depth", self.true_vertical_depth)
         self._take_first_inputs()
         check_part("", self)
+        object.__setattr__(self, "bha", with_clearances(self.bha, self.bit_diameter))
         if self.weight_on_bit:
             check_number("weight_on_bit", self.weight_on_bit, at_least=self.active_weight_on_bit)
 
     def _take_first_inputs(self) -> None:
-        """Let weights and bit be those at the start where they are scheduled."""
+        """Let weights, bit and clearances be those at the start where they are scheduled."""
         scheduled, bit = dict(self.inputs.inputs) if self.inputs else {}, {}
+        clearances = list(self.bha.stabilizer_clearances)
         for name, values in scheduled.items():
-            quantity = BY_NAME[name]
+            quantity = quantity_of(name)
             if quantity.part == "bit":
                 bit[quantity.attribute] = values[0]
+            elif name in CLEARANCES:
+                i = CLEARANCES.index(name)
+                if i >= len(clearances):
+                    raise ParameterError(name, f"must be of one of the {len(clearances)} non-ideal stabilizers", values)
+                clearances[i] = values[0]
             elif quantity.field and not quantity.part:
                 object.__setattr__(self, quantity.attribute, values[0])
+        start = self._depth + CLOSE
         for formation in self.formations:
             for name, value in formation.values.items():
                 if name in scheduled:
                     raise ParameterError(name, "must be given by formations or a schedule, not by both", value)
-                if formation.measured_depth <= self.survey.measured_depth[-1] + CLOSE:
+                if formation.depth <= start:
                     bit[BY_NAME[name].attribute] = value
         if bit:
             object.__setattr__(self, "bit", replace(self.bit, **bit))
+        if tuple(clearances) != self.bha.stabilizer_clearances:
+            object.__setattr__(self, "bha", replace(self.bha, stabilizer_clearances=tuple(clearances)))
+
+    @cached_property
+    def in_layers(self) -> bool:
+        """Whether formations begin at true vertical depths."""
+        return any(formation.true_vertical_depth is not None for formation in self.formations)
+
+    @property
+    def _depth(self) -> float:
+        """Depth of the bit at the start, m, of the kind by which formations begin."""
+        return self.true_vertical_depth if self.in_layers else self.survey.measured_depth[-1]
+
+    @property
+    def structure(self) -> Structure:
+        """How the drilling system is made up, and whether rock comes in layers."""
+        return self.bha.structure._replace(layered=int(self.in_layers))
+
+    @cached_property
+    def ground(self) -> Ground | None:
+        """Layers and wear as an engine takes them; None if there are neither."""
+        if not self.in_layers:
+            return Ground(self.bit, wear=self.wear) if self.wear else None
+        start = self._depth
+        tops = tuple(formation.depth - start for formation in self.formations)
+        tops = tuple(0.0 if 0.0 < top <= CLOSE else top for top in tops)
+        rock = [(0.0,) * len(ROCK)]
+        for formation in self.formations:
+            rock.append(tuple(formation.values.get(name, above) for name, above in zip(ROCK, rock[-1], strict=True)))
+        return Ground(self.bit, tops, tuple(rock), self.wear)
 
     def _in_formations(self) -> dict[str, Profile]:
         """What bit and rock are like over the drilled length, by name, as far as formations say it."""
         found: dict[str, Profile] = {}
+        start = self._depth
+        if self.in_layers:  # where they are met shows along the way
+            return found
         for name in {name: 0 for formation in self.formations for name in formation.values}:
             entries = {0.0: float(attrgetter(BY_NAME[name].field)(self))}
             for formation in self.formations:
-                ahead = formation.measured_depth - self.survey.measured_depth[-1]
+                ahead = formation.depth - start
                 if ahead > CLOSE and name in formation.values:
                     entries[ahead] = formation.values[name]
             found[name] = Profile(tuple(entries), tuple(entries.values()))

@@ -4,6 +4,7 @@ A file has angles in degrees, a `Case` in radians. The table of quantities says 
 the case.
 """
 
+from dataclasses import asdict
 from operator import attrgetter
 from pathlib import Path
 from typing import Any
@@ -11,12 +12,13 @@ from typing import Any
 import tomli_w
 
 from ..core.columns import regular
-from ..core.quantities import QUANTITIES
+from ..core.quantities import CLEARANCES, QUANTITIES
 from ..errors import InputError
 from .case import Case
 from .formations import file_degrees, formations_in_file
 from .schema import OF_FILES, TABLES, Read, parse, read_toml
 from .sections import sections_in_file
+from .sensors import sensors_in_file
 
 
 def load_case(path: str | Path) -> Case:
@@ -78,10 +80,14 @@ def _check_clearances(case: Case, path: str | Path) -> None:
     in Python may have a stabilizer that never touches the wall.
     """
     clearances, radius = case.bha.stabilizer_clearances, case.bit_diameter / 2
-    widest = max(clearances, default=0.0)
-    if widest >= radius:
-        key = f"bha.stabilizer_clearances[{clearances.index(widest) + 1}]"
-        raise InputError(f"{path}: {key}: must be < bit.diameter/2 = {radius:g}, got {widest!r}")
+    columns: dict[str, tuple[float, ...]] = {
+        f"bha.stabilizer_clearances[{i}]": (value,) for i, value in enumerate(clearances, 1)
+    }
+    if case.inputs is not None:
+        columns |= {f"drilling.schedule.{name}": column for name, column in case.inputs.inputs if name in CLEARANCES}
+    for key, values in columns.items():
+        if max(values) >= radius:
+            raise InputError(f"{path}: {key}: must be < bit.diameter/2 = {radius:g}, got {max(values)!r}")
 
 
 def parse_case(text: str, source: str | Path) -> Case:
@@ -142,18 +148,21 @@ def dump_case(case: Case, **run: str | None) -> str:
             value = attrgetter(quantity.field)(case)
             if value == quantity.start:
                 continue
-            written = (
-                file_degrees if key.endswith("_deg") else {"String": str, "Boolean": bool}.get(quantity.kind, float)
-            )
+            kinds = {"String": str, "Boolean": bool, "Integer": int}
+            written = file_degrees if key.endswith("_deg") else kinds.get(quantity.kind, float)
             columns = document.setdefault(table, {})
             columns[key] = list(map(written, value)) if isinstance(value, tuple) else written(value)
     if "section" in document:
         document["bha"]["section"] = sections_in_file(document.pop("section"))
+    if "sensor" in document:
+        document["sensor"] = sensors_in_file(document["sensor"])
     if case.inputs is not None:
         entries = {"drilled_length": case.inputs.drilled_length, **dict(case.inputs.inputs)}
         document["drilling"]["schedule"] = {name: list(map(float, values)) for name, values in entries.items()}
         if case.inputs.interpolation != "held":
             document["drilling"]["interpolation"] = case.inputs.interpolation
+    if case.wear is not None:
+        document["bit"]["wear"] = asdict(case.wear)
     if case.formations:
         document["formation"] = formations_in_file(case.formations)
     facts = {key: text for key, text in run.items() if text is not None}

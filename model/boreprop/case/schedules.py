@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from ..core.checks import check_number, check_quantity
 from ..core.errors import ParameterError
-from ..core.quantities import IN_SPACE_ONLY, INPUTS
+from ..core.quantities import CLEARANCES, IN_SPACE_ONLY, INPUTS
 from .case import InputSchedule, Schedule, from_bit
 
 Column = tuple[float, ...]
@@ -13,7 +13,8 @@ Columns = Mapping[str, Column]
 LENGTHS = ("drilled_length", "measured_depth")
 """The columns of which a schedule has one: where its entries begin."""
 
-NAMES_OF_INPUTS = tuple(quantity.name for quantity in INPUTS if quantity.name not in IN_SPACE_ONLY)
+NAMES_OF_COLUMNS = (*(quantity.name for quantity in INPUTS if quantity.name not in IN_SPACE_ONLY), *CLEARANCES)
+"""What the other columns may give: inputs, and clearances."""
 
 
 def force_schedule(columns: Columns, bit_depth: float | None, interpolation: str, full_force: float | None) -> Schedule:
@@ -45,9 +46,9 @@ def input_schedule(
 ) -> tuple[Schedule | None, InputSchedule | None]:
     """The schedule of the steering force, if its column is there, and that of the other inputs.
 
-    `columns` has one of `LENGTHS`, and some of the `NAMES_OF_INPUTS`; the rest is as in `force_schedule`.
+    `columns` has one of `LENGTHS`, and some of the `NAMES_OF_COLUMNS`; the rest is as in `force_schedule`.
     """
-    given = {name: values for name, values in columns.items() if name in NAMES_OF_INPUTS}
+    given = {name: values for name, values in columns.items() if name in NAMES_OF_COLUMNS}
     lengths, entries = _over_length(columns, given, bit_depth, interpolation)
     inputs = dict(zip(given, entries, strict=True))
     force = inputs.pop("rss_force", None)

@@ -19,14 +19,15 @@ from pydantic_core import ErrorDetails
 
 from ..core.checks import check_number
 from ..core.errors import ParameterError
-from ..core.quantities import BY_NAME, ROCK, Quantity, columns_of, quantity_of
+from ..core.quantities import BY_NAME, CLEARANCES, ROCK, Quantity, columns_of, quantity_of
 from ..core.survey import Survey
 from ..errors import InputError, shown
 from .body import place_points
-from .case import CLOSE, INTERPOLATIONS, Case, Schedule
-from .formations import lift_formations
-from .schedules import LENGTHS, NAMES_OF_INPUTS, force_schedule, input_schedule
+from .case import CLOSE, INTERPOLATIONS, Case, InputSchedule, Schedule
+from .formations import lift_formations, lift_wear
+from .schedules import LENGTHS, NAMES_OF_COLUMNS, force_schedule, input_schedule
 from .sections import lift_sections
+from .sensors import lift_sensors
 from .tables import BY_KEY, read_inputs, read_schedule, read_survey
 
 Document = dict[str, dict[str, Any]]  # table → key → value
@@ -52,7 +53,7 @@ CHOICES: dict[str, tuple[tuple[str, ...], ...]] = {
 SCHEDULED = ("active_weight_on_bit", *ROCK)
 """Inputs that a case file gives by a key of their own, unless the schedule of the table [drilling] has them."""
 
-BESIDE = {"hole": ("bit_depth",), "rss": ("full_force", "interpolation")}
+BESIDE = {"hole": ("bit_depth", "true_vertical_depth"), "rss": ("full_force", "interpolation")}
 """Table → the keys that may stand beside each of these sets."""
 
 PATHS = "must be a path with forward slashes or in single quotes, since in double quotes a backslash begins an escape"
@@ -70,8 +71,9 @@ class Read(NamedTuple):
 def parse(text: str, source: Path) -> Read:
     """See `boreprop.case.file.parse_case`."""
     document = read_toml(text, source)
-    formations = lift_formations(document, source)
+    formations, wear = lift_formations(document, source), lift_wear(document, source)
     lift_sections(document, source)
+    lift_sensors(document, source)
     place_points(document, source)
     check_keys(document, source)
     case, notes = _case(document, source), []
@@ -86,7 +88,7 @@ def parse(text: str, source: Path) -> Read:
     if "schedule" in document["drilling"]:
         case = _with_inputs(case, document, bit, source)
     try:
-        return Read(replace(case, formations=formations), notes)
+        return Read(replace(case, formations=formations, wear=wear), notes)
     except ParameterError as error:
         raise InputError(f"{source}: formation: {error}") from error
 
@@ -115,7 +117,7 @@ def _with_inputs(case: Case, document: Document, bit_depth: float, source: Path)
         force, inputs = read_inputs(source.parent / given, bit_depth, interpolation)
     else:
         lengths = set(given) & set(LENGTHS)
-        known = (*NAMES_OF_INPUTS, TILT_LIMIT_DEG)
+        known = (*NAMES_OF_COLUMNS, TILT_LIMIT_DEG)
         if len(lengths) != 1 or len(given) == 1 or set(given) - lengths - set(known):
             constraint = f"must hold either {' or '.join(LENGTHS)}, and any of {', '.join(known)}"
             raise InputError(f"{source}: {where}: {constraint}, got {shown(given)}")
@@ -130,6 +132,7 @@ def _with_inputs(case: Case, document: Document, bit_depth: float, source: Path)
         case = replace(case, schedule=force)
     for name in SCHEDULED:
         _check_start(document, name, dict(inputs.inputs).get(name, ()) if inputs else (), source)
+    _check_first_clearances(case, inputs, source)
     with _naming(where, source):
         return replace(case, inputs=inputs)
 
@@ -147,6 +150,17 @@ def _check_start(document: Document, name: str, scheduled: tuple[float, ...], so
         start = degrees(scheduled[0]) if key.endswith("_deg") else scheduled[0]
         constraint = f"must be left out, or {start!r} as drilling.schedule has it at the start"
         raise InputError(f"{source}: {key}: {constraint}, got {shown(written)}")
+
+
+def _check_first_clearances(case: Case, inputs: InputSchedule | None, source: Path) -> None:
+    """Raise `InputError` unless clearances that are scheduled begin with those of the BHA."""
+    own = dict(zip(CLEARANCES, case.bha.stabilizer_clearances, strict=False))
+    for name, values in inputs.inputs if inputs else ():
+        if name in own and values[0] != own[name]:
+            where = f"{source}: bha.stabilizer_clearances[{CLEARANCES.index(name) + 1}]"
+            raise InputError(
+                f"{where}: must be {values[0]!r} as drilling.schedule has it at the start, got {own[name]!r}"
+            )
 
 
 def _case(document: Document, source: Path) -> Case:
@@ -235,7 +249,7 @@ def check_keys(document: dict[str, Any], source: Path) -> None:
     Keys whose values are texts are checked for their type too; pydantic checks all other types.
     """
     for table, content in document.items():
-        if table not in (*TABLES, "section"):
+        if table not in (*TABLES, "section", "sensor"):
             raise InputError(f"{source}: {table}: {_unknown(table)}, got {shown(content)}")
         if not isinstance(content, dict):
             raise InputError(f"{source}: {table}: must be a table, got {shown(content)}")
@@ -333,9 +347,9 @@ def _in_degrees(quantity: Quantity, value: Any) -> str:
 
 
 def _written(document: Document, where: str) -> Any:
-    """The value that the file has under "table.key" or "table.key[i]"."""
-    where, _, index = where.partition("[")
+    """The value that the file has under "table.key" or "table.key[i]"; a key may itself end in an index."""
     value: Any = document
     for key in where.split("."):
-        value = value[key]
-    return value[int(index[:-1]) - 1] if index else value
+        name, _, index = key.rpartition("[")
+        value = value[key] if key in value else value[name][int(index[:-1]) - 1]
+    return value

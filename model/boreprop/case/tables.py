@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..core.errors import ParameterError
-from ..core.quantities import BY_NAME, QUANTITIES
+from ..core.quantities import QUANTITIES, quantity_of
 from ..core.survey import Survey
 from ..errors import InputError, shown
 from .case import InputSchedule, Schedule
-from .schedules import LENGTHS, NAMES_OF_INPUTS, force_schedule, input_schedule
+from .schedules import LENGTHS, NAMES_OF_COLUMNS, force_schedule, input_schedule
 from .sheet import Sheet, read_sheet
 
 BY_KEY = {quantity.key: quantity for quantity in QUANTITIES if quantity.key}
@@ -103,7 +103,7 @@ def read_inputs(
     InputError
         As `read_schedule`, and if no input is there.
     """
-    inputs = [_spellings(name, BY_NAME[name].unit) for name in NAMES_OF_INPUTS]
+    inputs = [_spellings(name, quantity_of(name).unit) for name in NAMES_OF_COLUMNS]
     force = {heading: of._replace(name="rss_force") for heading, of in _group("rss", "force").items()}
     inputs = [group | force if "rss_force" in group else group for group in inputs]
     columns = _read_columns(path, [_group("rss", *LENGTHS)], inputs)

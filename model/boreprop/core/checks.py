@@ -5,7 +5,7 @@ from math import inf, isfinite
 
 from .errors import error_of
 from .problems import Problem
-from .quantities import BY_NAME
+from .quantities import BY_NAME, quantity_of
 
 
 def checked_float(name: str, value: float, *, index: int = 0) -> float:
@@ -41,6 +41,12 @@ def check_quantity(name: str, value: float | tuple[float, ...]) -> None:
     else:
         for index, element in enumerate(value, 1):
             check_number(name, element, index=index, above=above, at_least=at_least, at_most=at_most)
+
+
+def check_value(name: str, value: float, index: int) -> None:
+    """Raise `ParameterError` unless a value of a scalar name, entry `index` of a column, is in its range."""
+    quantity = quantity_of(name)
+    check_number(name, value, index=index, above=quantity.above, at_least=quantity.at_least, at_most=quantity.at_most)
 
 
 def check_part(part: str, fields: object) -> None:

@@ -1,11 +1,13 @@
 """A drilling run in SI units: the shell around the integrator that `simulate` and the FMU share."""
 
 from collections.abc import Iterable
+from functools import partial
 from math import nan
 from typing import Any
 
 from .checks import check_number, check_quantity
-from .errors import CannotContinue, ParameterError, error_of
+from .errors import BorepropError, CannotContinue, ParameterError, error_of
+from .ground import Ground, check_step
 from .inputs import Inputs
 from .integrator import Integrator
 from .modes import Modes, bit_tilt, saturation, wall
@@ -14,6 +16,7 @@ from .problems import DERIVED, Problem
 from .quantities import ACTING, IN_SPACE_ONLY, ROCK, fields_of
 from .survey import Survey
 from .system import BitRock, BottomHoleAssembly, epsilon, eta_pi, scale
+from .through import GroundIntegrator
 
 
 class Drilling:
@@ -29,6 +32,8 @@ class Drilling:
         N, positive builds inclination.
     options
         How the integrator takes its steps.
+    ground
+        Layers of rock by depth, and wear; None: the inputs alone say what bit and rock are like.
 
     Attributes
     ----------
@@ -54,19 +59,26 @@ class Drilling:
         active_weight_on_bit: float,
         rss_force: float = 0.0,
         options: Options = Options(),  # noqa: B008 - frozen
+        ground: Ground | None = None,
     ) -> None:
-        self._bha, self.bit = bha, bit
+        self._bha, self.bit, self.ground = bha, bit, ground
         self._length, self._force = bha.length_scale, bha.force_scale
         self.drilled_length = 0.0
+        self.clearances = bha.stabilizer_clearances
         self._given: tuple[Any, ...] = ()  # the last inputs that were given, in N, and …
         self._inputs = Inputs(*(nan,) * 6)  # … as the paper's numbers
+        if ground:
+            bit = ground.bit_in(ground.first_layer, bit)
         scaled, inputs = scale(bha, bit), self._scaled_inputs(bit, rss_force, active_weight_on_bit)
+        kind = GroundIntegrator if ground else Integrator
         try:
-            self.integrator = Integrator(Modes(scaled), survey, self._length, inputs.F_rss, inputs.eta_pi, options)
+            self.integrator = kind(Modes(scaled), survey, self._length, inputs.F_rss, inputs.eta_pi, options)
         except ParameterError:
             raise
         except (CannotContinue, ArithmeticError, ValueError) as error:  # as in `Integrator.drill`
             raise error_of(Problem("no start", "parameters")) from error
+        if ground and isinstance(self.integrator, GroundIntegrator):
+            self.integrator.take_ground(ground)
 
     def _scaled_inputs(
         self, bit: BitRock, force: float, weight: float, force_slope: float = 0.0, weight_slope: float = 0.0
@@ -135,8 +147,44 @@ class Drilling:
             bit or self.bit, rss_force, active_weight_on_bit, rss_force_slope, active_weight_on_bit_slope
         )
         check_number("drilled_length", drilled_length, at_least=self.drilled_length)
-        self.integrator.drill(drilled_length / self._length, inputs)
+        xi, p = drilled_length / self._length, self.integrator
+        if isinstance(p, GroundIntegrator):
+            forces = rss_force, rss_force_slope, active_weight_on_bit, active_weight_on_bit_slope
+            p.drill_through(xi, partial(self._inputs_in_ground, p.ground, p.xi, xi, bit or self.bit, forces))
+        else:
+            p.drill(xi, inputs)
         self.drilled_length = drilled_length
+
+    def _inputs_in_ground(
+        self, ground: Ground, start: float, end: float, bit: BitRock, forces: tuple[float, ...], xi: float, layer: int
+    ) -> tuple[Inputs, float]:
+        """What acts at `xi` in a layer, on a way from `start` to `end` with these given, and up to which place."""
+        force, force_slope, weight, weight_slope = forces
+        way, length = (xi - start) * self._length, xi * self._length
+        active, slope, until = ground.active(length, end * self._length, weight + weight_slope * way, weight_slope)
+        inputs = self._scaled_inputs(ground.bit_in(layer, bit), force + force_slope * way, active, force_slope, slope)
+        return inputs, until / self._length
+
+    def change_clearances(self, clearances: tuple[float, ...]) -> None:
+        """Let the stabilizers have other clearances, m, from where the bit is; errors as in `advance`."""
+        if clearances == self.clearances:
+            return
+        check_quantity("stabilizer_clearance", clearances)
+        if len(clearances) != len(self.clearances):
+            raise ParameterError("stabilizer_clearance", f"must hold {len(self.clearances)} values", clearances)
+        self.integrator.change_clearances(tuple(clearance / self._length for clearance in clearances))
+        self.clearances = clearances
+
+    def advance_with(self, clearances: tuple[float, ...], *given: Any, bit: BitRock) -> None:
+        """Drill on as by `advance`, with stabilizers that have these clearances, m; all of it or nothing."""
+        before = self.save() if clearances != self.clearances else None
+        try:
+            self.change_clearances(clearances)
+            self.advance(*given, bit=bit)
+        except BorepropError:
+            if before:
+                self.restore(before)
+            raise
 
     def follow(self, lengths: Iterable[float], inputs: Iterable[Any], rows: Iterable[int], table: Any) -> None:
         """Drill leg after leg, each as by `advance`.
@@ -170,6 +218,7 @@ class Drilling:
 
     def step(self) -> None:
         """Drill on to the end of the integrator's next step, under the inputs as they are; errors as in `advance`."""
+        check_step(self.ground)
         self.drilled_length = self.integrator.step().end * self._length
 
     @property
@@ -201,21 +250,42 @@ class Drilling:
         values |= {f"stabilizer_deflection[{i}]": d * l1 for i, d in enumerate(delta, 1)}
         values |= {f"stabilizer_force[{i}]": f * F_star for i, f in enumerate(F, 1)}
         values |= {f"stabilizer_contact[{i}]": wall(f) for i, f in enumerate(F, 1)}
-        return values | {
+        values |= {
             "bit_tilt_saturation": saturation(F_0, p.eta_pi, p.inputs.psi_star),
             "bit_lateral_force": F_0 * F_star,
             "bit_moment": -mode.M(loads) * F_star * l1,
             "borehole_curvature": (Theta - p.earlier_inclination(p.xi - 1.0)) / l1,
+        }
+        values |= self._sensed() | {
             "displacement": x * l1,
             "true_vertical_depth": z * l1,
             "eta_pi": p.eta_pi,
         }
+        if isinstance(p, GroundIntegrator) and p.ground.tops:
+            values["formation"] = p.layer
+        return values
+
+    def _sensed(self) -> dict[str, float]:
+        """The outputs of the sensors where the bit is."""
+        p, l1, F_star = self.integrator, self._length, self._force
+        inclinations, moments, clearances = {}, {}, {}
+        for i, (sensor, reading) in enumerate(zip(p.scaled.sensors, p.readings, strict=True), 1):
+            inclination, offset, moment = p.sensed(sensor.s, p.xi)
+            told = reading.inclination if sensor.interval else inclination + sensor.bias
+            inclinations[f"sensor_inclination[{i}]"] = told
+            moments[f"sensor_bending_moment[{i}]"] = moment * F_star * l1
+            clearances[f"sensor_clearance[{i}]"] = (sensor.clearance - abs(offset)) * l1
+        return inclinations | moments | clearances
 
     def save(self) -> dict[str, Any]:
         """The whole evolving state, of numbers, strings, lists and tuples; JSON keeps it exactly."""
-        return {"drilled_length": self.drilled_length, "integrator": self.integrator.save()}
+        return {
+            "drilled_length": self.drilled_length,
+            "clearances": self.clearances,
+            "integrator": self.integrator.save(),
+        }
 
     def restore(self, state: dict[str, Any]) -> None:
         """Go back to a state from `save` of a run with the same parameters."""
-        self.drilled_length = state["drilled_length"]
+        self.drilled_length, self.clearances = state["drilled_length"], tuple(state["clearances"])
         self.integrator.restore(state["integrator"])

@@ -8,56 +8,29 @@ are the integrator's own: the bit may stop anywhere.
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import replace
 from math import isfinite, pi, sin
 from typing import Any
 
-from . import radau
 from .errors import CannotContinue
 from .events import Event, first_event
 from .hole import Drilled, Hole
 from .inputs import Inputs
-from .kinks import MERGE, SMOOTHEST_KINK, Kinks
+from .kinks import MERGE, Kinks
 from .law import Law, Laws, bend
-from .modes import ROUNDING, Loads, Mode, Modes, Regime, bit_tilt, saturation
+from .modes import Loads, Mode, Modes, Regime, bit_tilt, saturation
 from .options import Options, Statistics
+from .plan import CLOSER, LARGEST_GROWTH, SMALLEST_GROWTH, Plan, first_plan, growth
 from .problems import Problem
+from .sensors import Reading, Sensed
 from .step import Step, Trial, try_step
 from .survey import Survey
 
 LOOK_BACK = 1.0  # ℓ₁: how far behind the bit Θ may be asked for, as the curvature over the last ℓ₁ does
-SAFETY = 0.85  # of the step that the error estimate asks for, so that few of the next ones are rejected
-LARGEST_GROWTH = 8.0  # of a step over the last, as in RADAU5 (Hairer & Wanner, IV.8): an estimate reaches no farther
-SMALLEST_GROWTH = 0.1  # of a trial over a rejected one, for the same reason
-LEAST_ERROR = 1e-12  # of a trial, over the tolerance: it is not zero, and its growth is far above the largest
-STRETCH = 1.3  # how much longer than planned a step may be if it then ends on the next kink: one long step that may be
-# rejected is tried before two short ones
+STRETCH = 1.3  # how much longer than planned a step may be to end on the next kink: one long step before two short ones
 LARGEST_INCLINATION = 2 * pi  # beyond a full turn nothing is drilled
-CLOSER = 8.0  # by this factor a step is tried shorter where each regime meets a bound before its first point, and the
-# slack by which values may lie beyond their bounds at the points is made larger; 2 to 64 serve as well
 MOST_SLACK = 1e-6  # of that slack: what needs more is no touch that rounding hides
 ORIGIN_LIMIT = 8.0  # |Y| beyond which the origin of Y is moved to the bit: rounding errors of Y stay below 1e-15
-
-
-@dataclass
-class Plan:
-    """How a step is tried, and tried again."""
-
-    h: float  # its length
-    resumed: float  # the length that may follow if a kink cuts it short
-    repeated: bool = False  # an earlier trial was no good: the next is never longer than planned
-    switches: int = 0  # of the regime where it starts
-    slack: float = ROUNDING  # by which its points may lie beyond a bound
-
-    def shorten(self, h: float) -> None:
-        """Try again, the error having been too large."""
-        self.h = self.resumed = h
-        self.repeated = True
-
-    def look_closer(self, h: float) -> None:
-        """Try again, each regime having met a bound before the first point."""
-        self.h, self.repeated, self.switches = h, True, 0
-        self.slack *= CLOSER
 
 
 class Integrator:
@@ -104,13 +77,16 @@ class Integrator:
         self.path = (0.0, 0.0)  # ∫ sin Θ dξ, ∫ cos Θ dξ up to the start of the present step
         self.origin = 0.0  # of Y
         self._accepted = self._rejected = self._events = 0
+        self.cleared = 0.0  # where the stabilizers got the clearances that they have
         self.kinks = Kinks(self.scaled.s)
         for kink, jump in self.hole.kinks:
             self.kinks.add_images(kink, 2, jump)
         theta = self.hole.final_inclination
         self.present = Step.standstill(0.0, theta, 0.0)  # the step that the bit is in
         inputs = Inputs(F_rss, eta_pi, 0.0, 0.0, self.scaled.epsilon, self.scaled.psi_star)
+        self.readings = [Reading() for _ in self.scaled.sensors]
         self._restart(self._loads(0.0, theta, 0.0, F_rss), inputs, theta)
+        self._read(0.0)
 
     # moving
 
@@ -127,6 +103,23 @@ class Integrator:
                     self._steer(inputs)
                 self._take_steps(xi)
         self.xi = xi
+        self._read(xi)
+
+    def change_clearances(self, y_star: tuple[float, ...]) -> None:
+        """Let the stabilizers have other clearances from where the bit is; errors as in `drill`."""
+        with self._all_or_nothing():
+            loads, (theta, Y), inputs = self.loads(), self.present.state(self.xi), self._inputs_here()
+            Theta = self._inclination(theta, loads, inputs)
+            self._move_path(self.xi)
+            self.present = Step.standstill(self.xi, theta, Y)
+            self._clear(y_star, self.xi)
+            self._restart(loads, inputs, Theta)
+
+    def _clear(self, y_star: tuple[float, ...], xi: float) -> None:
+        self.cleared = xi
+        if y_star != self.scaled.y_star:
+            self.scaled = replace(self.scaled, y_star=y_star)
+            self.modes = Modes(self.scaled)
 
     def advance(self, xi: float) -> None:
         """Drill on to `xi` under the inputs as they are, see `drill`."""
@@ -142,6 +135,7 @@ class Integrator:
         with self._all_or_nothing():
             self._take_step()
         self.xi = self.present.end
+        self._read(self.xi)
         return self.present
 
     @contextmanager
@@ -159,13 +153,23 @@ class Integrator:
             raise failure from error
 
     def _take_steps(self, xi: float) -> None:
-        most = self.options.most_steps
-        hopeless = xi - self.xi > most * self.options.largest_step
-        last = self._accepted + most
+        last = self._accepted + self.options.most_steps
         while xi > self.present.end:
-            if hopeless or self._accepted == last:
-                raise CannotContinue(Problem("too many", limit=most, place=self.xi * self.length_scale))
+            self._check_way(xi, last)
             self._take_step()
+
+    def _read(self, xi: float) -> None:
+        """Let each sensor take the last reading that is due with the bit at `xi`, in the present step."""
+        for i, sensor in enumerate(self.scaled.sensors):
+            if sensor.interval and (number := sensor.due(xi)) > self.readings[i].number:
+                inclination = self.sensed(sensor.s, min(number * sensor.interval, xi)).inclination
+                self.readings[i] = Reading(number, sensor.reads(inclination, i, number))
+
+    def _check_way(self, xi: float, last: int) -> None:
+        """Raise unless so many steps at most may lead to `xi`."""
+        most = self.options.most_steps
+        if xi - self.xi > most * self.options.largest_step or self._accepted == last:
+            raise CannotContinue(Problem("too many", limit=most, place=self.xi * self.length_scale))
 
     def _steer(self, inputs: Inputs) -> None:
         """Take over inputs where the bit is. Where a slope or ε changes, the curvature jumps."""
@@ -210,7 +214,7 @@ class Integrator:
         hole = self.hole
         k = hole.find(xi + MERGE)
         drilled = hole.drilled[k]
-        if drilled is None:
+        if drilled is None or xi + MERGE < self.cleared:  # with other clearances its law was another
             return hole.Theta(xi)
         xi = max(xi, hole.starts[k])
         theta = drilled.at((xi - hole.starts[k]) * hole.rates[k])
@@ -228,6 +232,13 @@ class Integrator:
         delayed = [self.hole.Y(xi - s_i) for s_i in self.scaled.s]
         e = [Y - Y_i - s_i * theta for Y_i, s_i in zip(delayed, self.scaled.s)]
         return Loads(e, F_rss, sin(Y - delayed[0]))
+
+    def sensed(self, s: float, xi: float) -> Sensed:
+        """The BHA at `s` behind the bit while that is at `xi`, in the present step."""
+        theta, Y = self.present.state(xi)
+        loads = self._loads(xi, theta, Y, self.inputs.ahead(xi - self.inputs_xi).F_rss)
+        v, slope, moment = self.settled(loads).line(self.modes.beam, s, loads)
+        return Sensed(theta - slope, Y - self.hole.Y(xi - s) - s * theta + v, moment)
 
     def settled(self, loads: Loads) -> Mode:
         """The mode whose contacts hold under `loads`."""
@@ -254,21 +265,26 @@ class Integrator:
             "regime": self.regime,
             "path": self.path,
             "origin": self.origin,
+            "clearances": (self.scaled.y_star, self.cleared),
             "statistics": self.statistics,
             "kinks": self.kinks.save(),
             "step": self.present,
             "hole": self.hole.save(),
+            "readings": self.readings[:],
         }
 
     def restore(self, state: dict[str, Any]) -> None:
         """Go back to a state from `save`, also after a journey through JSON."""
         self.xi, self.origin = state["xi"], state["origin"]
         self.path = (state["path"][0], state["path"][1])
+        y_star, cleared = state["clearances"]
+        self._clear(tuple(y_star), cleared)
         self._accepted, self._rejected, self._events = state["statistics"]
         self.kinks.restore(state["kinks"])
         xi, h, theta, Y, *rest = state["step"]
         self.present = Step(xi, h, tuple(theta), tuple(Y), *rest)
         self.hole.restore(state["hole"])
+        self.readings = [Reading(*reading) for reading in state["readings"]]
         self._take_over(Inputs(*state["inputs"]), state["inputs_xi"])
         contact, side = state["regime"]
         self._change_regime(Regime(tuple(contact), side))
@@ -316,12 +332,13 @@ class Integrator:
     def _take_step(self) -> None:
         """Append one step at the end of the last one."""
         last, xi = self.present, self.present.end
+        self._read(xi)
         theta, Y, kink = self._leave(last)
         inputs = self.inputs.ahead(xi - self.inputs_xi)
         if inputs.eta_pi_slope:  # each step has laws of its own
             self._laws = Laws(self.modes, inputs, xi)
             self._change_regime(self.regime)
-        plan = self._first_plan(last, kink)
+        plan = first_plan(last, kink, self.options.layers * self._law.relaxation)
         trial, event = self._find_step(plan, xi, theta, Y)
         _, h, thetas, Ys, end, *_ = trial.step
         next_h = h * min(growth(trial.error), LARGEST_GROWTH)
@@ -335,15 +352,6 @@ class Integrator:
         if kink is not None:
             self.kinks.add_images(xi, kink, abs(step.derivative(kink, xi) - last.derivative(kink, xi)))
         self._accepted += 1
-
-    def _first_plan(self, last: Step, kink: int | None) -> Plan:
-        """The plan of the next step: as the last one left it, but after a kink no longer than `layers` allow."""
-        plan = Plan(last.next_h, last.next_h)
-        if (kink is not None and kink <= SMOOTHEST_KINK) or last.end == last.xi:
-            plan.h = min(plan.h, self.options.layers * self._law.relaxation)
-            if last.event is not None:
-                plan.resumed = plan.h
-        return plan
 
     def _find_step(self, plan: Plan, xi: float, theta: float, Y: float) -> tuple[Trial, Event | None]:
         """The first trial of a step whose error is tolerable and whose regime holds beyond its start; its first event.
@@ -390,9 +398,3 @@ class Integrator:
 
     def _failure(self, code: str, xi: float) -> CannotContinue:
         return CannotContinue(Problem(code, limit=self.options.relative_tolerance, place=xi * self.length_scale))
-
-
-def growth(error: float) -> float:
-    """How much longer than a trial with this error, over the tolerance, the next one may be."""
-    grown: float = max(error, LEAST_ERROR) ** (-1 / (radau.S + 1))
-    return SAFETY * grown

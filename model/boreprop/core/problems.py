@@ -50,6 +50,10 @@ OBSTACLES = {
         "raise relative_tolerance (--tolerance), now {limit}",
     ),
     "no mode": ("no contacts are found that hold at {place} m", "change relative_tolerance (--tolerance), now {limit}"),
+    "snaps": (
+        "at {place} m the BHA comes free of the wall at a stabilizer without which it buckles: it would bear {limit} N",
+        "use a smaller weight_on_bit",
+    ),
     "too crowded": (
         "more than {limit} supports touch the wall, or are near it, at {place} m",
         "put fewer points on the body (bha.body_contact_spacing)",
@@ -57,6 +61,10 @@ OBSTACLES = {
     "too many": (
         "from {place} m on, more than {limit} steps of the integrator would be needed in one call",
         "drill to a nearer length, change inputs less often, or raise relative_tolerance (--tolerance)",
+    ),
+    "worn out": (
+        "from {place} m on the flats of the worn bit bear all of the active weight on bit",
+        "raise active_weight_on_bit, or lower bit.wear.largest_weight",
     ),
     "no memory": (
         "there is too little memory for the hole behind the bit, at most {limit} pieces",

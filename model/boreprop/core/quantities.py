@@ -14,13 +14,15 @@ from typing import Any, Literal, NamedTuple
 Role = Literal["input", "output", "parameter", "case"]  # "case": only a case has it, an FMU has not
 Kind = Literal["Real", "Integer", "Boolean", "String"]
 Size = Literal[
-    "1", "n", "n-1", "uniform", "sections", "stepped", "axial", "points", "body", "space", "space n-1", "column"
+    "1", "n", "n-1", "uniform", "sections", "stepped", "axial", "points", "body", "layered", "sensors", "space",
+    "space n-1", "column"
 ]  # "column": as long as its table
 
 MAX_STABILIZERS = 6
 MAX_SECTIONS = 24
 MAX_POINTS = 128  # of the body at which it may touch the wall
 MOST_WALK = 89 / 180 * pi  # rad: at a right angle the tilt is no longer unique
+MAX_SENSORS = 8
 MOST_DRILLED = 1e5  # m in a communication step of an FMU: no hole is longer, and a step must end soon
 RELATIVE_TOLERANCE = 1e-7  # with it θ is within 5e-7 rad of the reference trajectories
 
@@ -32,6 +34,8 @@ class Structure(NamedTuple):
     sections: int = 0  # of the beam; none: it is uniform
     axial_load: int = 0  # 1: the load along the beam counts
     body_points: int = 0  # of the beam between the stabilizers, at which its body may touch the wall
+    layered: int = 0  # 1: rock comes in layers by true vertical depth
+    sensors: int = 0
     space: int = 0  # 1: the hole may leave its vertical plane
 
     @property
@@ -49,7 +53,7 @@ class Structure(NamedTuple):
 @cache
 def counts(structure: Structure) -> dict[str, int]:
     """Size → how many values a quantity of that size has."""
-    n, sections, axial, points, space = structure
+    n, sections, axial, points, layered, sensors, space = structure
     return {
         "1": 1,
         "n": n,
@@ -61,6 +65,8 @@ def counts(structure: Structure) -> dict[str, int]:
         "axial": axial,
         "points": points,
         "body": int(bool(points)),
+        "layered": layered,
+        "sensors": sensors,
         "space": space,
         "space n-1": space * (n - 1),
     }
@@ -85,6 +91,8 @@ class Quantity:
         Its value where a case does not give one.
     follows
         Of an output, the inputs and parameters that it follows at once, without any drilling.
+    tunable
+        Of a parameter, whether it may change along a run.
     slope
         Of an input, whether the engines also take its change per metre drilled; without it, it is held along a leg.
     key
@@ -108,6 +116,7 @@ class Quantity:
     start: float | str | None = None
     follows: tuple[str, ...] = ()
     slope: bool = False
+    tunable: bool = False
     key: str = ""
     field: str = ""
 
@@ -124,7 +133,7 @@ class Quantity:
     @property
     def is_list(self) -> bool:
         """Whether its values are numbered."""
-        return self.size in ("n", "n-1", "sections", "points", "space n-1")
+        return self.size in ("n", "n-1", "sections", "points", "sensors", "space n-1")
 
     @property
     def acts(self) -> bool:
@@ -154,6 +163,7 @@ SHAPE = (
     *("body_point_position", "body_point_clearance"),
 )
 FORCE = ("rss_force", "weight_on_bit", "survey_file", *SHAPE)
+INSTRUMENT = ("sensor_bias", "sensor_noise", "sensor_seed")
 FORCE_AND_WEIGHT = (*FORCE, "active_weight_on_bit", "lateral_steering_resistance", "bit_tilt_limit")
 FORCE_IN_SPACE = (*FORCE, "rss_toolface", "toolface_reference")
 IN_SPACE = (*FORCE_AND_WEIGHT, "rss_toolface", "toolface_reference", "bit_walk_angle")
@@ -198,12 +208,17 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("stabilizer_deflection_right", "output", "m", "δ_i", "", "part of the offset of the BHA from the borehole axis to the right of that, looking down the hole", size="space n-1", nominal=1e-3, follows=FORCE_IN_SPACE),
     Quantity("north", "output", "m", "", "", "position of the bit north of the start of the run", size="space", nominal=100.0),
     Quantity("east", "output", "m", "", "", "position of the bit east of the start of the run", size="space", nominal=100.0),
+    Quantity("sensor_inclination", "output", "rad", "", "", "inclination of the BHA at the sensor; with an interval its last reading, with bias and noise", size="sensors", follows=(*FORCE, "sensor_position", *INSTRUMENT)),
+    Quantity("sensor_bending_moment", "output", "N.m", "", "", "bending moment of the BHA at the sensor, positive as in a hole that builds; at the bit the moment on the bit", size="sensors", nominal=1e4, follows=(*FORCE, "sensor_position")),
+    Quantity("sensor_clearance", "output", "m", "", "", "distance of the body at the sensor from the wall; negative beyond it", size="sensors", nominal=1e-2, follows=(*FORCE, "sensor_position", "sensor_body_clearance")),
     Quantity("displacement", "output", "m", "x", "", "horizontal position of the bit from the start of the run", nominal=100.0),
     Quantity("true_vertical_depth", "output", "m", "z", "", "depth of the bit below the start of the run", nominal=100.0),
     Quantity("eta_pi", "output", "", "ηΠ", "(9)", "lateral penetration stiffness of the rock over the BHA's bending stiffness", nominal=0.01, follows=("active_weight_on_bit", "lateral_steering_resistance", "flexural_stiffness", "stabilizer_position")),
 
+    Quantity("formation", "output", "", "", "", "number of the formation by true vertical depth in which the bit is, from the top; 0 above the first", kind="Integer", size="layered", at_least=0),
+
     Quantity("stabilizer_position", "parameter", "m", "s_i", "", "distance of the stabilizer from the bit; the last one is ideal", size="n", above=0.0, nominal=10.0, key="bha.stabilizer_positions", field="bha.stabilizer_positions"),
-    Quantity("stabilizer_clearance", "parameter", "m", "y*_i", "(7)", "clearance between stabilizer and wall on each side", size="n-1", at_least=0.0, nominal=1e-3, key="bha.stabilizer_clearances", field="bha.stabilizer_clearances"),
+    Quantity("stabilizer_clearance", "parameter", "m", "y*_i", "(7)", "clearance between stabilizer and wall on each side", size="n-1", at_least=0.0, nominal=1e-3, tunable=True, key="bha.stabilizer_clearances", field="bha.stabilizer_clearances"),
     Quantity("rss_position", "parameter", "m", "Δ", "", "distance of the steering pads from the bit", at_least=0.0, key="bha.rss_position", field="bha.rss_position"),
     Quantity("distributed_weight", "parameter", "N/m", "w", "", "buoyant weight of the BHA per length", size="uniform", at_least=0.0, nominal=1e3, key="bha.distributed_weight", field="bha.distributed_weight"),
     Quantity("flexural_stiffness", "parameter", "N.m2", "EI", "", "bending stiffness of the BHA", size="uniform", above=0.0, nominal=1e7, key="bha.flexural_stiffness", field="bha.flexural_stiffness"),
@@ -213,6 +228,12 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("body_point_position", "parameter", "m", "s", "", "where the body between the stabilizers may touch the wall, from the bit", size="points", above=0.0, nominal=10.0, key="bha.body_point_positions", field="bha.body_point_positions"),
     Quantity("body_point_clearance", "parameter", "m", "y*", "(7)", "clearance between the body there and the wall on each side", size="points", above=0.0, nominal=1e-2, key="bha.body_point_clearances", field="bha.body_point_clearances"),
     Quantity("end_deflection", "parameter", "m", "δ_n", "(5)", "offset of the BHA from the borehole axis at the last stabilizer, positive to the high side", size="stepped", nominal=1e-2, key="bha.end_deflection", field="bha.end_deflection"),
+    Quantity("sensor_position", "parameter", "m", "s", "", "distance of the sensor from the bit", size="sensors", at_least=0.0, nominal=10.0, key="sensor.position", field="bha.sensor_positions"),
+    Quantity("sensor_interval", "parameter", "m", "", "", "drilled length from reading to reading of the inclination; 0: it is read all the time", size="sensors", at_least=0.0, nominal=10.0, key="sensor.interval", field="bha.sensor_intervals"),
+    Quantity("sensor_bias", "parameter", "rad", "", "", "what is always added to a reading", size="sensors", nominal=1e-3, key="sensor.bias_deg", field="bha.sensor_biases"),
+    Quantity("sensor_noise", "parameter", "rad", "", "", "standard deviation of what is added to each reading", size="sensors", at_least=0.0, nominal=1e-3, key="sensor.noise_deg", field="bha.sensor_noises"),
+    Quantity("sensor_seed", "parameter", "", "", "", "which noise: the same seed gives the same readings again", kind="Integer", size="sensors", at_least=0, at_most=2**31 - 1, key="sensor.seed", field="bha.sensor_seeds"),
+    Quantity("sensor_body_clearance", "parameter", "m", "", "", "clearance between the body at the sensor, where it is centred, and the wall on each side", size="sensors", at_least=0.0, nominal=1e-2, key="sensor.body_clearance", field="bha.sensor_body_clearances"),
     Quantity("relative_tolerance", "parameter", "", "", "", "local error allowed in one step of the integrator, relative to 1 rad and ℓ₁", at_least=1e-12, at_most=1e-2, nominal=1e-7, start=RELATIVE_TOLERANCE),
     Quantity("survey_file", "parameter", "", "", "", "survey of the existing hole, its last station is the bit (plain CSV: UTF-8, commas, decimal points, m, degrees); empty: the survey packed in the FMU", kind="String", start="", key="hole.survey"),
 
@@ -226,6 +247,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("measured_depth", "case", "m", "", "", "stations along the existing hole, the last one is the bit if bit_depth does not say where it is", size="column", key="hole.measured_depth", field="survey.measured_depth"),
     Quantity("inclination", "case", "rad", "Θ", "", "inclination of the existing hole at each station", at_least=-pi, at_most=pi, size="column", key="hole.inclination_deg", field="survey.inclination"),
     Quantity("bit_depth", "case", "m", "", "", "measured depth of the bit at the start of the run; beyond the survey the hole is straight", nominal=1e3, key="hole.bit_depth"),
+    Quantity("bit_true_vertical_depth", "case", "m", "", "", "true vertical depth of the bit at the start of the run, from which those of formations count", nominal=1e3, start=0.0, key="hole.true_vertical_depth", field="true_vertical_depth"),
     Quantity("schedule_depth", "case", "m", "", "", "measured depths at which the forces begin, in place of drilled lengths", size="column", nominal=1e3, key="rss.measured_depth"),
     Quantity("full_force", "case", "N", "", "", "force of the steering pads at a duty of 1", at_least=0.0, nominal=1e4, key="rss.full_force"),
     Quantity("duty", "case", "", "", "", "share of the time in which the pads push to the side of the toolface", size="column", at_least=0.0, at_most=1.0, key="rss.duty"),
@@ -249,6 +271,8 @@ IN_SPACE_ONLY = tuple(q.name for q in INPUTS if q.size == "space")
 """The inputs that count only where the hole may leave its vertical plane."""
 ROCK = tuple(q.name for q in INPUTS if q.part == "bit" and q.name not in IN_SPACE_ONLY)
 """The inputs that say what bit and rock are like."""
+CLEARANCES = tuple(f"stabilizer_clearance[{i}]" for i in range(1, MAX_STABILIZERS))
+"""The clearances that a schedule may change, of as many stabilizers as there may be."""
 VARIABLES = INPUTS + OUTPUTS + PARAMETERS  # what an FMU has
 
 
@@ -259,7 +283,8 @@ def scalar_names(quantities: tuple[Quantity, ...], structure: int | Structure) -
 
 def names_of_runs(n: int) -> list[str]:
     """The scalar names of all inputs and outputs that a run with `n` stabilizers may have, whatever its beam."""
-    return scalar_names(INPUTS + OUTPUTS, Structure(n, axial_load=1, body_points=1, space=1))
+    made = Structure(n, axial_load=1, body_points=1, layered=1, sensors=MAX_SENSORS, space=1)
+    return scalar_names(INPUTS + OUTPUTS, made)
 
 
 def quantity_of(scalar_name: str) -> Quantity:
@@ -267,9 +292,20 @@ def quantity_of(scalar_name: str) -> Quantity:
     return BY_NAME[scalar_name.partition("[")[0]]
 
 
+def followed(quantity: Quantity, structure: int | Structure) -> frozenset[str]:
+    """The inputs and parameters that an output follows at once in a BHA of this structure.
+
+    A weight on bit of 0 stands for the active weight, which then loads the BHA along its axis.
+    """
+    names = frozenset(quantity.follows)
+    if isinstance(structure, Structure) and structure.axial_load and "weight_on_bit" in names:
+        names |= {"active_weight_on_bit"}
+    return names
+
+
 def columns_of(table: str) -> tuple[str, ...]:
     """The columns, as people name them, of "hole" or "rss": tables of a case file that may be CSV files of their own."""
-    keys = (quantity.key.split(".") for quantity in QUANTITIES if quantity.key and quantity.field)
+    keys = (quantity.key.split(".") for quantity in QUANTITIES if quantity.key and quantity.part)
     return tuple(key for place, key in keys if place == table)
 
 

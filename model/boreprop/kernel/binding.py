@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Floats
-from ..core.errors import BorepropError, error_of
+from ..core.errors import BorepropError, ParameterError, error_of
+from ..core.ground import Ground, check_step
 from ..core.options import Options, Statistics
 from ..core.problems import SENTENCES, Problem
 from ..core.quantities import ACTING, OUTPUTS, Structure, scalar_names, values_of
@@ -94,14 +95,16 @@ def load(path: Path) -> ctypes.CDLL:
 def _declare(kernel: ctypes.CDLL, prefix: str) -> None:
     """Say what the functions with a prefix take and return."""
     run, reals, whole = ctypes.c_void_p, _array(np.float64), ctypes.c_longlong
+    own = ctypes.POINTER(ctypes.c_double)
     inputs, options, problem = (ctypes.POINTER(struct) for struct in (Inputs, OptionsInC, ProblemInC))
     for name, result, arguments in (
         ("sentence", None, (problem, ctypes.c_char_p)),
-        ("start", run, (_array(np.intc), reals, options, whole, reals, reals, reals, inputs, problem)),
+        ("start", run, (_array(np.intc), reals, options, whole, *3 * (reals,), ctypes.c_int, own, inputs, problem)),
         ("end", None, (run,)),
         ("follow", whole, (run, whole, reals, reals, _array(np.intc), reals, problem)),
         ("outputs", ctypes.c_int, (run, reals)),
         ("length", ctypes.c_double, (run,)),
+        ("change_clearances", ctypes.c_int, (run, reals, problem)),
         ("step", ctypes.c_int, (run, problem)),
         ("statistics", None, (run, reals)),
         ("state_size", whole, (run,)),
@@ -223,11 +226,12 @@ class NativeDrilling:
         rss_force: float = 0.0,
         weight_on_bit: float = 0.0,
         options: Options = Options(),  # noqa: B008 - frozen
+        ground: Ground | None = None,
     ) -> None:
         check_in_plane(bit)
         acting = {"rss_force": rss_force, "active_weight_on_bit": active_weight_on_bit, "weight_on_bit": weight_on_bit}
         azimuth = np.zeros(len(survey.measured_depth))
-        self._start(PLANAR, bha.structure, bha, bit, survey, azimuth, acting, options)
+        self._start(PLANAR, bha.structure, bha, bit, survey, azimuth, acting, options, ground)
 
     def _start(
         self,
@@ -239,10 +243,14 @@ class NativeDrilling:
         azimuth: Floats,
         acting: Mapping[str, float],
         options: Options,
+        ground: Ground | None,
     ) -> None:
+        structure = structure._replace(layered=int(ground is not None and bool(ground.tops)))
+        layers = None if ground is None else numbers(ground.numbers)
         given = values_of("bha", bha) | {"relative_tolerance": options.relative_tolerance}
-        self.bit = bit
+        self.bit, self.ground = bit, ground
         self._names = scalar_names(OUTPUTS, structure)
+        self._clearances = len(bha.stabilizer_clearances)
         self._problem = ProblemInC()
         self._library, self._prefix = library(), prefix
         self._run = self._call("start")(
@@ -253,6 +261,8 @@ class NativeDrilling:
             numbers(survey.measured_depth),
             numbers(survey.inclination),
             numbers(azimuth),
+            0 if ground is None else len(ground.tops),
+            None if layers is None else layers.ctypes.data_as(ctypes.POINTER(ctypes.c_double)),
             Inputs(**acting, **values_of("bit", bit)),
             self._problem,
         )
@@ -327,8 +337,15 @@ class NativeDrilling:
         done = self._call("follow")(self._run, legs, numbers(lengths), given, on_rows, table, self._problem)
         self._check(done == legs)
 
+    def change_clearances(self, clearances: tuple[float, ...]) -> None:
+        """Let the stabilizers have other clearances, m, from where the bit is, as `Drilling.change_clearances`."""
+        if len(clearances) != self._clearances:
+            raise ParameterError("stabilizer_clearance", f"must hold {self._clearances} values", clearances)
+        self._check(self._call("change_clearances")(self._run, numbers(clearances), self._problem))
+
     def step(self) -> None:
         """Drill on to the end of the integrator's next step, as `Drilling.step`."""
+        check_step(self.ground)
         self._check(self._call("step")(self._run, self._problem))
 
     def outputs(self) -> dict[str, float | int]:

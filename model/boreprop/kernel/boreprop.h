@@ -14,6 +14,8 @@
 #define EXPORT __attribute__((visibility("default")))
 #endif
 
+enum { STRUCTURE_MEMBERS = sizeof(Structure) / sizeof(int) }; /* members of a Structure */
+
 /* A digest of the sources that this was compiled from. */
 EXPORT const char *boreprop_sources_digest(void);
 
@@ -25,10 +27,12 @@ EXPORT void boreprop_sentence(const Problem *problem, char line[MESSAGE]);
 
 /* A run of this structure (its members one after the other) at the end of its survey, with parameters in the order of the
    table of quantities; NULL, and the problem, if a value is out of range. The caller ends it with `boreprop_end`. The
-   tolerance is that of the parameters; the other options are not checked. */
+   tolerance is that of the parameters; the other options are not checked. The ground is of so many layers, and made of
+   numbers as ground.h says, or NULL. */
 EXPORT Run *boreprop_start(
-    const int structure[5], const double *parameters, const Options *options, Count count, const double *measured_depth,
-    const double *inclination, const double *azimuth, const Inputs *inputs, Problem *problem
+    const int structure[STRUCTURE_MEMBERS], const double *parameters, const Options *options, Count count,
+    const double *measured_depth, const double *inclination, const double *azimuth, int layers, const double *ground,
+    const Inputs *inputs, Problem *problem
 );
 EXPORT void boreprop_end(Run *run);
 
@@ -38,6 +42,9 @@ EXPORT void boreprop_end(Run *run);
 EXPORT Count boreprop_follow(
     Run *run, Count count, const double *lengths, const Inputs *inputs, const int *rows, double *table, Problem *problem
 );
+
+/* Let the stabilizers have other clearances, m, from where the bit is; 0, and the problem, if that fails. */
+EXPORT int boreprop_change_clearances(Run *run, const double *clearances, Problem *problem);
 
 /* Drill on to the end of the integrator's next step, under the inputs as they are; 0, and the problem, if that fails. */
 EXPORT int boreprop_step(Run *run, Problem *problem);
@@ -62,8 +69,8 @@ EXPORT int boreprop_restore(Run *run, const double *state, Count count, Problem 
 /* How a BHA lies in holes that are given, row by row as `lie` of lying.h does, under a weight on bit, N, and its own at an
    inclination, rad. Returns how many rows are done; if not all are, there is a problem. */
 EXPORT Count boreprop_lie(
-    const int structure[5], const double *parameters, double weight_on_bit, double inclination, Count rows,
-    const double *loads, double *answers, Count count, const double *s, double *shapes, Problem *problem
+    const int structure[STRUCTURE_MEMBERS], const double *parameters, double weight_on_bit, double inclination,
+    Count rows, const double *loads, double *answers, Count count, const double *s, double *shapes, Problem *problem
 );
 
 #endif

@@ -38,7 +38,7 @@ typedef struct {
 
 /* The right-hand side in one regime under given inputs, and the bounds within which it holds. */
 typedef struct {
-    int count, n, saturated, axial;
+    int count, n, saturated, axial, stands;
     const Modes *modes;
     double s_1, s_n, y_star[MAX_STABILIZERS], walk_cosine, walk_sine;
     ScaledInputs inputs;
@@ -84,6 +84,7 @@ static inline void make_law(
     double growth = fabs(inputs.eta_pi_slope / inputs.eta_pi);
     int n = scaled->n;
     law->count = places->count, law->n = n, law->axial = scaled->axial, law->saturated = regime.saturation != 0;
+    law->stands = mode->stands;
     law->modes = modes, law->inputs = inputs, law->inputs_xi = inputs_xi, law->bound_count = 0;
     law->s_1 = scaled->s[0], law->s_n = scaled->s[n - 1];
     law->walk_cosine = cos(inputs.walk), law->walk_sine = sin(inputs.walk);

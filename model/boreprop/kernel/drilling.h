@@ -9,9 +9,10 @@ enum { LEAST_CAPACITY = 1024, MOST_PIECES = 1 << 19 }; /* of hole */
 /* A borehole as it is drilled, from the end of the survey on. */
 typedef struct {
     System system;
-    double drilled_length;  /* m */
-    Inputs given;           /* the inputs that were given last, and … */
-    ScaledInputs scaled;    /* … what they are in the paper's numbers */
+    double drilled_length; /* m */
+    Inputs given;          /* the inputs that were given last, and … */
+    ScaledInputs scaled;   /* … what they are in the paper's numbers */
+    Ground ground;
     double buckling_weight; /* over F*: under it the BHA buckles; infinite if the axial load does not count */
     Integrator integrator;
 } Drilling;
@@ -47,6 +48,10 @@ static inline void take_cosine(Drilling *d, double cosine) {
     Integrator *p = &d->integrator;
     p->now.cosine = p->scaled.axial ? cosine : 0.0;
     d->buckling_weight = p->scaled.axial ? buckling_weight(&p->scaled, cosine) : INFINITY;
+    if (DIRECTIONS > 1 && p->scaled.axial) { /* a stabilizer that touches does not hold the BHA sideways */
+        Contact nothing = {{0}, 0, {0}};
+        d->buckling_weight = borne(p, &nothing, d->buckling_weight);
+    }
 }
 
 /* All of the weight on bit, N: the active weight if none is given. */
@@ -111,14 +116,18 @@ static inline void drilling_move(Drilling *d, void *memory, Count capacity) {
     move_rings(&d->integrator, memory, kinks_in(memory, capacity), capacity);
 }
 
-/* Prepare a drilling system, to be followed by `drilling_start` or `drilling_restore`. The memory must live on. The
-   tolerance of the system takes the place of that of the options. */
+/* Prepare a drilling system, to be followed by `drilling_start` or `drilling_restore`. The memory, and the numbers of the
+   ground, must live on. The tolerance of the system takes the place of that of the options. */
 static inline Status drilling_prepare(
-    Drilling *d, const System *system, Options options, void *memory, Count capacity, Problem *problem
+    Drilling *d, const System *system, Ground ground, Options options, void *memory, Count capacity, Problem *problem
 ) {
     if (!check_system(system, problem)) return FAILED;
     if (DIRECTIONS > 1 && system->structure.points) {
         wrong(problem, ONLY_IN_THE_PLANE, Q_BODY_POINT_POSITION, 0, system->structure.points, NAN);
+        return FAILED;
+    }
+    if (DIRECTIONS > 1 && system->structure.sensors) {
+        wrong(problem, ONLY_IN_THE_PLANE, Q_SENSOR_POSITION, 0, system->structure.sensors, NAN);
         return FAILED;
     }
     if (!check_positive(Q_FORCE_SCALE, force_scale(system), problem)) return FAILED;
@@ -126,11 +135,11 @@ static inline Status drilling_prepare(
     if (!check_finite(Q_SCALED_REACH, 0, scaled.s[scaled.n - 1], problem) ||
         !check_finite(Q_SCALED_WEIGHT, 0, scaled.w, problem))
         return FAILED;
-    d->system = *system;
+    d->system = *system, d->ground = ground;
     d->drilled_length = 0.0;
     d->given.rss_force = (double)NAN;
     options.relative_tolerance = system->relative_tolerance;
-    prepare(&d->integrator, &scaled, length_scale(system), options);
+    prepare(&d->integrator, &scaled, length_scale(system), force_scale(system), options);
     take_cosine(d, 0.0);
     drilling_move(d, memory, capacity);
     return DONE;
@@ -140,9 +149,40 @@ static inline Status drilling_prepare(
 static inline Status drilling_start(Drilling *d, const Survey *survey, Inputs inputs, Problem *problem) {
     if (!check_survey(survey, problem)) return FAILED;
     take_cosine(d, cos(survey->inclination[survey->count - 1]));
-    if (!take_given(d, inputs, problem)) return FAILED;
+    int layer = d->integrator.now.layer = first_layer(&d->ground);
+    if (!take_given(d, d->ground.there ? rock_in(&d->ground, layer, inputs) : inputs, problem)) return FAILED;
     if (d->integrator.now.hole.capacity < drilling_capacity(&d->system, survey)) return FULL;
     return begin(&d->integrator, survey, d->scaled, problem);
+}
+
+/* Drill on to `xi` through the ground, under inputs that are given for a sharp bit and the rock without layers; as `drill`. */
+static inline Status drill_through(Drilling *d, double xi, Inputs given, Problem *problem) {
+    Integrator *p = &d->integrator;
+    State *now = &p->now;
+    double l1 = length_scale(&d->system), start = d->drilled_length / l1, end;
+    int left;
+    if (!set_out(p)) return FULL;
+    if (d->system.structure.axial) given.weight_on_bit = whole_weight(given);
+    do {
+        double until, way = (now->xi - start) * l1;
+        Inputs inputs = rock_in(&d->ground, now->layer, given);
+        inputs.rss_force += inputs.rss_force_slope * way;
+        inputs.active_weight_on_bit += inputs.active_weight_on_bit_slope * way;
+        int good = wear_off(&d->ground, now->xi * l1, xi * l1, &inputs, &until, problem);
+        Status status = good && take_given(d, inputs, problem) ? DONE : FAILED;
+        end = smaller(xi, until / l1);
+        if (status == DONE && are_others(now, d->scaled, end - now->xi)) {
+            if (!has_room(p)) return FULL;
+            status = steer(p, d->scaled, problem);
+        }
+        if (status == DONE) status = drill_in_layer(p, &d->ground, end, &left, problem);
+        if (status == FAILED) go_back(p);
+        if (status != DONE) return status;
+        if (!left) now->xi = end;
+        read_sensors(p, now->xi);
+    } while (left || end < xi);
+    p->under_way = 0;
+    return DONE;
 }
 
 /* Drill on to a length, m from the start, under inputs from here; where the bit is, only they are taken over.
@@ -152,9 +192,29 @@ static inline Status drilling_advance(Drilling *d, double drilled_length, Inputs
     if (!check_number(Q_DRILLED_LENGTH, 0, drilled_length, -INFINITY, d->drilled_length, INFINITY, problem))
         return FAILED;
     double xi = drilled_length / length_scale(&d->system);
-    Status status = drill(&d->integrator, xi, d->scaled, problem);
+    Status status =
+        d->ground.there ? drill_through(d, xi, inputs, problem) : drill(&d->integrator, xi, d->scaled, problem);
     if (status == DONE) d->drilled_length = drilled_length;
     return status;
+}
+
+/* Whether clearances, m, are others than those that the stabilizers have. */
+static inline int has_other_clearances(const Drilling *d, const double *clearances) {
+    for (int i = 0; i < d->system.structure.n - 1; i++)
+        if (clearances[i] / length_scale(&d->system) != d->integrator.now.y_star[i]) return 1;
+    return 0;
+}
+
+/* Let the stabilizers have other clearances, m, from where the bit is; after FULL as `drilling_advance`. */
+static inline Status drilling_change_clearances(Drilling *d, const double *clearances, Problem *problem) {
+    double y_star[MAX_STABILIZERS] = {0};
+    if (!has_other_clearances(d, clearances)) return DONE;
+    for (int i = 0; i < d->system.structure.n - 1; i++) {
+        if (!check_number(Q_STABILIZER_CLEARANCE, i + 1, clearances[i], -INFINITY, 0.0, INFINITY, problem))
+            return FAILED;
+        y_star[i] = clearances[i] / length_scale(&d->system);
+    }
+    return change_clearances(&d->integrator, y_star, problem);
 }
 
 /* Drill on to the end of the next step, under the inputs as they are; after FULL as `drilling_advance`. */
@@ -173,6 +233,7 @@ static inline void drilling_cancel(Drilling *d) { go_back(&d->integrator); }
 typedef struct {
     double l1, F_star, eta_pi, theta, Y, Theta, psi, F_0, F[MAX_PLACES], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
     double body_force, body_place, wall_distance; /* the largest force on the body and where it acts; the least gap */
+    Sensed sensed[MAX_SENSORS];
     Loads loads;
     const Mode *mode;
 } Present;
@@ -181,19 +242,19 @@ typedef struct {
 static inline void find_body(Drilling *d, Present *at) {
     Integrator *p = &d->integrator;
     int n = p->scaled.n, points = p->scaled.points;
-    double gap[MAX_POINTS];
+    double gap[MAX_POINTS] = {0};
     at->body_force = at->body_place = 0.0, at->wall_distance = INFINITY;
     if (!points) return;
     for (int i = n; i < at->loads.count; i++)
         if (fabs(at->F[i]) > fabs(at->body_force)) at->body_force = at->F[i], at->body_place = p->now.places.s[i];
-    find_gaps(p, &p->now.step, p->now.xi, points, gap);
+    find_gaps(p, gap);
     for (int k = 0; k < points; k++) at->wall_distance = smaller(at->wall_distance, larger(gap[k], 0.0));
 }
 
 static inline Present present(Drilling *d) {
     Integrator *p = &d->integrator;
     const State *now = &p->now;
-    double state[COMPONENTS];
+    double state[COMPONENTS], path[AXES];
     Present at;
     at.l1 = length_scale(&d->system), at.F_star = force_scale(&d->system);
     at.earlier = earlier_inclination(p, now->xi - 1.0);
@@ -206,8 +267,11 @@ static inline Present present(Drilling *d) {
     at.eta_pi = inputs_here(now).eta_pi;
     at.psi = bit_tilt(at.F_0, at.eta_pi, now->inputs.psi_star);
     at.Theta = at.theta - at.psi;
-    position(now, &at.x, &at.z);
+    position(now, path);
+    at.x = path[0], at.z = path[1];
     find_body(d, &at);
+    for (int i = 0; i < p->scaled.sensors; i++)
+        at.sensed[i] = sensed(p, p->scaled.sensor[i].s, now->xi, state, at.mode, &at.loads);
     return at;
 }
 
@@ -235,9 +299,13 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_BODY_CONTACT_FORCE: return at->body_force * F_star;
         case OUT_BODY_CONTACT_POSITION: return at->body_place * l1;
         case OUT_WALL_DISTANCE: return at->wall_distance * l1;
+        case OUT_SENSOR_INCLINATION: return told(&d->integrator, i, &at->sensed[i]);
+        case OUT_SENSOR_BENDING_MOMENT: return at->sensed[i].moment * F_star * l1;
+        case OUT_SENSOR_CLEARANCE: return (scaled->sensor[i].clearance - fabs(at->sensed[i].offset)) * l1;
         case OUT_DISPLACEMENT: return at->x * l1;
         case OUT_TRUE_VERTICAL_DEPTH: return at->z * l1;
         case OUT_ETA_PI: return at->eta_pi;
+        case OUT_FORMATION: return d->integrator.now.layer;
         /* in space only */
         case OUT_BIT_AZIMUTH:
         case OUT_BOREHOLE_AZIMUTH:
@@ -267,9 +335,10 @@ static inline int output_count(Structure structure) {
 /* Every output of the table of quantities where the bit is, in its order; returns how many values. */
 static inline int drilling_outputs(Drilling *d, double out[MOST_OUTPUTS]) {
     Present at = present(d);
+    const Structure structure = d->system.structure;
     double *next = out;
     for (int k = 0; k < OUTPUT_COUNT; k++)
-        for (int i = 0; i < value_count(OUTPUT_SIZE[k], d->system.structure); i++)
+        for (int i = 0, count = value_count(OUTPUT_SIZE[k], structure); i < count; i++)
             *next++ = output(d, &at, (Output)k, i);
     return (int)(next - out);
 }

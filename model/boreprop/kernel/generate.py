@@ -13,6 +13,7 @@ from ..core.quantities import (
     INPUTS,
     MAX_POINTS,
     MAX_SECTIONS,
+    MAX_SENSORS,
     MAX_STABILIZERS,
     MOST_DRILLED,
     OUTPUTS,
@@ -27,7 +28,7 @@ from ..replacing import replacing
 from .compiler import FOLDER
 
 Table = tuple[Quantity, ...]
-SYSTEM = tuple(quantity for quantity in PARAMETERS if quantity.kind == "Real")
+SYSTEM = tuple(quantity for quantity in PARAMETERS if quantity.kind != "String")
 """The parameters that the kernel has, in the order in which it takes their values."""
 
 SIZES = {
@@ -40,6 +41,8 @@ SIZES = {
     "axial": "IF_AXIAL",
     "points": "EACH_POINT",
     "body": "IF_POINTS",
+    "layered": "IF_LAYERED",
+    "sensors": "EACH_SENSOR",
     "space": "IF_SPACE",
     "space n-1": "EACH_NON_IDEAL_IN_SPACE",
 }
@@ -49,8 +52,9 @@ ROOMS = {
     "space n-1": "[MAX_STABILIZERS - 1]",
     "sections": "[MAX_SECTIONS]",
     "points": "[MAX_POINTS]",
+    "sensors": "[MAX_SENSORS]",
 }
-LARGEST = Structure(MAX_STABILIZERS, MAX_SECTIONS, 1, MAX_POINTS, 1)
+LARGEST = Structure(MAX_STABILIZERS, MAX_SECTIONS, 1, MAX_POINTS, 1, MAX_SENSORS, 1)
 
 NAMES = {quantity.name: quantity.name for quantity in QUANTITIES} | {
     **{name: name for name in (f"{quantity.name}_slope" for quantity in INPUTS if quantity.slope)},
@@ -84,6 +88,7 @@ QUANTITIES_HEADER = """\
 #define OFTEN {often!r} /* of its length, at most, from look to look */
 
 enum {{ MAX_STABILIZERS = {most}, MAX_SECTIONS = {most_sections}, MAX_POINTS = {most_points} }};
+enum {{ MAX_SENSORS = {most_sensors} }};
 enum {{ PARAMETER_COUNT = {parameters}, INPUT_COUNT = {inputs}, OUTPUT_COUNT = {outputs} }};
 
 /* How a drilling system is made up, which says how many values each quantity has. */
@@ -91,6 +96,8 @@ typedef struct {{
     int n, sections; /* numbers of stabilizers and of sections */
     int axial;       /* whether the load along the beam counts */
     int points;      /* number of points at which the body between the stabilizers may touch the wall */
+    int layered;     /* whether rock comes in layers by true vertical depth */
+    int sensors;     /* their number */
     int space;       /* whether the hole may leave its vertical plane */
 }} Structure;
 
@@ -113,6 +120,7 @@ typedef struct {{
     Name name;
     Size size;
     size_t offset; /* of a parameter, in System */
+    int is_whole;
     double above, at_least, at_most;
 }} Quantity;
 
@@ -257,6 +265,7 @@ def quantities_header(system: Table = SYSTEM, inputs: Table = INPUTS, outputs: T
         "most": MAX_STABILIZERS,
         "most_sections": MAX_SECTIONS,
         "most_points": MAX_POINTS,
+        "most_sensors": MAX_SENSORS,
         "parameters": len(system),
         "inputs": len(inputs),
         "outputs": len(outputs),
@@ -310,7 +319,9 @@ def _note(unit: str, meaning: str) -> str:
 
 def _range_row(quantity: Quantity, offset: str) -> str:
     bounds = ", ".join(_bound(bound) for bound in (quantity.above, quantity.at_least, quantity.at_most))
-    return f"{{Q_{quantity.name.upper()}, {SIZES[quantity.size]}, {offset}, {bounds}}},"
+    return (
+        f"{{Q_{quantity.name.upper()}, {SIZES[quantity.size]}, {offset}, {int(quantity.kind == 'Integer')}, {bounds}}},"
+    )
 
 
 def _bound(value: float) -> str:

@@ -6,6 +6,7 @@
 #ifndef BOREPROP_INTEGRATOR_H
 #define BOREPROP_INTEGRATOR_H
 
+#include "sensors.h"
 #include "surroundings.h"
 
 /* integrator.py gives the reasons for these numbers. */
@@ -29,6 +30,12 @@ static inline void pass_event(Integrator *p, const Step *step) {
 /* Go on along the path to `xi` in the present step. */
 static inline void move_path(State *now, double xi) { move_along(&now->step, xi, now->path); }
 
+/* Where the bit is, from the start of the run: its depth is the last of the coordinates. */
+static inline void position(const State *now, double path[AXES]) {
+    memcpy(path, now->path, sizeof now->path);
+    move_along(&now->step, now->xi, path);
+}
+
 /* Move the origin of the lateral coordinates to the bit, where the state is `x`, if it is far. */
 static inline void keep_origin_near(State *now, double x[COMPONENTS]) {
     int far = 0;
@@ -45,7 +52,9 @@ static inline int leave(Integrator *p, const Step *last, double x[COMPONENTS]) {
     double xi = last->end;
     move_path(now, xi);
     step_state(last, xi, x);
+    double Y = x[LATERAL];
     keep_origin_near(now, x);
+    if (x[LATERAL] != Y) move_seen(p, x[LATERAL] - Y);
     forget(&now->hole, xi - LOOK_BACK - p->scaled.s[p->scaled.n - 1]);
     move_cursors(&now->hole, &now->places, xi);
     /* a step may have to stop half way to a kink: a kink too near for that counts as met here */
@@ -117,6 +126,35 @@ static inline int is_finite(const Trial *trial) {
 /* How much longer than a trial with this error the next one may be: the error grows as h^(S+1). */
 static inline double growth(double error) { return SAFETY * pow(larger(error, LEAST_ERROR), -1.0 / (S + 1)); }
 
+/* The weight on the bit that a BHA bears while it is held at some contacts alone, over F*; it bears none of `most`. */
+APART static double borne(const Integrator *p, const Contact *contact, double most) {
+    signed char holds[MAX_SUPPORTS] = {0};
+    double low = 0.0;
+    int n = p->scaled.n;
+    Beam beam;
+    Chain chain;
+    for (int i = 0; i < place_count(*contact, n); i++) holds[support_at(contact, n, i)] = contact->of[i];
+    while (most - low > 1e-6 * most) {
+        Axial axial = {(low + most) / 2, p->now.cosine};
+        make_stepped_beam(&beam, &p->scaled, axial);
+        if (make_chain(&chain, &beam, n + p->scaled.points, holds)) low = axial.W;
+        else most = axial.W;
+    }
+    return low;
+}
+
+/* Find contacts between which the BHA stands, where it has come free at a stabilizer without which it does not. It may be
+   free there if other supports hold it; if it would have to jump to the other wall, it is at its end. */
+static inline Status stand(Integrator *p, double xi, const double x[COMPONENTS], Plan *plan, Problem *problem) {
+    Contact before = p->now.regime.contact;
+    int jumps = plan->searched;
+    double bears = borne(p, &p->now.regime.contact, p->now.inputs.W);
+    plan->searched = 1;
+    if (touch_down(p, xi, x, problem) != DONE) return FAILED;
+    for (int i = 0; i < p->scaled.n - 1; i++) jumps |= !before.of[i] && p->now.regime.contact.of[i];
+    return jumps ? met(problem, SNAPS, bears * p->force_scale, xi * p->length_scale) : DONE;
+}
+
 /* Find the first trial of a step whose error is tolerable and whose regime holds beyond its start at `xi`, and its event.
 
    A bound that is met where the step starts switches the regime there. By the rates exactly one regime holds, but
@@ -131,6 +169,10 @@ static inline Status find_step(
     double shortest = shortest_step(p, xi);
     for (;;) {
         const Law *law = present_law(p);
+        if (!law->stands) {
+            if (stand(p, xi, x, plan, problem) != DONE) return FAILED;
+            continue;
+        }
         choose_length(p, law, xi, plan);
         if (plan->h < shortest) return failed(p, TOO_SHORT, xi, problem);
         try_step(p, law, xi, plan->h, x, trial);
@@ -148,7 +190,7 @@ static inline Status find_step(
             plan->switches++;
             continue;
         }
-        if (p->scaled.points && !plan->searched) {
+        if (DIRECTIONS == 1 && p->scaled.stepped && !plan->searched) {
             plan->searched = 1, plan->switches = 0;
             if (touch_down(p, xi, x, problem) == DONE) continue;
         }
@@ -163,18 +205,21 @@ static inline Status find_step(
 static inline Status keep_clear(
     Integrator *p, const Step *last, int kink, const double x[COMPONENTS], Plan *plan, Trial *trial, Problem *problem
 ) {
-    Surroundings around;
+    double body[MAX_POINTS];
     for (;;) {
-        look_around(p, &trial->step, &around);
-        int beyond = around.near ? watch_beyond(p, around.gap, last->end) : 0; /* those beyond are near */
+        find_body_after(p, trial, body);
+        look_around(p, &trial->step, body);
+        int beyond = p->around.near ? watch_beyond(p, last->end) : 0; /* those beyond are near */
         if (beyond < 0) return met(problem, TOO_CROWDED, MAX_WATCHED, last->end * p->length_scale);
         if (!beyond) break;
         p->now.rejected++;
+        forget_seen(p);
         *plan = first_plan(last, kink, present_law(p), p->options.layers);
         Status status = find_step(p, last->end, x, plan, trial, problem);
         if (status != DONE) return status;
     }
-    copy_around(&p->around, &around, p->scaled.points);
+    memcpy(p->around.body, body, (size_t)p->scaled.points * sizeof *body);
+    note_inclinations(&p->now.inclinations, &trial->step, p->scaled.s[p->scaled.n - 1]);
     return DONE;
 }
 
@@ -185,6 +230,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     double x[COMPONENTS], end[COMPONENTS];
     Trial trial;
     if (!has_room(p)) return FULL;
+    read_sensors(p, last.end);
     int kink = leave(p, &last, x);
     if (now->inputs.eta_pi_slope != 0) p->law_known = 0;
     Plan plan = first_plan(&last, kink, present_law(p), p->options.layers);
@@ -193,6 +239,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     if (status != DONE) return status;
     Step *step = &now->step;
     *step = trial.step;
+    p->exit_known = 0;
     step->next_h =
         larger(plan.h < plan.resumed ? plan.resumed : 0.0, plan.h * smaller(growth(trial.error), LARGEST_GROWTH));
     step_state(step, step->end, end);
@@ -210,8 +257,10 @@ static inline void go_back(Integrator *p) {
     p->now = p->before;
     copy_around(&p->around, &p->around_before, p->scaled.points);
     *kink(&p->now.kinks, p->now.kinks.end - 1) = p->last_kink;
-    p->law_known = p->under_way = 0;
+    p->law_known = p->exit_known = p->under_way = 0;
     bear(p, p->now.inputs.W);
+    forget_seen(p);
+    clear(p);
 }
 
 /* Remember the state where a call sets out; 0 if the rings have no room. */

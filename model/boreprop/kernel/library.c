@@ -7,16 +7,28 @@ const char *boreprop_quantities_digest(void) { return QUANTITIES_DIGEST; }
 
 void boreprop_sentence(const Problem *problem, char line[MESSAGE]) { sentence(problem, line); }
 
+/* The structure whose members these are. */
+static Structure structure_of(const int members[STRUCTURE_MEMBERS]) {
+    Structure made;
+    memcpy(&made, members, sizeof made);
+    return made;
+}
+
 Run *boreprop_start(
-    const int structure[5], const double *parameters, const Options *options, Count count, const double *measured_depth,
-    const double *inclination, const double *azimuth, const Inputs *inputs, Problem *problem
+    const int structure[STRUCTURE_MEMBERS], const double *parameters, const Options *options, Count count,
+    const double *measured_depth, const double *inclination, const double *azimuth, int layers, const double *ground,
+    const Inputs *inputs, Problem *problem
 ) {
     Survey survey = {count, measured_depth, inclination, azimuth};
-    Structure made = {structure[0], structure[1], structure[2], structure[3], structure[4]};
+    Structure made = structure_of(structure);
     System system = system_of(made, parameters);
     Run *run = calloc(1, sizeof *run);
     met(problem, NO_MEMORY, MOST_PIECES, 0.0);
-    if (run && run_prepare(run, &system, *options, problem) == DONE &&
+    size_t size = ground ? (size_t)ground_size(layers) * sizeof *ground : 0;
+    if (run && ground) run->ground = malloc(size);
+    if (run && run->ground) memcpy(run->ground, ground, size);
+    if (run && (run->ground || !ground) &&
+        run_prepare(run, &system, ground_of(layers, run->ground), *options, problem) == DONE &&
         run_start(run, &survey, *inputs, problem) == DONE)
         return run;
     run_end(run);
@@ -40,6 +52,10 @@ int boreprop_outputs(Run *run, double out[MOST_OUTPUTS]) { return drilling_outpu
 
 double boreprop_length(const Run *run) { return drilling_length(&run->drilling); }
 
+int boreprop_change_clearances(Run *run, const double *clearances, Problem *problem) {
+    return run_change_clearances(run, clearances, problem) == DONE;
+}
+
 int boreprop_step(Run *run, Problem *problem) { return run_step(run, problem) == DONE; }
 
 void boreprop_statistics(const Run *run, double counts[3]) {
@@ -57,10 +73,10 @@ int boreprop_restore(Run *run, const double *state, Count count, Problem *proble
 
 #ifndef SPACE
 Count boreprop_lie(
-    const int structure[5], const double *parameters, double weight_on_bit, double inclination, Count rows,
-    const double *loads, double *answers, Count count, const double *s, double *shapes, Problem *problem
+    const int structure[STRUCTURE_MEMBERS], const double *parameters, double weight_on_bit, double inclination,
+    Count rows, const double *loads, double *answers, Count count, const double *s, double *shapes, Problem *problem
 ) {
-    Structure made = {structure[0], structure[1], structure[2], structure[3], structure[4]};
+    Structure made = structure_of(structure);
     System system = system_of(made, parameters);
     Lying *bha = calloc(1, sizeof *bha);
     Count k = 0;

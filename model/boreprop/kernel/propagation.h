@@ -18,8 +18,9 @@ static inline Status restart(
     double jump = 0.0;
     now->inputs = inputs, now->inputs_xi = now->xi;
     now->step = standstill(&now->step, now->xi, x);
+    p->exit_known = 0;
     bear(p, inputs.W);
-    if (p->scaled.points && touch_down(p, now->xi, x, problem) != DONE) return FAILED;
+    if (DIRECTIONS == 1 && p->scaled.stepped && touch_down(p, now->xi, x, problem) != DONE) return FAILED;
     Response at = respond(p, x, inputs);
     for (int d = 0; d < DIRECTIONS; d++) {
         if (!isfinite(at.Theta[d]) || !isfinite(at.F_0[d])) return failed(p, NOT_FINITE, now->xi, problem);
@@ -28,8 +29,9 @@ static inline Status restart(
     change_regime(p, at.regime);
     add_kink(&now->kinks, p->scaled.n, now->xi, 1, jump);
     if (p->scaled.points) {
-        memset(p->around.change, 0, sizeof p->around.change);
-        find_gaps(p, &now->step, now->xi, p->scaled.points, p->around.gap);
+        clear_around(p);
+        forget_seen(p);
+        find_body_at(p, &now->step, now->xi, p->around.body);
     }
     return DONE;
 }
@@ -51,14 +53,19 @@ static inline Status steer(Integrator *p, ScaledInputs inputs, Problem *problem)
     return DONE;
 }
 
+/* Whether other inputs than those along the next `way` act from where the bit is. */
+static inline int are_others(const State *now, ScaledInputs inputs, double way) {
+    int changed = inputs.F_rss != now->inputs.F_rss || inputs.eta_pi != now->inputs.eta_pi;
+    if (are_ramps(&inputs) || are_ramps(&now->inputs))
+        changed = !same_ramps(inputs_here(now), inputs, way > 0 ? way : 1.0);
+    changed |= inputs.epsilon != now->inputs.epsilon || inputs.psi_star != now->inputs.psi_star;
+    return changed || inputs.W != now->inputs.W || aims_anew(&inputs, &now->inputs);
+}
+
 /* Drill on to `xi` under inputs that act from where the bit is. After FULL the same call goes on in larger rings. */
 static inline Status drill(Integrator *p, double xi, ScaledInputs inputs, Problem *problem) {
     State *now = &p->now;
-    int changed = inputs.F_rss != now->inputs.F_rss || inputs.eta_pi != now->inputs.eta_pi;
-    if (are_ramps(&inputs) || are_ramps(&now->inputs))
-        changed = !same_ramps(inputs_here(now), inputs, xi > now->xi ? xi - now->xi : 1.0);
-    changed |= inputs.epsilon != now->inputs.epsilon || inputs.psi_star != now->inputs.psi_star;
-    changed |= inputs.W != now->inputs.W || aims_anew(&inputs, &now->inputs);
+    int changed = are_others(now, inputs, xi - now->xi);
     if (changed || xi > now->step.end) {
         if (!set_out(p)) return FULL;
         Status status = changed ? steer(p, inputs, problem) : DONE;
@@ -68,6 +75,54 @@ static inline Status drill(Integrator *p, double xi, ScaledInputs inputs, Proble
         p->under_way = 0;
     }
     now->xi = xi;
+    read_sensors(p, xi);
+    return DONE;
+}
+
+/* Let the stabilizers have other clearances from where the bit is. After FULL the same call goes on. */
+static inline Status change_clearances(Integrator *p, const double *y_star, Problem *problem) {
+    State *now = &p->now;
+    double x[COMPONENTS];
+    if (!set_out(p) || !has_room(p)) return FULL;
+    ScaledInputs inputs = inputs_here(now);
+    step_state(&now->step, now->xi, x);
+    Response so_far = respond(p, x, inputs);
+    move_path(now, now->xi);
+    memcpy(now->y_star, y_star, (size_t)(p->scaled.n - 1) * sizeof *y_star);
+    now->cleared = now->xi;
+    clear(p);
+    Status status = restart(p, inputs, x, so_far.Theta, problem);
+    if (status != DONE) go_back(p);
+    p->under_way = 0;
+    return status;
+}
+
+/* Take steps up to `end`, but no farther than where the bit leaves its layer of the ground: `left` says whether it did.
+   After FULL the same call goes on. */
+static inline Status drill_in_layer(Integrator *p, const Ground *ground, double end, int *left, Problem *problem) {
+    State *now = &p->now;
+    double last = p->before.accepted + p->options.most_steps, l1 = p->length_scale, path[AXES];
+    double top = layer_top(ground, now->layer) / l1, bottom = layer_bottom(ground, now->layer) / l1;
+    for (;;) {
+        double begin = larger(now->step.xi, now->stay);
+        if (!p->exit_known) p->exit_side = first_exit(&now->step, now->path[AXES - 1], top, bottom, begin, &p->exit);
+        p->exit_known = 1;
+        *left = p->exit <= end ? p->exit_side : 0;
+        if (*left) break;
+        if (end <= now->step.end) return DONE;
+        if (end - now->xi > p->options.most_steps * p->options.largest_step || now->accepted >= last)
+            return too_many(p, problem);
+        Status status = take_step(p, problem);
+        if (status != DONE) return status;
+    }
+    now->xi = p->exit, now->layer += *left;
+    position(now, path);
+    double z = path[AXES - 1];
+    while (*left > 0 ? z * l1 - layer_bottom(ground, now->layer) > AT_TOP /* through a thin layer */
+                     : layer_top(ground, now->layer) - z * l1 > AT_TOP)
+        now->layer += *left;
+    now->stay = now->xi + STAY / l1;
+    p->exit_known = 0;
     return DONE;
 }
 
@@ -79,18 +134,22 @@ static inline Status drill_step(Integrator *p, Problem *problem) {
     if (status != DONE) return status;
     p->under_way = 0;
     p->now.xi = p->now.step.end;
+    read_sensors(p, p->now.xi);
     return DONE;
 }
 
 /* Set what does not evolve, to be followed by `begin` or by a state that is restored. */
-static inline void prepare(Integrator *p, const Scaled *scaled, double length_scale, Options options) {
+static inline void prepare(
+    Integrator *p, const Scaled *scaled, double length_scale, double force_scale, Options options
+) {
     Axial unloaded = {0.0, 0.0};
     memset(&p->now, 0, sizeof p->now);
-    p->law_known = p->under_way = 0;
+    p->law_known = p->exit_known = p->under_way = 0;
     p->scaled = *scaled;
     load_beam(&p->modes, scaled, unloaded);
     memcpy(p->modes.y_star, scaled->y_star, sizeof p->modes.y_star);
-    p->length_scale = length_scale, p->options = options;
+    memcpy(p->now.y_star, scaled->y_star, sizeof p->now.y_star);
+    p->length_scale = length_scale, p->force_scale = force_scale, p->options = options;
 }
 
 /* Start at the end of a survey; the rings must have room for it. */
@@ -104,9 +163,13 @@ static inline Status begin(Integrator *p, const Survey *survey, ScaledInputs inp
     for (Count k = 0; k < now->hole.end; k++)
         if (!check_finite(Q_STATION_RATE, 0, piece(&now->hole, k)->rate, problem)) return FAILED;
     find_places(now, &p->scaled, now->xi);
-    if (restart(p, inputs, x, heading.angle, problem) == DONE) return DONE;
-    wrong(problem, NO_START, Q_PARAMETERS, 0, NAN, NAN);
-    return FAILED;
+    if (p->scaled.points) start_noting(now);
+    if (restart(p, inputs, x, heading.angle, problem) != DONE) {
+        wrong(problem, NO_START, Q_PARAMETERS, 0, NAN, NAN);
+        return FAILED;
+    }
+    read_sensors(p, now->xi);
+    return DONE;
 }
 
 #endif

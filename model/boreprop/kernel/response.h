@@ -60,7 +60,7 @@ static inline double curvature_jump(
 static inline double earlier_inclination(Integrator *p, double xi) {
     const Hole *hole = &p->now.hole;
     const Piece *at = piece(hole, find(hole, xi + MERGE));
-    if (at->inputs.eta_pi == 0 || p->scaled.points) { /* Θ is the slope of the hole */
+    if (at->inputs.eta_pi == 0 || p->scaled.points || xi + MERGE < p->now.cleared) { /* Θ is the slope of the hole */
         const Piece *own = piece(hole, find(hole, xi));
         return polynomial_slope(own->x[LATERAL], (xi - own->start) * own->rate) * own->rate;
     }
@@ -72,13 +72,6 @@ static inline double earlier_inclination(Integrator *p, double xi) {
     double Theta = inclination_under(p, x[ANGLE], &loads, inputs);
     bear(p, p->now.inputs.W);
     return Theta;
-}
-
-/* Where the bit is in the vertical plane, sideways and down, from the start of the run. */
-static inline void position(const State *now, double *x, double *z) {
-    double path[AXES] = {now->path[0], now->path[1]};
-    move_along(&now->step, now->xi, path);
-    *x = path[0], *z = path[1];
 }
 
 #endif

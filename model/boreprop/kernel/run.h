@@ -10,10 +10,11 @@
 typedef struct {
     Drilling drilling;
     void *memory;
+    double *ground; /* numbers of its own; NULL if others keep them */
 } Run;
 
 static inline void run_end(Run *run) {
-    if (run) free(run->memory);
+    if (run) free(run->memory), free(run->ground);
     free(run);
 }
 
@@ -28,9 +29,9 @@ static inline Status grow(Run *run, Count capacity, Problem *problem) {
 }
 
 /* Prepare a drilling system, to be followed by `run_start` or `run_restore`. */
-static inline Status run_prepare(Run *run, const System *system, Options options, Problem *problem) {
+static inline Status run_prepare(Run *run, const System *system, Ground ground, Options options, Problem *problem) {
     if (grow(run, LEAST_CAPACITY, problem) != DONE) return FAILED;
-    return drilling_prepare(&run->drilling, system, options, run->memory, LEAST_CAPACITY, problem);
+    return drilling_prepare(&run->drilling, system, ground, options, run->memory, LEAST_CAPACITY, problem);
 }
 
 static inline Status run_start(Run *run, const Survey *survey, Inputs inputs, Problem *problem) {
@@ -52,6 +53,14 @@ static inline Status grow_on_the_way(Run *run, Problem *problem) {
 static inline Status run_advance(Run *run, double drilled_length, Inputs inputs, Problem *problem) {
     Status status;
     while ((status = drilling_advance(&run->drilling, drilled_length, inputs, problem)) == FULL)
+        if (grow_on_the_way(run, problem) != DONE) return FAILED;
+    return status;
+}
+
+/* Let the stabilizers have other clearances, m, from where the bit is. */
+static inline Status run_change_clearances(Run *run, const double *clearances, Problem *problem) {
+    Status status;
+    while ((status = drilling_change_clearances(&run->drilling, clearances, problem)) == FULL)
         if (grow_on_the_way(run, problem) != DONE) return FAILED;
     return status;
 }

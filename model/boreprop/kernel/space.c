@@ -12,5 +12,6 @@
 #define boreprop_statistics boreprop_space_statistics
 #define boreprop_state_size boreprop_space_state_size
 #define boreprop_save boreprop_space_save
+#define boreprop_change_clearances boreprop_space_change_clearances
 #define boreprop_restore boreprop_space_restore
 #include "library.c"

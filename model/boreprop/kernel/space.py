@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..core.errors import ParameterError
+from ..core.ground import Ground
 from ..core.options import Options
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly
@@ -50,6 +51,7 @@ class SpaceDrilling(NativeDrilling):
         toolface_reference: str = "gravity",
         weight_on_bit: float = 0.0,
         options: Options = Options(),  # noqa: B008 - frozen
+        ground: Ground | None = None,
     ) -> None:
         stations = len(survey.measured_depth)
         if len(azimuth) not in (0, stations):
@@ -62,7 +64,7 @@ class SpaceDrilling(NativeDrilling):
             "toolface_reference": _reference(toolface_reference),
         }
         given = np.asarray(azimuth or np.zeros(stations), dtype=float)
-        self._start(SPATIAL, bha.structure._replace(space=1), bha, bit, survey, given, acting, options)
+        self._start(SPATIAL, bha.structure._replace(space=1), bha, bit, survey, given, acting, options, ground)
 
     def advance(
         self,

@@ -93,7 +93,11 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_BOREHOLE_CURVATURE: return size_of(turned) / l1;
         case OUT_BODY_CONTACT_FORCE: /* the body has no points in space */
         case OUT_BODY_CONTACT_POSITION:
-        case OUT_WALL_DISTANCE: break;
+        case OUT_WALL_DISTANCE:
+        case OUT_SENSOR_INCLINATION: /* nor are there sensors */
+        case OUT_SENSOR_BENDING_MOMENT:
+        case OUT_SENSOR_CLEARANCE: break;
+        case OUT_FORMATION: return d->integrator.now.layer;
         case OUT_NORTH: return at->path[NORTH] * l1;
         case OUT_EAST: return at->path[EAST] * l1;
         case OUT_DISPLACEMENT: return hypot(at->path[NORTH], at->path[EAST]) * l1;

@@ -97,10 +97,4 @@ static inline double curvature_jump(
     return bent;
 }
 
-/* Where the bit is, north, east and down from the start of the run. */
-static inline void position(const State *now, double path[AXES]) {
-    memcpy(path, now->path, sizeof now->path);
-    move_along(&now->step, now->xi, path);
-}
-
 #endif

@@ -18,6 +18,7 @@ typedef struct {
 } Tape;
 
 enum { NUMBERS_OF_PIECE = sizeof(Piece) / sizeof(double), NUMBERS_OF_KINK = sizeof(Kink) / sizeof(double) };
+enum { NUMBERS_OF_INCLINATIONS = sizeof(Inclinations) / sizeof(double) };
 
 /* Everything that evolves, with counts in place of the rings. */
 typedef struct {
@@ -97,6 +98,10 @@ static inline void pass_snapshot(Tape *tape, const Scaled *scaled, Snapshot *sna
 #endif
     pass(tape, 1, &now->cosine);
     pass(tape, 1, &now->inputs_xi);
+    now->layer = (int)pass_whole(tape, now->layer, 0, MOST_PIECES);
+    pass(tape, 1, &now->stay);
+    pass(tape, 1, &now->cleared);
+    pass(tape, n - 1, now->y_star);
     pass(tape, AXES, now->path);
     pass(tape, DIRECTIONS, now->origin);
     pass(tape, 1, &step->xi);
@@ -106,6 +111,14 @@ static inline void pass_snapshot(Tape *tape, const Scaled *scaled, Snapshot *sna
     pass(tape, 1, &now->accepted);
     pass(tape, 1, &now->rejected);
     pass(tape, 1, &now->events);
+    for (int i = 0; i < scaled->sensors; i++) {
+        Reading *reading = &now->reading[i];
+        reading->count = (double)pass_whole(tape, (Count)reading->count, 0, (Count)MOST_READINGS + 1);
+        pass(tape, 1, &reading->inclination);
+    }
+    if (!scaled->points) return;
+    pass(tape, NUMBERS_OF_INCLINATIONS, &now->inclinations.before.low);
+    pass(tape, scaled->points, snapshot->around.body);
     pass(tape, scaled->points, snapshot->around.gap);
     pass(tape, scaled->points, snapshot->around.change);
 }
@@ -172,7 +185,9 @@ static inline int is_consistent(const Drilling *d, const Snapshot *snapshot) {
     if (d->system.structure.axial ? !(now->inputs.W > 0) || !(fabs(now->cosine) <= 1)
                                   : now->inputs.W != 0 || now->cosine != 0)
         return 0;
-    if (!is_turned(step)) return 0;
+    if (now->layer > d->ground.layers || now->cleared > xi || !is_turned(step)) return 0;
+    for (int i = 0; i < d->system.structure.n - 1; i++)
+        if (!(now->y_star[i] >= 0)) return 0;
     if (step->xi > xi || xi > step->end || !(step->h > 0) || !(step->next_h > 0)) return 0;
     return snapshot->passed[d->system.structure.n - 1] == 0; /* the last stabilizer is the last to pass a kink */
 }
@@ -239,11 +254,14 @@ static inline void become(Drilling *d, const Snapshot *snapshot, Tape tape) {
     d->drilled_length = snapshot->drilled_length;
     double cosine = p->now.cosine;
     p->now = snapshot->now, p->now.hole = hole, p->now.kinks = kinks, p->around = snapshot->around;
+    p->around.near = p->around.known = 1; /* for all that is said */
     find_places(&p->now, &p->scaled, p->now.step.xi);
     memcpy(p->now.kinks.ahead, snapshot->passed, sizeof p->now.kinks.ahead);
-    p->law_known = p->under_way = 0;
+    p->law_known = p->exit_known = p->under_way = 0;
     if (p->now.cosine != cosine) take_cosine(d, p->now.cosine);
     bear(p, p->now.inputs.W);
+    forget_seen(p);
+    clear(p);
 }
 
 /* Go back to a state that this run has saved itself. */

@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 from ..case.case import Case
 from ..core.beam import Beam
 from ..core.modes import Loads, Modes
-from ..core.quantities import BY_NAME
+from ..core.quantities import BY_NAME, CLEARANCES
 from ..core.system import Scaled, scale
 from ..errors import InputError
+from .ground import blunt_weight, on_rows
 from .trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -121,6 +122,10 @@ class Columns:
     def _scalars(self, name: str) -> list[str]:
         return [name] if name == "time" else BY_NAME[name].names(len(self.case.bha.stabilizer_positions))
 
+    def on_rows(self, name: str) -> Array:
+        """η, χ, ψ* or a clearance at each row."""
+        return on_rows(self.case, self.by_name, name)
+
     def add(self, formulas: "tuple[Formula, ...]") -> bool:
         """Add every missing quantity for which a formula has all that it needs. Returns whether any was added."""
         before = len(self.by_name)
@@ -151,13 +156,15 @@ class Formula(NamedTuple):
 
 
 def eta_pi(columns: Columns) -> Array:
-    """ηΠ = η (Π F*)/F*, (3) and (9)."""
-    return columns.case.bit.lateral_steering_resistance * columns["active_weight_on_bit"] / columns.force
+    """ηΠ = η (Π F*)/F*, (3) and (9), of the rock of the row and with what wear leaves of the weight."""
+    sharp = columns["active_weight_on_bit"] - blunt_weight(columns.case, columns["drilled_length"])
+    return columns.on_rows("lateral_steering_resistance") * sharp / columns.force
 
 
 def active_weight_on_bit(columns: Columns) -> Array:
-    """Π F*, (3) and (9)."""
-    return columns["eta_pi"] * columns.force / columns.case.bit.lateral_steering_resistance
+    """Π F*, (3) and (9), as of a sharp bit."""
+    active = columns["eta_pi"] * columns.force / columns.on_rows("lateral_steering_resistance")
+    return active + blunt_weight(columns.case, columns["drilled_length"])
 
 
 def bit_inclination(columns: Columns) -> Array:
@@ -177,14 +184,14 @@ def bit_tilt(columns: Columns) -> Array:
 
 def bit_tilt_from_force(columns: Columns) -> Array:
     """ψ = clip(F_0/(ηΠ), −ψ*, ψ*), (10) and (11)."""
-    psi_star = columns.case.bit.tilt_limit
+    psi_star = columns.on_rows("bit_tilt_limit")
     return np.clip(columns["bit_lateral_force"] / columns.force / columns["eta_pi"], -psi_star, psi_star)
 
 
 def bit_tilt_saturation(columns: Columns) -> Array:
     """1 where ψ is at +ψ*, −1 where it is at −ψ*, 0 in between, (11)."""
     psi = columns["bit_tilt"]
-    return np.where(np.abs(psi) >= (1 - AT_LIMIT) * columns.case.bit.tilt_limit, np.sign(psi), 0.0)
+    return np.where(np.abs(psi) >= (1 - AT_LIMIT) * columns.on_rows("bit_tilt_limit"), np.sign(psi), 0.0)
 
 
 class LoadColumns(NamedTuple):
@@ -245,12 +252,16 @@ def rounded_force(columns: Columns, rest: Array, per_force: float) -> Array | No
 
 def stabilizer_force(columns: Columns) -> Array:
     """F_i from the contact conditions (7) and the deflections (21)."""
-    modes, bending = Modes(columns.scaled), loads(columns, columns["rss_force"])
-    contact = (0,) * len(columns.scaled.y_star)
+    bending, scaled = loads(columns, columns["rss_force"]), columns.scaled
+    made: dict[tuple[float, ...], Modes] = {}  # by the clearances
+    contact = (0,) * len(scaled.y_star)
+    y_star = [columns.on_rows(name) / columns.length for name in CLEARANCES[: len(contact)]]
     values = np.empty((columns.row_count, len(contact)))
     for k, (*e, F_rss, sine) in enumerate(np.column_stack((*bending.e, bending.F_rss, bending.sin_Theta_1)).tolist()):
-        at = Loads(e, F_rss, sine)
-        mode = modes.settle(at, contact)
+        at, own = Loads(e, F_rss, sine), tuple(float(column[k]) for column in y_star)
+        if own not in made:
+            made[own] = Modes(replace(scaled, y_star=own))
+        mode = made[own].settle(at, contact)
         contact, values[k] = mode.contact, [row(at) for row in mode.F]
     return columns.force * values
 

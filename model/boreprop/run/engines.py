@@ -10,6 +10,7 @@ from ..arrays import Floats
 from ..case.case import Case
 from ..core.drilling import Drilling
 from ..core.errors import ParameterError
+from ..core.ground import Ground
 from ..core.options import Options, Statistics
 from ..core.quantities import ACTING, values_of
 from ..core.system import BitRock
@@ -48,6 +49,9 @@ class Engine(Protocol):
 
     def follow(self, lengths: Floats, inputs: Floats, rows: NDArray[np.intc], table: Floats) -> None:
         """Drill leg after leg, and write outputs into rows of a table."""
+
+    def change_clearances(self, clearances: tuple[float, ...]) -> None:
+        """Let the stabilizers have other clearances, m, from where the bit is."""
 
     def step(self) -> None:
         """Drill on to the end of the integrator's next step."""
@@ -95,8 +99,11 @@ def chosen(choice: str) -> str:
     return engine() if choice == "auto" else choice
 
 
-def start(case: Case, choice: str, options: Options) -> Engine:
-    """A case before its first step, under its first force; errors as in `simulate`."""
+def start(case: Case, choice: str, options: Options, ground: Ground | None = None) -> Engine:
+    """A case before its first step, under its first force, in some ground; errors as in `simulate`.
+
+    Without ground, bit and rock go on as they are at the start, as analyses of a case have them.
+    """
     own = chosen(choice)
     further = {"weight_on_bit": case.weight_on_bit} if own == "native" else {}
     return DRILLING[own](
@@ -106,5 +113,6 @@ def start(case: Case, choice: str, options: Options) -> Engine:
         active_weight_on_bit=case.active_weight_on_bit,
         rss_force=case.schedule.rss_force[0],
         options=options,
+        ground=ground,
         **further,
     )

@@ -10,6 +10,7 @@ Other tools write our columns under longer names. OMSimulator and fmpy put the p
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,7 @@ from ..case.case import Case
 from ..case.file import dump_case, parse_case, read_run
 from ..case.sheet import read_sheet
 from ..core.columns import regular
-from ..core.quantities import BY_NAME, INPUTS, OUTPUTS
+from ..core.quantities import BY_NAME, CLEARANCES, OUTPUTS, QUANTITIES
 from ..errors import InputError, shown
 from ..replacing import replacing
 from .files import MARK, case_path, check_case_beside
@@ -117,10 +118,11 @@ def read_trajectory(path: str | Path, case: Case | None = None) -> Trajectory:
     found = Trajectory(trajectory.columns).n
     if found not in (0, trajectory.n):
         raise InputError(f"{path}: average_inclination: must have {trajectory.n} columns like its case, got {found}")
-    return trajectory
+    still = [name for name in CLEARANCES if name in trajectory and np.ptp(trajectory[name]) == 0.0]  # a parameter
+    return replace(trajectory, columns={name: values for name, values in trajectory.items() if name not in still})
 
 
-IO_NAMES = {quantity.name for quantity in INPUTS + OUTPUTS}
+IO_NAMES = {quantity.name for quantity in QUANTITIES if quantity.role in ("input", "output") or quantity.tunable}
 OUTPUT_NAMES = {quantity.name for quantity in OUTPUTS}
 # the heading of a column of another tool: component.name [reference type causality]
 HEADING = re.compile(r"(?:(?P<component>.+)\.)?(?P<name>[^.\s]+)(?: \[\d+ [\w ]+\])?")

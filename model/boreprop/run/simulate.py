@@ -1,6 +1,7 @@
 """Simulates a case: drills it under its inputs and gives the trajectory."""
 
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,9 +11,10 @@ from ..case.case import Case
 from ..core.checks import check_number
 from ..core.errors import CannotContinue
 from ..core.options import RELATIVE_TOLERANCE, Options
-from ..core.quantities import OUTPUTS, ROCK, scalar_names
+from ..core.quantities import CLEARANCES, OUTPUTS, ROCK, scalar_names
 from .course import Course, acting, course_of
-from .engines import chosen, start
+from .engines import Engine, chosen, start
+from .ground import rock_in_layers
 from .trajectory import Stopped, Trajectory
 
 Indices = NDArray[np.intc]
@@ -80,14 +82,15 @@ def simulate(
     check_number("length", length, above=0.0)
     check_number("sample_interval", sample_interval, above=0.0)
     engine, course = chosen(engine), course_of(case)
-    drilling = start(case, engine, Options(relative_tolerance))
-    names = scalar_names(OUTPUTS, case.bha.structure)
+    drilling = start(case, engine, Options(relative_tolerance), case.ground)
+    names = scalar_names(OUTPUTS, case.structure)
     table = np.full((int(length / sample_interval + ROUNDING) + 1, len(names)), np.nan)
     lengths, pieces, rows = _in_parts(*_legs(course, len(table), sample_interval), LONGEST_LEG * case.bha.length_scale)
     inputs = acting(course, np.append(0.0, lengths[:-1]), pieces)
     failure = None
     try:
-        for part in _parts(len(lengths), progress is not None):
+        for part in _parts(len(lengths), progress is not None, _worn(course, pieces)):
+            _change_clearances(drilling, case, course, pieces[part.start])
             drilling.follow(lengths[part], inputs[part], rows[part], table)
             if progress:
                 progress(drilling.drilled_length)
@@ -102,6 +105,8 @@ def simulate(
         for name, values in zip(course.names, given, strict=True)
         if name not in ROCK or course.changes(name)
     }
+    if case.in_layers:
+        columns |= rock_in_layers(case, outputs[names.index("formation")])
     stopped = f"after {drilling.drilled_length:g} m of {length:g} m: {failure}" if failure else None
     trajectory = Trajectory(columns | dict(zip(names, outputs, strict=True)), case, stopped, engine)
     if stopped:
@@ -109,10 +114,27 @@ def simulate(
     return trajectory
 
 
-def _parts(legs: int, reported: bool) -> Iterator[slice]:
-    """The legs in `PARTS` parts, after each of which progress is reported; in one part if it is not."""
+def _parts(legs: int, reported: bool, cuts: Indices) -> Iterator[slice]:
+    """The legs in `PARTS` parts, after each of which progress is reported; in one if it is not. Cut at some legs."""
     batch = legs // PARTS + 1 if reported else legs
-    return (slice(first, first + batch) for first in range(0, legs, batch))
+    starts = sorted({*range(0, legs, batch), *cuts.tolist()})
+    return (slice(first, end) for first, end in pairwise((*starts, legs)))
+
+
+def _worn(course: Course, pieces: Indices) -> Indices:
+    """The legs with which other clearances begin."""
+    scheduled = [course.values[:, course.names.index(name)] for name in course.names if name in CLEARANCES]
+    changed = np.zeros(len(pieces), dtype=bool)
+    for values in scheduled:
+        changed[1:] |= np.diff(values[pieces]) != 0.0
+    return np.flatnonzero(changed).astype(np.intc)
+
+
+def _change_clearances(drilling: Engine, case: Case, course: Course, piece: int) -> None:
+    """Let the stabilizers have the clearances of a piece of the course."""
+    given = dict(zip(course.names, course.values[piece].tolist(), strict=True))
+    own = zip(CLEARANCES, case.bha.stabilizer_clearances, strict=False)
+    drilling.change_clearances(tuple(given.get(name, clearance) for name, clearance in own))
 
 
 def _legs(course: Course, count: int, sample_interval: float) -> tuple[Floats, Indices, Indices]:

@@ -1,0 +1,133 @@
+/* What the bit meets along the way: layers of rock by true vertical depth, and the wear of the bit, as in ground.py. */
+#ifndef BOREPROP_GROUND_H
+#define BOREPROP_GROUND_H
+
+#include "events.h"
+
+#define STAY 0.01       /* m: a bit that has met a layer drills so far in it at least */
+#define AT_TOP 1e-9     /* m: a bit this little beyond the bound of a layer, by rounding, is at it */
+#define LEAST_LEFT 1e-3 /* of the weight that wear flats bear is left as active weight, at least */
+#define ROUNDED 1e-12   /* relative: a length so little before that of a change is at it */
+enum { LOOKS = 4 };     /* of a step, at whose ends the depth is looked at */
+enum { ROCK = 3 };      /* η, χ, ψ* */
+
+/* Layers are numbered from the top; the first one, 0, has no top of its own. Without numbers there is nothing of this. */
+typedef struct {
+    int there, layers;  /* whether there is anything; how many tops */
+    const double *own;  /* rock that is given unless somebody gives other: for it layers stand in */
+    const double *tops; /* m below the bit at the start, increasing */
+    const double *rock; /* ROCK values in each layer; 0 where what is given holds */
+    double weight_per_metre, largest_weight; /* that wear flats bear, N/m and N; 0 if the bit stays sharp */
+} Ground;
+
+/* How many numbers a ground of so many tops is made of. */
+static inline Count ground_size(int layers) { return ROCK + 2 + layers + ROCK * ((Count)layers + 1); }
+
+/* The ground that is made of numbers, which must live on: own, the two of the wear, tops, rock; NULL: none. */
+static inline Ground ground_of(int layers, const double *numbers) {
+    Ground ground = {0};
+    if (!numbers) return ground;
+    const double *tops = numbers + ROCK + 2;
+    Ground made = {1, layers, numbers, tops, tops + layers, numbers[ROCK], numbers[ROCK + 1]};
+    return made;
+}
+
+/* The layer in which the bit starts. */
+static inline int first_layer(const Ground *ground) {
+    int layer = 0;
+    while (layer < ground->layers && ground->tops[layer] <= 0) layer++;
+    return layer;
+}
+
+/* Depths below the start between which a layer lies, m. */
+static inline double layer_top(const Ground *ground, int layer) { return layer ? ground->tops[layer - 1] : -INFINITY; }
+static inline double layer_bottom(const Ground *ground, int layer) {
+    return layer < ground->layers ? ground->tops[layer] : INFINITY;
+}
+
+/* Whether a layer stands in for property k of the rock, of which this value is given. */
+static inline int stands_in(const Ground *ground, int layer, int k, double given) {
+    return ground->there && ground->rock[ROCK * layer + k] != 0 && given == ground->own[k];
+}
+
+/* The rock in a layer where these inputs are given. */
+static inline Inputs rock_in(const Ground *ground, int layer, Inputs given) {
+    double *own[ROCK] = {&given.lateral_steering_resistance, &given.angular_steering_resistance, &given.bit_tilt_limit};
+    for (int k = 0; k < ROCK; k++)
+        if (stands_in(ground, layer, k, *own[k])) *own[k] = ground->rock[ROCK * layer + k];
+    return given;
+}
+
+/* Let the active weight be what wear leaves of it where `length` is drilled, on a way to `end`: gives up to which drilled
+   length it goes on so; 0, and the problem, if before that the wear flats bear all of it. */
+static inline int wear_off(
+    const Ground *ground, double length, double end, Inputs *inputs, double *until, Problem *problem
+) {
+    double *weight = &inputs->active_weight_on_bit, *slope = &inputs->active_weight_on_bit_slope;
+    double per_metre = ground->weight_per_metre, blunt = per_metre * length, worn = ground->largest_weight / per_metre;
+    *until = INFINITY;
+    if (per_metre == 0) return 1;
+    if (length < worn * (1 - ROUNDED)) *until = worn, *slope -= per_metre;
+    else blunt = ground->largest_weight;
+    *weight -= blunt;
+    double least = LEAST_LEFT * blunt;
+    if (*weight > least && *weight + *slope * (smaller(end, *until) - length) > least) return 1;
+    met(problem, WORN_OUT, blunt, *weight <= least ? length : length - *weight / *slope);
+    return 0;
+}
+
+/* How far down the bit goes from the start of a step. */
+static inline double way_down(const Step *step, double xi) {
+    double path[AXES] = {0};
+    move_along(step, xi, path);
+    return path[AXES - 1];
+}
+
+/* Where in [a, b] the bit passes a depth below the start of a step on `side`, f_b beyond it at b, as `crossing` does. */
+static inline double pass_depth(const Step *step, double limit, int side, double a, double b, double f_b) {
+    double f_a = side * (way_down(step, a) - limit), c = b;
+    if (f_a >= 0) return a;
+    for (int k = 0; k < MOST_TRIES; k++) {
+        c = (a * f_b - b * f_a) / (f_b - f_a);
+        double f_c = side * (way_down(step, c) - limit);
+        if (fabs(f_c) < CLOSE_ENOUGH || fabs(b - a) < CLOSE) break;
+        if ((f_c > 0) == (f_b > 0)) {
+            double weight = 1 - f_c / f_b;
+            f_a *= weight > 0 ? weight : 0.5;
+        } else a = b, f_a = f_b;
+        b = c, f_b = f_c;
+    }
+    return c;
+}
+
+/* Where the bit first is outside of its layer along a step, from `begin` on; on which side, 1 below, −1 above, or 0 if
+   nowhere. The step starts at `depth`, and the layer lies between `top` and `bottom`, in the unit of the step. */
+static inline int first_exit(const Step *step, double depth, double top, double bottom, double begin, double *where) {
+    const int looks = LOOKS;
+    double way = step->end - step->xi, part = (step->end - begin) / looks, found[LOOKS];
+    Sample samples[2 * LOOKS + 2];
+    int count = 0;
+    top -= depth, bottom -= depth;
+    if (begin > step->end || (-way > top && way < bottom)) return 0; /* a path is no deeper than long */
+    for (int k = 0; k <= LOOKS; k++) {
+        double xi = k < LOOKS ? begin + k * part : step->end;
+        Sample at = {xi, way_down(step, xi)};
+        samples[count++] = at;
+    }
+    int turns = step->end > begin ? extremes(samples, count, found) : 0;
+    for (int k = 0; k < turns; k++) {
+        Sample turn = {found[k], way_down(step, found[k])};
+        if (found[k] > begin) insert(samples, &count, turn);
+    }
+    for (int k = 0; k < count; k++) {
+        int side = samples[k].value > bottom ? 1 : samples[k].value < top ? -1 : 0;
+        if (!side) continue;
+        double limit = side > 0 ? bottom : top, beyond = side * (samples[k].value - limit);
+        *where = samples[k].xi;
+        if (k) *where = pass_depth(step, limit, side, samples[k - 1].xi, samples[k].xi, beyond);
+        return side;
+    }
+    return 0;
+}
+
+#endif
