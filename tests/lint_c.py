@@ -15,7 +15,13 @@ from places import FMI_HEADERS, HOSTS, ROOT
 KERNEL, NATIVE = ROOT / "model" / "boreprop" / "kernel", ROOT / "fmu_build" / "boreprop_fmu" / "native"
 FOLDERS = [KERNEL, NATIVE, NATIVE / "importer", HOSTS, ROOT / "benchmarks"]
 # each with the headers that it includes; windows.c needs those of Windows
-UNITS = [KERNEL / "library.c", NATIVE / "fmi2.c", *sorted(HOSTS.glob("*.c")), ROOT / "benchmarks" / "native_host.c"]
+UNITS = [
+    KERNEL / "library.c",
+    KERNEL / "space.c",
+    NATIVE / "fmi2.c",
+    *sorted(HOSTS.glob("*.c")),
+    ROOT / "benchmarks" / "native_host.c",
+]
 WARNINGS = ["all", "extra", "pedantic", "conversion", "shadow", "strict-prototypes", "missing-prototypes"]
 
 

@@ -14,7 +14,7 @@ from boreprop.case.case import Case, InputSchedule, Schedule
 from boreprop.case.paper import paper_case
 from boreprop.core.errors import CannotContinue, ParameterError
 from boreprop.core.options import Options
-from boreprop.core.quantities import ACTING, ROCK
+from boreprop.core.quantities import ACTING, IN_SPACE_ONLY, ROCK
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop.run.course import acting, course_of
@@ -120,7 +120,7 @@ def legs(case: Case, ends: np.ndarray) -> Iterator[tuple[float, dict[str, Any]]]
     pieces = (np.searchsorted(course.starts, begins, side="right") - 1).astype(np.intc)
     for end, values in zip(stops.tolist(), acting(course, begins, pieces).tolist(), strict=True):
         given_ = dict(zip(ACTING, values, strict=True))
-        yield end, {name: value for name, value in given_.items() if name not in ROCK}  # as at the start
+        yield end, {name: value for name, value in given_.items() if name not in (*ROCK, *IN_SPACE_ONLY)}
 
 
 def test_a_state_saved_on_a_ramp_goes_on_as_if_nothing_had_been(engine: str, case: Case) -> None:

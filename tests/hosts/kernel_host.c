@@ -1,10 +1,10 @@
 /* A host of the kernel's shared library, without Python and without its headers: drills one leg, and prints the outputs
    at its end, one a line.
 
-   kernel_host LIBRARY LENGTH LIST LIST LIST LIST LIST LIST
+   kernel_host LIBRARY LENGTH LIST LIST LIST LIST LIST LIST LIST
 
    A LIST is a count and as many numbers: the structure, the parameters, the options, the measured depths, the
-   inclinations, and the inputs, as boreprop.h takes them. Runs on Linux, macOS and Windows; on Windows without start-up code, as native_host.c. */
+   inclinations, the azimuths, and the inputs, as boreprop.h takes them. Runs on Linux, macOS and Windows; on Windows without start-up code, as native_host.c. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -21,7 +21,7 @@ static void *find(const char *name) { return dlsym(library, name); }
 #endif
 
 enum { MOST = 256 };
-enum { STRUCTURE, PARAMETERS, OPTIONS, DEPTHS, INCLINATIONS, INPUTS, LISTS };
+enum { STRUCTURE, PARAMETERS, OPTIONS, DEPTHS, INCLINATIONS, AZIMUTHS, INPUTS, LISTS };
 
 static char **argument; /* the next one */
 
@@ -39,7 +39,8 @@ static double number(void) {
 
 static int lead(char **arguments) {
     void *(*start)(
-        const int *, const double *, const double *, long long, const double *, const double *, int, const double *,
+        const int *, const double *, const double *, long long, const double *, const double *, const double *, int,
+        const double *,
         const double *, void *
     );
     long long (*follow)(void *, long long, const double *, const double *, const int *, double *, void *);
@@ -63,7 +64,7 @@ static int lead(char **arguments) {
     }
     for (int i = 0; i < count[STRUCTURE]; i++) structure[i] = (int)list[STRUCTURE][i];
     void *run = start(
-        structure, list[PARAMETERS], list[OPTIONS], count[DEPTHS], list[DEPTHS], list[INCLINATIONS], 0, NULL,
+        structure, list[PARAMETERS], list[OPTIONS], count[DEPTHS], list[DEPTHS], list[INCLINATIONS], list[AZIMUTHS], 0, NULL,
         list[INPUTS], problem
     );
     must(run != NULL, "the run must start");

@@ -40,7 +40,8 @@ def compiled(folder: Path, outputs: tuple[Quantity, ...]) -> Path:
     (folder / "quantities.h").write_text(quantities_header(outputs=outputs), encoding="utf-8")
     digest = {"BOREPROP_SOURCES_DIGEST": f'"{sources_digest()}"'}
     try:
-        return compile_library(folder / "library.c", folder / "boreprop_kernel.so", defines=digest)
+        also = [folder / "space.c"]
+        return compile_library(folder / "library.c", folder / "boreprop_kernel.so", also=also, defines=digest)
     except NoCompilerError as error:
         pytest.skip(str(error))
 
@@ -72,6 +73,7 @@ def started(
         len(depths),
         depths,
         inclinations,
+        np.zeros(len(depths)),
         0,
         None,
         binding.Inputs(rss_force=0.0, active_weight_on_bit=1e3),

@@ -5,7 +5,6 @@ import re
 import shutil
 import subprocess
 import sys
-from ast import literal_eval
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +13,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from boreprop.case.case import Case
-from boreprop.case.file import load_case
 from boreprop.core.errors import CannotContinue, ParameterError
 from boreprop.core.quantities import OUTPUTS, scalar_names
 from boreprop.kernel.binding import NativeDrilling
@@ -112,16 +110,6 @@ def test_a_kernel_older_than_its_sources_is_not_used(elsewhere: Elsewhere, paper
     assert elsewhere.python("-c", ENGINE).stdout == "python\n"
     said = elsewhere.python("-c", SIMULATE, paper_case).stderr
     assert "must be made from the sources beside it, got an older one" in said
-
-
-def test_an_integrator_for_more_components_gives_the_same_to_the_last_bit(
-    elsewhere: Elsewhere, paper_case: Path
-) -> None:
-    elsewhere.python("-m", "boreprop.kernel", CFLAGS="-O0 -DCOMPONENTS=4").check_returncode()
-    here = simulate(load_case(paper_case), length=30.0, engine="native").columns
-    assert literal_eval(elsewhere.python("-c", SIMULATE, paper_case).stdout) == {
-        name: values.tolist() for name, values in here.items()
-    }
 
 
 def test_an_engine_that_there_is_none_is_refused(case: Case) -> None:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from boreprop.case.case import Case, InputSchedule, Profile, Schedule
 from boreprop.case.paper import paper_case
-from boreprop.core.quantities import ACTING, ROCK
+from boreprop.core.quantities import ACTING, IN_SPACE_ONLY, ROCK
 from boreprop.run.course import Course, acting, course_of
 from boreprop.run.simulate import simulate
 
@@ -53,9 +53,9 @@ def test_what_an_engine_is_given_does_not_hold_the_rate_of_penetration() -> None
     assert course.starts.tolist() == [0.0, 2.0, 4.0, 6.0]
     given_ = acting(course, np.array([0.0, 3.0]), np.array([0, 1], dtype=np.intc))
     slopes = ("rss_force", "rss_force_slope", "active_weight_on_bit", "active_weight_on_bit_slope")
-    assert ACTING == (*slopes, *ROCK, "weight_on_bit")
+    assert ACTING == (*slopes, *ROCK, "weight_on_bit", *IN_SPACE_ONLY)
     assert given_[:, :4].tolist() == [[0.0, 500.0, 2e3, 500.0], [1e3, 0.0, 3500.0, 500.0]]
-    assert given_[:, 4:].tolist() == [[*astuple(paper_case().bit), 0.0]] * 2
+    assert given_[:, 4:].tolist() == [[*astuple(paper_case().bit)[: len(ROCK)], *(0.0,) * (1 + len(IN_SPACE_ONLY))]] * 2
 
 
 def test_a_run_has_a_column_for_each_input_that_its_case_schedules() -> None:

@@ -51,6 +51,7 @@ def drill(case: Case, command: Sequence[str | Path], environment: Mapping[str, s
         astuple(options),
         case.survey.measured_depth,
         case.survey.inclination,
+        [0.0] * len(case.survey.inclination),
         [given.get(name, 0.0) for name in ACTING],
     )
     numbers = [LENGTH, *(number for values in lists for number in (len(values), *values))]

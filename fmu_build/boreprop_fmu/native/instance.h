@@ -186,10 +186,11 @@ static fmi2Status set_up(Component *c, const double *tolerance, double start, do
 }
 
 /* Whether inputs are good: 0 with `why` if not. */
-static int check_given(const double input[INPUT_COUNT], char why[LINE]) {
+static int check_given(const Component *c, const double input[INPUT_COUNT], char why[LINE]) {
     Problem problem;
     for (int i = 0; i < INPUT_COUNT; i++)
-        if (!check_quantity(&INPUT_TABLE[i], 0, input[i], &problem)) {
+        if (value_count(INPUT_TABLE[i].size, c->packed.variables.structure) &&
+            !check_quantity(&INPUT_TABLE[i], 0, input[i], &problem)) {
             if (i == IN_ACTIVE_WEIGHT_ON_BIT && are_off_bottom(input)) continue;
             if (i != IN_ACTIVE_WEIGHT_ON_BIT || input[i] != 0.0) return tell(&problem, why);
             return explain(why, "active_weight_on_bit: must be > 0 where rate_of_penetration is > 0, got 0.0");

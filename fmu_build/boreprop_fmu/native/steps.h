@@ -49,8 +49,8 @@ static fmi2Status check_step(
         tell(&problem, why);
         return fmi2Error;
     }
-    int now_good = check_given(c->value, why);
-    if (now_good && check_given(end, why)) return fmi2OK;
+    int now_good = check_given(c, c->value, why);
+    if (now_good && check_given(c, end, why)) return fmi2OK;
     if (now_good) strcat(why, " at the end of the step");
     return fmi2Discard;
 }

@@ -55,6 +55,7 @@ def case_text(case: Case, guid: str) -> bytes:
     """The case as lines "name value", in SI units, in the order in which packed_case.h reads them."""
     structure, start, survey = case.structure, start_values(case), case.survey
     lines: dict[str, object] = {"guid": guid, "quantities": quantities_digest(), **structure._asdict()}
+    del lines["space"]  # an FMU drills in the plane
     names = scalar_names(INPUTS + PARAMETERS, structure)
     lines |= {name: float(start[name]) for name in names if not isinstance(start[name], str)}
     lines["bit_diameter"] = float(case.bit_diameter)

@@ -142,7 +142,7 @@ def dump_case(case: Case, **run: str | None) -> str:
     """
     document: dict[str, Any] = {table: {} for table in TABLES if table != "run"}
     for quantity in QUANTITIES:
-        there = quantity.size == "n-1" or quantity.count(case.bha.structure)  # no clearances are an empty list
+        there = quantity.size in ("n-1", "space") or quantity.count(case.bha.structure)  # none: an empty list
         if quantity.key and quantity.field and there:
             table, key = quantity.key.split(".")
             value = attrgetter(quantity.field)(case)

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from ..core.checks import check_number, check_quantity
 from ..core.errors import ParameterError
-from ..core.quantities import CLEARANCES, INPUTS
+from ..core.quantities import CLEARANCES, IN_SPACE_ONLY, INPUTS
 from .case import InputSchedule, Schedule, from_bit
 
 Column = tuple[float, ...]
@@ -13,7 +13,7 @@ Columns = Mapping[str, Column]
 LENGTHS = ("drilled_length", "measured_depth")
 """The columns of which a schedule has one: where its entries begin."""
 
-NAMES_OF_COLUMNS = (*(quantity.name for quantity in INPUTS), *CLEARANCES)
+NAMES_OF_COLUMNS = (*(quantity.name for quantity in INPUTS if quantity.name not in IN_SPACE_ONLY), *CLEARANCES)
 """What the other columns may give: inputs, and clearances."""
 
 

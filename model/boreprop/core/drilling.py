@@ -13,7 +13,7 @@ from .integrator import Integrator
 from .modes import Modes, bit_tilt, saturation, wall
 from .options import Options, Statistics
 from .problems import DERIVED, Problem
-from .quantities import ACTING, ROCK, fields_of
+from .quantities import ACTING, IN_SPACE_ONLY, ROCK, fields_of
 from .survey import Survey
 from .system import BitRock, BottomHoleAssembly, epsilon, eta_pi, scale
 from .through import GroundIntegrator
@@ -211,7 +211,8 @@ class Drilling:
             before, rock = rock, tuple(acting[name] for name in ROCK)
             if rock != before:
                 bit = BitRock(**fields_of("bit", acting, self._bha.structure))
-            self.advance(length, bit=bit, **{name: value for name, value in acting.items() if name not in ROCK})
+            own = {name: value for name, value in acting.items() if name not in (*ROCK, *IN_SPACE_ONLY)}
+            self.advance(length, bit=bit, **own)
             if row >= 0:
                 table[row] = tuple(self.outputs().values())
 

@@ -14,7 +14,8 @@ from typing import Any, Literal, NamedTuple
 Role = Literal["input", "output", "parameter", "case"]  # "case": only a case has it, an FMU has not
 Kind = Literal["Real", "Integer", "Boolean", "String"]
 Size = Literal[
-    "1", "n", "n-1", "uniform", "sections", "stepped", "axial", "points", "body", "layered", "sensors", "column"
+    "1", "n", "n-1", "uniform", "sections", "stepped", "axial", "points", "body", "layered", "sensors", "space",
+    "space n-1", "column"
 ]  # "column": as long as its table
 
 MAX_STABILIZERS = 6
@@ -35,6 +36,7 @@ class Structure(NamedTuple):
     body_points: int = 0  # of the beam between the stabilizers, at which its body may touch the wall
     layered: int = 0  # 1: rock comes in layers by true vertical depth
     sensors: int = 0
+    space: int = 0  # 1: the hole may leave its vertical plane
 
     @property
     def is_of_the_paper(self) -> bool:
@@ -51,7 +53,7 @@ class Structure(NamedTuple):
 @cache
 def counts(structure: Structure) -> dict[str, int]:
     """Size → how many values a quantity of that size has."""
-    n, sections, axial, points, layered, sensors = structure
+    n, sections, axial, points, layered, sensors, space = structure
     return {
         "1": 1,
         "n": n,
@@ -65,6 +67,8 @@ def counts(structure: Structure) -> dict[str, int]:
         "body": int(bool(points)),
         "layered": layered,
         "sensors": sensors,
+        "space": space,
+        "space n-1": space * (n - 1),
     }
 
 
@@ -129,7 +133,12 @@ class Quantity:
     @property
     def is_list(self) -> bool:
         """Whether its values are numbered."""
-        return self.size in ("n", "n-1", "sections", "points", "sensors")
+        return self.size in ("n", "n-1", "sections", "points", "sensors", "space n-1")
+
+    @property
+    def acts(self) -> bool:
+        """Whether it is an input of the drilling system: the rate of penetration, which no case has, is none."""
+        return self.role == "input" and self.name != "rate_of_penetration"
 
     @property
     def part(self) -> str:
@@ -156,6 +165,8 @@ SHAPE = (
 FORCE = ("rss_force", "weight_on_bit", "survey_file", *SHAPE)
 INSTRUMENT = ("sensor_bias", "sensor_noise", "sensor_seed")
 FORCE_AND_WEIGHT = (*FORCE, "active_weight_on_bit", "lateral_steering_resistance", "bit_tilt_limit")
+FORCE_IN_SPACE = (*FORCE, "rss_toolface", "toolface_reference")
+IN_SPACE = (*FORCE_AND_WEIGHT, "rss_toolface", "toolface_reference", "bit_walk_angle")
 
 QUANTITIES: tuple[Quantity, ...] = (
     Quantity("drilled_length", "output", "m", "ξ ℓ₁", "(17)", "length drilled since the start of the run", at_least=0.0, nominal=100.0, key="rss.drilled_length", field="schedule.drilled_length"),
@@ -167,6 +178,9 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("angular_steering_resistance", "input", "", "χ", "(4)", "angular over axial drilling resistance", above=0.0, key="bit.angular_steering_resistance", field="bit.angular_steering_resistance"),
     Quantity("bit_tilt_limit", "input", "rad", "ψ*", "(10)", "tilt at which the bit gauge meets the wall", above=0.0, at_most=pi / 2, nominal=0.01, key="bit.tilt_limit_deg", field="bit.tilt_limit"),
     Quantity("weight_on_bit", "input", "N", "W", "(3)", "all of the weight on bit, which presses the BHA along its axis; 0: the active weight", size="axial", at_least=0.0, nominal=1e5, key="drilling.weight_on_bit", field="weight_on_bit"),
+    Quantity("bit_walk_angle", "input", "rad", "ϖ", "", "walk angle: from the lateral penetration of the bit to the lateral force, positive from the high side to the right looking down the hole", at_least=-MOST_WALK, at_most=MOST_WALK, nominal=0.1, start=0.0, size="space", key="bit.walk_angle_deg", field="bit.walk_angle"),
+    Quantity("rss_toolface", "input", "rad", "γ", "", "side to which the pads push, looking down the hole: 0 up or north, π/2 to the right", size="space", start=0.0),
+    Quantity("toolface_reference", "input", "", "", "", "from where the toolface counts: 0 from the high side, 1 from north, 2 from the frame of the bit", kind="Integer", size="space", at_least=0, at_most=2, start=0.0),
 
     Quantity("bit_inclination", "output", "rad", "θ", "(17)", "inclination of the bit axis from the downward vertical", follows=("survey_file",)),
     Quantity("borehole_inclination", "output", "rad", "Θ", "(16)", "inclination of the borehole at the bit", follows=FORCE_AND_WEIGHT),
@@ -182,6 +196,18 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("body_contact_force", "output", "N", "F_ℓ − F_u", "(7)", "largest force of the wall on the body between the stabilizers, positive from the lower wall", size="body", nominal=1e4, follows=FORCE),
     Quantity("body_contact_position", "output", "m", "s", "", "where that force acts, from the bit; 0 if the body touches no wall", size="body", at_least=0.0, nominal=10.0, follows=FORCE),
     Quantity("wall_distance", "output", "m", "", "", "least distance of the body from the wall", size="body", nominal=1e-2, follows=FORCE),
+    Quantity("bit_azimuth", "output", "rad", "", "", "azimuth of the bit axis, from north over east", size="space", follows=("survey_file",)),
+    Quantity("borehole_azimuth", "output", "rad", "", "", "azimuth of the borehole at the bit, from north over east", size="space", follows=IN_SPACE),
+    Quantity("bit_tilt_high", "output", "rad", "ψ", "", "part of the bit tilt to the high side, in a nearly vertical hole to north", size="space", nominal=0.01, follows=IN_SPACE),
+    Quantity("bit_tilt_right", "output", "rad", "ψ", "", "part of the bit tilt to the right of that, looking down the hole", size="space", nominal=0.01, follows=IN_SPACE),
+    Quantity("bit_lateral_force_high", "output", "N", "F_0", "", "part of the lateral force on the bit to the high side, in a nearly vertical hole to north", size="space", nominal=1e4, follows=FORCE_IN_SPACE),
+    Quantity("bit_lateral_force_right", "output", "N", "F_0", "", "part of the lateral force on the bit to the right of that, looking down the hole", size="space", nominal=1e4, follows=FORCE_IN_SPACE),
+    Quantity("stabilizer_force_high", "output", "N", "F_i", "", "part of the force of the wall on the stabilizer to the high side, in a nearly vertical hole to north", size="space n-1", nominal=1e4, follows=FORCE_IN_SPACE),
+    Quantity("stabilizer_force_right", "output", "N", "F_i", "", "part of the force of the wall on the stabilizer to the right of that, looking down the hole", size="space n-1", nominal=1e4, follows=FORCE_IN_SPACE),
+    Quantity("stabilizer_deflection_high", "output", "m", "δ_i", "", "part of the offset of the BHA from the borehole axis to the high side, in a nearly vertical hole to north", size="space n-1", nominal=1e-3, follows=FORCE_IN_SPACE),
+    Quantity("stabilizer_deflection_right", "output", "m", "δ_i", "", "part of the offset of the BHA from the borehole axis to the right of that, looking down the hole", size="space n-1", nominal=1e-3, follows=FORCE_IN_SPACE),
+    Quantity("north", "output", "m", "", "", "position of the bit north of the start of the run", size="space", nominal=100.0),
+    Quantity("east", "output", "m", "", "", "position of the bit east of the start of the run", size="space", nominal=100.0),
     Quantity("sensor_inclination", "output", "rad", "", "", "inclination of the BHA at the sensor; with an interval its last reading, with bias and noise", size="sensors", follows=(*FORCE, "sensor_position", *INSTRUMENT)),
     Quantity("sensor_bending_moment", "output", "N.m", "", "", "bending moment of the BHA at the sensor, positive as in a hole that builds; at the bit the moment on the bit", size="sensors", nominal=1e4, follows=(*FORCE, "sensor_position")),
     Quantity("sensor_clearance", "output", "m", "", "", "distance of the body at the sensor from the wall; negative beyond it", size="sensors", nominal=1e-2, follows=(*FORCE, "sensor_position", "sensor_body_clearance")),
@@ -216,7 +242,6 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("body_contact", "case", "", "", "", "whether the body between the stabilizers may touch the wall", kind="Boolean", key="bha.body_contact"),
     Quantity("body_contact_spacing", "case", "m", "", "", "distance between the points of the body that may touch the wall", above=0.0, key="bha.body_contact_spacing"),
     Quantity("axial_load", "case", "", "N", "", "whether the load along the BHA counts in its bending", kind="Boolean", size="axial", key="bha.axial_load", field="bha.axial_load"),
-    Quantity("bit_walk_angle", "case", "rad", "ϖ", "", "walk angle: from the lateral penetration of the bit to the lateral force, positive from the high side to the right looking down the hole", at_least=-MOST_WALK, at_most=MOST_WALK, nominal=0.1, start=0.0, key="bit.walk_angle_deg", field="bit.walk_angle"),
     Quantity("bit_diameter", "case", "m", "", "", "diameter of the hole", above=0.0, at_most=1.5, key="bit.diameter", field="bit_diameter"),
     Quantity("length", "case", "m", "", "", "length to drill", above=0.0, key="drilling.length", field="length"),
     Quantity("measured_depth", "case", "m", "", "", "stations along the existing hole, the last one is the bit if bit_depth does not say where it is", size="column", key="hole.measured_depth", field="survey.measured_depth"),
@@ -240,9 +265,11 @@ BY_NAME = {quantity.name: quantity for quantity in QUANTITIES}
 INPUTS = tuple(quantity for quantity in QUANTITIES if quantity.role == "input")
 OUTPUTS = tuple(quantity for quantity in QUANTITIES if quantity.role == "output")
 PARAMETERS = tuple(quantity for quantity in QUANTITIES if quantity.role == "parameter")
-ACTING = tuple(name for q in INPUTS if q.field for name in ((q.name, f"{q.name}_slope") if q.slope else (q.name,)))
+ACTING = tuple(name for q in INPUTS if q.acts for name in ((q.name, f"{q.name}_slope") if q.slope else (q.name,)))
 """What an engine is given for a leg: the inputs where it starts, and the changes per metre of those that may change."""
-ROCK = tuple(q.name for q in INPUTS if q.part == "bit")
+IN_SPACE_ONLY = tuple(q.name for q in INPUTS if q.size == "space")
+"""The inputs that count only where the hole may leave its vertical plane."""
+ROCK = tuple(q.name for q in INPUTS if q.part == "bit" and q.name not in IN_SPACE_ONLY)
 """The inputs that say what bit and rock are like."""
 CLEARANCES = tuple(f"stabilizer_clearance[{i}]" for i in range(1, MAX_STABILIZERS))
 """The clearances that a schedule may change, of as many stabilizers as there may be."""
@@ -256,7 +283,7 @@ def scalar_names(quantities: tuple[Quantity, ...], structure: int | Structure) -
 
 def names_of_runs(n: int) -> list[str]:
     """The scalar names of all inputs and outputs that a run with `n` stabilizers may have, whatever its beam."""
-    made = Structure(n, axial_load=1, body_points=1, layered=1, sensors=MAX_SENSORS)
+    made = Structure(n, axial_load=1, body_points=1, layered=1, sensors=MAX_SENSORS, space=1)
     return scalar_names(INPUTS + OUTPUTS, made)
 
 

@@ -1,6 +1,7 @@
 """The kernel from Python, through ctypes: the same runs as those of `core.drilling`, in compiled code."""
 
 import ctypes
+from collections.abc import Callable, Mapping
 from dataclasses import astuple, fields
 from functools import cache
 from pathlib import Path
@@ -14,12 +15,13 @@ from ..core.errors import BorepropError, ParameterError, error_of
 from ..core.ground import Ground, check_step
 from ..core.options import Options, Statistics
 from ..core.problems import SENTENCES, Problem
-from ..core.quantities import ACTING, OUTPUTS, scalar_names, values_of
+from ..core.quantities import ACTING, OUTPUTS, Structure, scalar_names, values_of
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly, check_in_plane
 from .compiler import library_path, sources_digest
 from .generate import NAMES, SYSTEM, quantities_digest
 
+PLANAR, SPATIAL = "boreprop_", "boreprop_space_"  # how the names of functions begin
 CODES, QUANTITIES = ("", *SENTENCES), ("", *NAMES.values())  # by their numbers in problems.h
 
 
@@ -85,19 +87,21 @@ def load(path: Path) -> ctypes.CDLL:
     if kernel.boreprop_quantities_digest().decode() != quantities_digest():
         helps = "run: python -m boreprop.kernel.generate, then: python -m boreprop.kernel"
         raise KernelError(f"{path.name} must be made for this table of quantities, got another one's: {helps}")
+    for prefix in (PLANAR, SPATIAL):
+        _declare(kernel, prefix)
+    return kernel
+
+
+def _declare(kernel: ctypes.CDLL, prefix: str) -> None:
+    """Say what the functions with a prefix take and return."""
     run, reals, whole = ctypes.c_void_p, _array(np.float64), ctypes.c_longlong
     own = ctypes.POINTER(ctypes.c_double)
     inputs, options, problem = (ctypes.POINTER(struct) for struct in (Inputs, OptionsInC, ProblemInC))
     for name, result, arguments in (
         ("sentence", None, (problem, ctypes.c_char_p)),
-        ("start", run, (_array(np.intc), reals, options, whole, reals, reals, ctypes.c_int, own, inputs, problem)),
+        ("start", run, (_array(np.intc), reals, options, whole, *3 * (reals,), ctypes.c_int, own, inputs, problem)),
         ("end", None, (run,)),
         ("follow", whole, (run, whole, reals, reals, _array(np.intc), reals, problem)),
-        (
-            "lie",
-            whole,
-            (_array(np.intc), reals, *2 * (ctypes.c_double,), whole, reals, reals, whole, reals, reals, problem),
-        ),
         ("outputs", ctypes.c_int, (run, reals)),
         ("length", ctypes.c_double, (run,)),
         ("change_clearances", ctypes.c_int, (run, reals, problem)),
@@ -107,9 +111,13 @@ def load(path: Path) -> ctypes.CDLL:
         ("save", None, (run, reals)),
         ("restore", ctypes.c_int, (run, reals, whole, problem)),
     ):
-        function = getattr(kernel, f"boreprop_{name}")
+        function = getattr(kernel, prefix + name)
         function.restype, function.argtypes = result, arguments
-    return kernel
+    both = (ctypes.c_double, ctypes.c_double)
+    kernel.boreprop_lie.restype = whole
+    kernel.boreprop_lie.argtypes = (
+        *(_array(np.intc), reals, *both, whole, reals, reals, whole, reals, reals, problem),
+    )
 
 
 def _array(kind: Any) -> Any:
@@ -221,36 +229,52 @@ class NativeDrilling:
         ground: Ground | None = None,
     ) -> None:
         check_in_plane(bit)
-        structure = bha.structure._replace(layered=int(ground is not None and bool(ground.tops)))
+        acting = {"rss_force": rss_force, "active_weight_on_bit": active_weight_on_bit, "weight_on_bit": weight_on_bit}
+        azimuth = np.zeros(len(survey.measured_depth))
+        self._start(PLANAR, bha.structure, bha, bit, survey, azimuth, acting, options, ground)
+
+    def _start(
+        self,
+        prefix: str,
+        structure: Structure,
+        bha: BottomHoleAssembly,
+        bit: BitRock,
+        survey: Survey,
+        azimuth: Floats,
+        acting: Mapping[str, float],
+        options: Options,
+        ground: Ground | None,
+    ) -> None:
+        structure = structure._replace(layered=int(ground is not None and bool(ground.tops)))
         layers = None if ground is None else numbers(ground.numbers)
         given = values_of("bha", bha) | {"relative_tolerance": options.relative_tolerance}
         self.bit, self.ground = bit, ground
         self._names = scalar_names(OUTPUTS, structure)
         self._clearances = len(bha.stabilizer_clearances)
         self._problem = ProblemInC()
-        self._library = library()
-        self._run = self._library.boreprop_start(
+        self._library, self._prefix = library(), prefix
+        self._run = self._call("start")(
             numbers(structure, np.intc),
             numbers([given[name] for name in scalar_names(SYSTEM, structure)]),
             OptionsInC(*astuple(options)),
             len(survey.measured_depth),
             numbers(survey.measured_depth),
             numbers(survey.inclination),
+            numbers(azimuth),
             0 if ground is None else len(ground.tops),
             None if layers is None else layers.ctypes.data_as(ctypes.POINTER(ctypes.c_double)),
-            Inputs(
-                rss_force=rss_force,
-                active_weight_on_bit=active_weight_on_bit,
-                weight_on_bit=weight_on_bit,
-                **values_of("bit", bit),
-            ),
+            Inputs(**acting, **values_of("bit", bit)),
             self._problem,
         )
         self._check(self._run)
 
     def __del__(self) -> None:
         if getattr(self, "_run", None):
-            self._library.boreprop_end(self._run)
+            self._call("end")(self._run)
+
+    def _call(self, name: str) -> Callable[..., Any]:
+        function: Callable[..., Any] = getattr(self._library, self._prefix + name)
+        return function
 
     def _check(self, done: object) -> None:
         """Unless a call is done, raise the error for the problem that the kernel has found."""
@@ -260,13 +284,13 @@ class NativeDrilling:
     @property
     def drilled_length(self) -> float:
         """Where the bit is, m from the start of the run."""
-        return float(self._library.boreprop_length(self._run))
+        return float(self._call("length")(self._run))
 
     @property
     def statistics(self) -> Statistics:
         """What the integrator has done since the start of the run."""
         counts = np.empty(len(Statistics._fields))
-        self._library.boreprop_statistics(self._run, counts)
+        self._call("statistics")(self._run, counts)
         return Statistics(*map(int, counts))
 
     def advance(
@@ -281,14 +305,19 @@ class NativeDrilling:
         bit: BitRock | None = None,
     ) -> None:
         """Drill on under inputs from here, constant or linear in the drilled length, as `Drilling.advance`."""
-        acting = {
-            "rss_force": rss_force,
-            "rss_force_slope": rss_force_slope,
-            "active_weight_on_bit": active_weight_on_bit,
-            "active_weight_on_bit_slope": active_weight_on_bit_slope,
-            "weight_on_bit": weight_on_bit,
-        } | values_of("bit", bit or self.bit)
-        inputs = [[acting[name] for name in ACTING]]
+        self._advance(
+            drilled_length,
+            bit or self.bit,
+            rss_force=rss_force,
+            rss_force_slope=rss_force_slope,
+            active_weight_on_bit=active_weight_on_bit,
+            active_weight_on_bit_slope=active_weight_on_bit_slope,
+            weight_on_bit=weight_on_bit,
+        )
+
+    def _advance(self, drilled_length: float, bit: BitRock, **acting: float) -> None:
+        acting |= values_of("bit", bit)
+        inputs = [[acting.get(name, 0.0) for name in ACTING]]
         self.follow([drilled_length], inputs, [-1], np.empty((0, len(self._names))))
 
     def follow(
@@ -305,32 +334,32 @@ class NativeDrilling:
             raise ValueError(f"inputs, rows: {constraint}, got shape {given.shape} and rows {on_rows.tolist()}")
         if table.shape != (len(table), len(self._names)):
             raise ValueError(f"table: must have {len(self._names)} columns, got shape {table.shape}")
-        done = self._library.boreprop_follow(self._run, legs, numbers(lengths), given, on_rows, table, self._problem)
+        done = self._call("follow")(self._run, legs, numbers(lengths), given, on_rows, table, self._problem)
         self._check(done == legs)
 
     def change_clearances(self, clearances: tuple[float, ...]) -> None:
         """Let the stabilizers have other clearances, m, from where the bit is, as `Drilling.change_clearances`."""
         if len(clearances) != self._clearances:
             raise ParameterError("stabilizer_clearance", f"must hold {self._clearances} values", clearances)
-        self._check(self._library.boreprop_change_clearances(self._run, numbers(clearances), self._problem))
+        self._check(self._call("change_clearances")(self._run, numbers(clearances), self._problem))
 
     def step(self) -> None:
         """Drill on to the end of the integrator's next step, as `Drilling.step`."""
         check_step(self.ground)
-        self._check(self._library.boreprop_step(self._run, self._problem))
+        self._check(self._call("step")(self._run, self._problem))
 
     def outputs(self) -> dict[str, float | int]:
         """Every output where the bit is, as `Drilling.outputs`."""
         row = np.empty(len(self._names))
-        self._library.boreprop_outputs(self._run, row)
+        self._call("outputs")(self._run, row)
         return dict(zip(self._names, row.tolist(), strict=True))
 
     def save(self) -> Floats:
         """The whole evolving state, an array of numbers."""
-        state = np.empty(self._library.boreprop_state_size(self._run))
-        self._library.boreprop_save(self._run, state)
+        state = np.empty(self._call("state_size")(self._run))
+        self._call("save")(self._run, state)
         return state
 
     def restore(self, state: Floats) -> None:
         """Go back to a state from `save` of a run with the same parameters; `ParameterError` if it cannot be one."""
-        self._check(self._library.boreprop_restore(self._run, state, len(state), self._problem))
+        self._check(self._call("restore")(self._run, state, len(state), self._problem))

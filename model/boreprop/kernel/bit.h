@@ -34,7 +34,7 @@ typedef struct {
     double cleared;                 /* … where they got them */
     int layer;                      /* of the ground, in which the bit is, and … */
     double stay;                    /* … where it may leave it again */
-    double path[2];                 /* ∫ sin Θ dξ, ∫ cos Θ dξ up to the start of the present step */
+    double path[AXES];              /* from the start of the run to that of the present step: sideways and down */
     double origin[DIRECTIONS];      /* of the lateral coordinates */
     double cosine; /* of the inclination at which the weight acts along the beam; 0 if the axial load does not count */
     Step step;

@@ -2,7 +2,9 @@
 #ifndef BOREPROP_H
 #define BOREPROP_H
 
+#ifndef SPACE
 #include "lying.h"
+#endif
 #include "run.h"
 #include "sentence.h"
 
@@ -29,8 +31,8 @@ EXPORT void boreprop_sentence(const Problem *problem, char line[MESSAGE]);
    numbers as ground.h says, or NULL. */
 EXPORT Run *boreprop_start(
     const int structure[STRUCTURE_MEMBERS], const double *parameters, const Options *options, Count count,
-    const double *measured_depth, const double *inclination, int layers, const double *ground, const Inputs *inputs,
-    Problem *problem
+    const double *measured_depth, const double *inclination, const double *azimuth, int layers, const double *ground,
+    const Inputs *inputs, Problem *problem
 );
 EXPORT void boreprop_end(Run *run);
 

@@ -117,26 +117,30 @@ def compile_library(
     source: Path,
     output: Path,
     *,
+    also: Sequence[Path] = (),
     include: Sequence[Path] = (),
     defines: Mapping[str, str] = {},
     platform: str | None = None,
 ) -> Path:
-    """Compile one C file and what it includes to one shared library.
+    """Compile C files and what they include to one shared library.
 
     Parameters
     ----------
     source
-        The C file.
+        The C file, or the first of them.
     output
         The library. It appears whole or not at all.
+    also
+        The other C files.
     include
         Folders with headers; that of `source` is searched in any case.
     defines
         Macros: name → what takes its place.
     platform
         A name of `PLATFORMS`: compile with ziglang, for machines as old as those of glibc 2.17 or macOS 11. The bytes
-        then depend on `source`, what it includes, `defines`, the name of `output` and the version of ziglang, and on
-        nothing else. A library for win64 can call what ucrtbase.dll has, and snprintf and vsnprintf of printf's family.
+        then depend on the sources, what they include, `defines`, the name of `output` and the version of ziglang, and
+        on nothing else. A library for win64 can call what ucrtbase.dll has, and of printf's family snprintf and
+        vsnprintf.
         None: compile for this machine, with $CC and $CFLAGS, else with cc, gcc or clang and $CFLAGS, else with ziglang.
 
     Returns
@@ -155,7 +159,8 @@ def compile_library(
     folders = [Path(folder).resolve() for folder in (source.parent, *include)]
     compiler = _compiler(platform, folders)
     flags = [*(f"-I{folder}" for folder in folders), *(f"-D{name}={value}" for name, value in defines.items())]
-    sources, environment = [source.resolve(), *compiler.sources], compiler.environment
+    sources = [*(path.resolve() for path in (source, *also)), *compiler.sources]
+    environment = compiler.environment
     output = output.resolve()
     # In a folder of its own, since linkers leave more than the library. They write its name, as it is given, into it.
     with temporary_folder(f".{output.name}.", output.parent) as draft:
@@ -250,4 +255,5 @@ def sources_digest(*folders: Path) -> str:
 def build_library(output: Path | None = None, platform: str | None = None) -> Path:
     """Compile the kernel, to `output` or `library_path`; the rest is as in `compile_library`."""
     defines = {"BOREPROP_SOURCES_DIGEST": f'"{sources_digest()}"'}
-    return compile_library(FOLDER / "library.c", output or library_path(platform), defines=defines, platform=platform)
+    output = output or library_path(platform)
+    return compile_library(FOLDER / "library.c", output, also=[FOLDER / "space.c"], defines=defines, platform=platform)

@@ -27,8 +27,17 @@ static inline int check_rock(Inputs inputs, Problem *problem) {
            check_finite(Q_INVERSE_EPSILON, 0, 1 / (chi / eta), problem);
 }
 
+/* Whether toolface and walk, which count in space, are in their ranges. */
+static inline int check_aim(Inputs inputs, Problem *problem) {
+    return DIRECTIONS == 1 ||
+           (check_quantity(&INPUT_TABLE[IN_RSS_TOOLFACE], 0, inputs.rss_toolface, problem) &&
+            check_quantity(&INPUT_TABLE[IN_TOOLFACE_REFERENCE], 0, inputs.toolface_reference, problem) &&
+            check_quantity(&INPUT_TABLE[IN_BIT_WALK_ANGLE], 0, inputs.bit_walk_angle, problem));
+}
+
 static inline int check_inputs(Inputs inputs, Problem *problem) {
-    return check_rock(inputs, problem) && check_quantity(&INPUT_TABLE[IN_RSS_FORCE], 0, inputs.rss_force, problem) &&
+    return check_rock(inputs, problem) && check_aim(inputs, problem) &&
+           check_quantity(&INPUT_TABLE[IN_RSS_FORCE], 0, inputs.rss_force, problem) &&
            check_finite(Q_RSS_FORCE_SLOPE, 0, inputs.rss_force_slope, problem) &&
            check_quantity(&INPUT_TABLE[IN_ACTIVE_WEIGHT_ON_BIT], 0, inputs.active_weight_on_bit, problem) &&
            check_finite(Q_ACTIVE_WEIGHT_ON_BIT_SLOPE, 0, inputs.active_weight_on_bit_slope, problem);
@@ -39,6 +48,10 @@ static inline void take_cosine(Drilling *d, double cosine) {
     Integrator *p = &d->integrator;
     p->now.cosine = p->scaled.axial ? cosine : 0.0;
     d->buckling_weight = p->scaled.axial ? buckling_weight(&p->scaled, cosine) : INFINITY;
+    if (DIRECTIONS > 1 && p->scaled.axial) { /* a stabilizer that touches does not hold the BHA sideways */
+        Contact nothing = {{0}, 0, {0}};
+        d->buckling_weight = borne(p, &nothing, d->buckling_weight);
+    }
 }
 
 /* All of the weight on bit, N: the active weight if none is given. */
@@ -66,7 +79,12 @@ static inline int take_given(Drilling *d, Inputs inputs, Problem *problem) {
         eta_pi(system, eta, inputs.active_weight_on_bit_slope) * length_scale(system),
         inputs.angular_steering_resistance / eta,
         inputs.bit_tilt_limit,
-        system->structure.axial ? whole_weight(inputs) / F_star : 0.0
+        system->structure.axial ? whole_weight(inputs) / F_star : 0.0,
+#ifdef SPACE
+        inputs.rss_toolface,
+        inputs.toolface_reference,
+        inputs.bit_walk_angle,
+#endif
     };
     if (!check_inputs(inputs, problem) || (system->structure.axial && !check_weight(d, inputs, problem)) ||
         !check_finite(Q_SCALED_FORCE, 0, scaled.F_rss, problem) ||
@@ -104,6 +122,14 @@ static inline Status drilling_prepare(
     Drilling *d, const System *system, Ground ground, Options options, void *memory, Count capacity, Problem *problem
 ) {
     if (!check_system(system, problem)) return FAILED;
+    if (DIRECTIONS > 1 && system->structure.points) {
+        wrong(problem, ONLY_IN_THE_PLANE, Q_BODY_POINT_POSITION, 0, system->structure.points, NAN);
+        return FAILED;
+    }
+    if (DIRECTIONS > 1 && system->structure.sensors) {
+        wrong(problem, ONLY_IN_THE_PLANE, Q_SENSOR_POSITION, 0, system->structure.sensors, NAN);
+        return FAILED;
+    }
     if (!check_positive(Q_FORCE_SCALE, force_scale(system), problem)) return FAILED;
     Scaled scaled = scale(system);
     if (!check_finite(Q_SCALED_REACH, 0, scaled.s[scaled.n - 1], problem) ||
@@ -200,6 +226,9 @@ static inline Status drilling_step(Drilling *d, Problem *problem) {
 
 static inline void drilling_cancel(Drilling *d) { go_back(&d->integrator); }
 
+#ifdef SPACE
+#include "space_outputs.h"
+#else
 /* What the outputs are computed from: the state where the bit is. */
 typedef struct {
     double l1, F_star, eta_pi, theta, Y, Theta, psi, F_0, F[MAX_PLACES], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
@@ -225,7 +254,7 @@ static inline void find_body(Drilling *d, Present *at) {
 static inline Present present(Drilling *d) {
     Integrator *p = &d->integrator;
     const State *now = &p->now;
-    double state[COMPONENTS];
+    double state[COMPONENTS], path[AXES];
     Present at;
     at.l1 = length_scale(&d->system), at.F_star = force_scale(&d->system);
     at.earlier = earlier_inclination(p, now->xi - 1.0);
@@ -238,7 +267,8 @@ static inline Present present(Drilling *d) {
     at.eta_pi = inputs_here(now).eta_pi;
     at.psi = bit_tilt(at.F_0, at.eta_pi, now->inputs.psi_star);
     at.Theta = at.theta - at.psi;
-    position(now, &at.x, &at.z);
+    position(now, path);
+    at.x = path[0], at.z = path[1];
     find_body(d, &at);
     for (int i = 0; i < p->scaled.sensors; i++)
         at.sensed[i] = sensed(p, p->scaled.sensor[i].s, now->xi, state, at.mode, &at.loads);
@@ -276,9 +306,24 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_TRUE_VERTICAL_DEPTH: return at->z * l1;
         case OUT_ETA_PI: return at->eta_pi;
         case OUT_FORMATION: return d->integrator.now.layer;
+        /* in space only */
+        case OUT_BIT_AZIMUTH:
+        case OUT_BOREHOLE_AZIMUTH:
+        case OUT_BIT_TILT_HIGH:
+        case OUT_BIT_TILT_RIGHT:
+        case OUT_BIT_LATERAL_FORCE_HIGH:
+        case OUT_BIT_LATERAL_FORCE_RIGHT:
+        case OUT_STABILIZER_FORCE_HIGH:
+        case OUT_STABILIZER_FORCE_RIGHT:
+        case OUT_STABILIZER_DEFLECTION_HIGH:
+        case OUT_STABILIZER_DEFLECTION_RIGHT:
+        case OUT_NORTH:
+        case OUT_EAST: break;
     }
     return NAN;
 }
+
+#endif
 
 /* How many values `drilling_outputs` writes. */
 static inline int output_count(Structure structure) {

@@ -3,7 +3,11 @@
 #define BOREPROP_EVENTS_H
 
 #include "hole.h"
+#ifdef SPACE
+#include "space_law.h"
+#else
 #include "law.h"
+#endif
 
 /* How far beyond its values at the points of a step a value may lie between them, over the range of these: a bound
    farther away is not searched for. A parabola lies beyond them by an eighth of the range at most. */
@@ -17,16 +21,16 @@ typedef struct {
     const Places *places;
     const Hole *hole;
     const Law *law;
-    const Step *step;
+    const Trial *trial;
     const Bound *bound;
 } Watch;
 
 /* The bounded value at `xi`. */
 static inline double watched_value(const Watch *watch, double xi) {
     double x[COMPONENTS], delayed[MAX_PLACES][DIRECTIONS];
-    step_state(watch->step, xi, x);
+    step_state(&watch->trial->step, xi, x);
     hole_at_places(watch->hole, watch->places, xi, delayed);
-    return law_at(watch->law, watch->bound, xi, x, delayed);
+    return law_at(watch->law, watch->bound, watch->trial, xi, x, delayed);
 }
 
 /* Where the bound is passed on `side` in [a, b], at whose end the value lies f_b beyond it, by regula falsi with the
@@ -73,7 +77,7 @@ static inline void insert(Sample *samples, int *count, Sample added) {
 
 /* Where the step first meets the bound, given the values at the points; returns on which side, or 0 if it does not. */
 static inline int meet(const Watch *watch, double slack, const double values[POINTS], double *where) {
-    const Step *step = watch->step;
+    const Step *step = &watch->trial->step;
     const Bound *bound = watch->bound;
     Sample samples[2 * POINTS] = {{step->xi, watched_value(watch, step->xi)}};
     double found[POINTS];
@@ -105,7 +109,7 @@ static inline int meet(const Watch *watch, double slack, const double values[POI
 static inline void cut_at_event(const Places *places, const Hole *hole, const Law *law, double slack, Trial *trial) {
     Step *step = &trial->step;
     for (int b = 0; b < law->bound_count; b++) {
-        Watch watch = {places, hole, law, step, &law->bounds[b]};
+        Watch watch = {places, hole, law, trial, &law->bounds[b]};
         double values[POINTS], where = 0.0;
         law_along(law, watch.bound, trial, values);
         double low = values[0], high = values[0];

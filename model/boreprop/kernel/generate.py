@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import astuple, fields
+from fractions import Fraction
 from functools import cache
 from hashlib import sha256
 
@@ -42,19 +43,23 @@ SIZES = {
     "body": "IF_POINTS",
     "layered": "IF_LAYERED",
     "sensors": "EACH_SENSOR",
+    "space": "IF_SPACE",
+    "space n-1": "EACH_NON_IDEAL_IN_SPACE",
 }
 ROOMS = {
     "n": "[MAX_STABILIZERS]",
     "n-1": "[MAX_STABILIZERS - 1]",
+    "space n-1": "[MAX_STABILIZERS - 1]",
     "sections": "[MAX_SECTIONS]",
     "points": "[MAX_POINTS]",
     "sensors": "[MAX_SENSORS]",
 }
-LARGEST = Structure(MAX_STABILIZERS, MAX_SECTIONS, 1, MAX_POINTS, 1, MAX_SENSORS)
+LARGEST = Structure(MAX_STABILIZERS, MAX_SECTIONS, 1, MAX_POINTS, 1, MAX_SENSORS, 1)
 
 NAMES = {quantity.name: quantity.name for quantity in QUANTITIES} | {
     **{name: name for name in (f"{quantity.name}_slope" for quantity in INPUTS if quantity.slope)},
     **DERIVED,
+    "azimuth": "azimuth",
     "parameters": "parameters",
     "state": "state",
     "start_time": "startTime",
@@ -93,6 +98,7 @@ typedef struct {{
     int points;      /* number of points at which the body between the stabilizers may touch the wall */
     int layered;     /* whether rock comes in layers by true vertical depth */
     int sensors;     /* their number */
+    int space;       /* whether the hole may leave its vertical plane */
 }} Structure;
 
 /* The parameters, in SI units. */
@@ -226,6 +232,12 @@ static const double SLOPE[S] = {SLOPE};
 /* Values of f at the points times INTO_PARTS[point][part]: a part of f, in which the check has no share. */
 static const double INTO_PARTS[POINTS][S] = {INTO_PARTS};
 
+/* Values at the nodes, less the start, times DIFFERENCE[node][j]: the derivative at a node, times h. */
+static const double DIFFERENCE[S][S] = {DIFFERENCE};
+
+/* The same times POLYNOMIAL[j][m]: coefficient of t^(m+1). */
+static const double POLYNOMIAL[S][S] = {POLYNOMIAL};
+
 /* clang-format on */
 
 #endif
@@ -236,7 +248,7 @@ def acting(inputs: Table = INPUTS) -> list[tuple[str, str, str]]:
     """Name, unit and meaning of the members of the C struct Inputs."""
     members = []
     for quantity in inputs:
-        if quantity.field:  # the rate of penetration, which no case has, does not act on the drilling system
+        if quantity.acts:
             members.append((quantity.name, quantity.unit, quantity.meaning))
             if quantity.slope:
                 members.append((f"{quantity.name}_slope", f"{quantity.unit}/m", "its change per metre drilled"))
@@ -318,6 +330,8 @@ def _bound(value: float) -> str:
 
 def radau_tables() -> str:
     """The header radau_tables.h."""
+    nodes = [point for k, point in enumerate(radau.POINTS) if k != radau.AT_CHECK]
+    interpolating = [_interpolating(nodes, node) for node in nodes]
     return RADAU_TABLES.format(
         S=radau.S,
         points=len(radau.POINTS),
@@ -329,7 +343,23 @@ def radau_tables() -> str:
         COEFFICIENTS=_columns(radau.COEFFICIENTS),
         SLOPE=_row(radau.SLOPE),
         INTO_PARTS=_columns(radau.INTO_PARTS),
+        DIFFERENCE=_rows([[_slope(own, node) for own in interpolating] for node in nodes]),
+        POLYNOMIAL=_rows([[float(coefficient) for coefficient in own[1:]] for own in interpolating]),
     )
+
+
+def _interpolating(nodes: Sequence[float], own: float) -> list[Fraction]:
+    """Coefficients of t^0 … of the polynomial that is one at a node, and zero at 0 and at the others."""
+    found = [Fraction(0), 1 / Fraction(own)]
+    for node in nodes:
+        if node != own:
+            at, scale = Fraction(node), Fraction(own) - Fraction(node)
+            found = [(a - at * b) / scale for a, b in zip([Fraction(0), *found], [*found, Fraction(0)], strict=True)]
+    return found
+
+
+def _slope(polynomial: Sequence[Fraction], t: float) -> float:
+    return float(sum(m * coefficient * Fraction(t) ** (m - 1) for m, coefficient in enumerate(polynomial) if m))
 
 
 def _row(numbers: Sequence[float]) -> str:

@@ -78,9 +78,9 @@ static inline int wear_off(
 
 /* How far down the bit goes from the start of a step. */
 static inline double way_down(const Step *step, double xi) {
-    double x, z;
-    displacement(step, xi, &x, &z);
-    return z;
+    double path[AXES] = {0};
+    move_along(step, xi, path);
+    return path[AXES - 1];
 }
 
 /* Where in [a, b] the bit passes a depth below the start of a step on `side`, f_b beyond it at b, as `crossing` does. */

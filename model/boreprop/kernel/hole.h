@@ -24,37 +24,53 @@ typedef struct {
 
 static inline Piece *piece(const Hole *hole, Count k) { return &hole->ring[k & (hole->capacity - 1)]; }
 
-/* Take the last `reach` (in ℓ₁) of the survey; the bit is at ξ = 0, where Y = 0. Returns the inclination there. */
-static inline double take_survey(Hole *hole, const Survey *survey, double length_scale, double reach) {
+/* Take the last `reach` (in ℓ₁) of the survey; the bit is at ξ = 0, where Y = 0. Returns how the hole heads there. */
+static inline Heading take_survey(Hole *hole, const Survey *survey, double length_scale, double reach) {
     Count count, first = first_station(survey, length_scale, reach, &count);
-    double Y = 0.0, end_inclination, final_inclination;
-    double end = station(survey, length_scale, reach, count - 1, &end_inclination);
-    final_inclination = end_inclination;
+    const Heading final = last_heading(survey);
+    Heading heading = final;
+    double Y[DIRECTIONS] = {0}, end = station(survey, length_scale, reach, count - 1);
     hole->first = 0, hole->end = count - 1 - first;
     for (Count k = hole->end - 1; k >= 0; k--) {
-        double inclination, xi = station(survey, length_scale, reach, first + k, &inclination), width = end - xi;
-        double slope = inclination * width, bend = (end_inclination - inclination) * width / 2;
-        double arc[S + 1] = {Y -= slope + bend, slope, bend};
+        const Heading ahead = heading;
+        double xi = station(survey, length_scale, reach, first + k), width = end - xi;
+        head_back(survey, given_station(survey, length_scale, reach, first + k), &heading);
         Piece *own = piece(hole, k);
         memset(own, 0, sizeof *own);
         own->start = xi, own->rate = 1 / width;
-        memcpy(own->x[LATERAL], arc, sizeof arc);
-        end = xi, end_inclination = inclination;
+        for (int d = 0; d < DIRECTIONS; d++) {
+            double slope = heading.angle[d] * width, bend = (ahead.angle[d] - heading.angle[d]) * width / 2;
+            double arc[S + 1] = {Y[d] -= slope + bend, slope, bend};
+            memcpy(own->x[LATERAL + d], arc, sizeof arc);
+        }
+        end = xi;
     }
-    return final_inclination;
+    return final;
 }
 
-/* Take the kinks at the stations within reach: jumps of the curvature. */
-static inline void take_kinks(const Hole *hole, Kinks *kinks, const Survey *survey, double length_scale, double reach) {
-    Count count, first = first_station(survey, length_scale, reach, &count);
-    double curvature = 0.0;
+/* Let a step of length zero stand at the end of the survey, where the hole heads so. */
+static inline void face(Step *step, const Heading *heading) {
+    memset(step, 0, sizeof *step);
+    step->h = 1.0;
+#ifdef SPACE
+    step->frame = heading->frame;
+#else
+    (void)heading;
+#endif
+}
+
+/* Take the kinks at the pieces of the survey: jumps of the curvature. */
+static inline void take_kinks(const Hole *hole, Kinks *kinks) {
+    double curvature[DIRECTIONS] = {0};
     kinks->end = 0;
     for (Count k = 0; k < hole->end; k++) {
-        double from, to, before = curvature;
-        station(survey, length_scale, reach, first + k, &from);
-        station(survey, length_scale, reach, first + k + 1, &to);
-        curvature = (to - from) * piece(hole, k)->rate;
-        Kink passed = {piece(hole, k)->start, fabs(curvature - before), 2.0};
+        const Piece *own = piece(hole, k);
+        Kink passed = {own->start, 0.0, 2.0};
+        for (int d = 0; d < DIRECTIONS; d++) {
+            double before = curvature[d];
+            curvature[d] = 2 * own->x[LATERAL + d][2] * own->rate * own->rate;
+            passed.jump += fabs(curvature[d] - before);
+        }
         if (k > 0) *kink(kinks, kinks->end++) = passed;
     }
 }

@@ -19,9 +19,8 @@
 /* By this factor a step is tried shorter where each regime meets a bound before its first point, and the slack by which
    values may lie beyond their bounds at the points is made larger. */
 #define CLOSER 8.0
-#define MOST_SLACK 1e-6                       /* of that slack */
-#define ORIGIN_LIMIT 8.0                      /* |Y| beyond which the origin of Y is moved to the bit */
-#define LARGEST_INCLINATION 6.283185307179586 /* beyond a full turn nothing is drilled */
+#define MOST_SLACK 1e-6  /* of that slack */
+#define ORIGIN_LIMIT 8.0 /* |Y| beyond which the origin of Y is moved to the bit */
 
 /* Go to the regime on the other side of the bound that a step has met. */
 static inline void pass_event(Integrator *p, const Step *step) {
@@ -29,10 +28,12 @@ static inline void pass_event(Integrator *p, const Step *step) {
 }
 
 /* Go on along the path to `xi` in the present step. */
-static inline void move_path(State *now, double xi) {
-    double x, z;
-    displacement(&now->step, xi, &x, &z);
-    now->path[0] += x, now->path[1] += z;
+static inline void move_path(State *now, double xi) { move_along(&now->step, xi, now->path); }
+
+/* Where the bit is, from the start of the run: its depth is the last of the coordinates. */
+static inline void position(const State *now, double path[AXES]) {
+    memcpy(path, now->path, sizeof now->path);
+    move_along(&now->step, now->xi, path);
 }
 
 /* Move the origin of the lateral coordinates to the bit, where the state is `x`, if it is far. */
@@ -110,10 +111,9 @@ static inline void choose_length(const Integrator *p, const Law *law, double xi,
 static inline void try_step(
     const Integrator *p, const Law *law, double xi, double h, const double x[COMPONENTS], Trial *trial
 ) {
-    Step step = {xi, h, {{0}}, xi + h, NONE, 0, INFINITY};
-    trial->step = step;
+    trial->step = next_step(&p->now.step, xi, h);
     look_up(&p->now.hole, &p->now.places, trial);
-    law_try(law, &p->options, x, trial);
+    law_try(law, &p->options, &p->now.step, x, trial);
 }
 
 /* Whether the numbers of a trial step are finite. */
@@ -126,10 +126,8 @@ static inline int is_finite(const Trial *trial) {
 /* How much longer than a trial with this error the next one may be: the error grows as h^(S+1). */
 static inline double growth(double error) { return SAFETY * pow(larger(error, LEAST_ERROR), -1.0 / (S + 1)); }
 
-/* The weight on the bit that a BHA bears while it is held at the contacts of a regime alone, over F*; it bears none of
-   `most`. */
-APART static double borne(const Integrator *p, double most) {
-    const Contact *contact = &p->now.regime.contact;
+/* The weight on the bit that a BHA bears while it is held at some contacts alone, over F*; it bears none of `most`. */
+APART static double borne(const Integrator *p, const Contact *contact, double most) {
     signed char holds[MAX_SUPPORTS] = {0};
     double low = 0.0;
     int n = p->scaled.n;
@@ -150,7 +148,7 @@ APART static double borne(const Integrator *p, double most) {
 static inline Status stand(Integrator *p, double xi, const double x[COMPONENTS], Plan *plan, Problem *problem) {
     Contact before = p->now.regime.contact;
     int jumps = plan->searched;
-    double bears = borne(p, p->now.inputs.W);
+    double bears = borne(p, &p->now.regime.contact, p->now.inputs.W);
     plan->searched = 1;
     if (touch_down(p, xi, x, problem) != DONE) return FAILED;
     for (int i = 0; i < p->scaled.n - 1; i++) jumps |= !before.of[i] && p->now.regime.contact.of[i];
@@ -192,7 +190,7 @@ static inline Status find_step(
             plan->switches++;
             continue;
         }
-        if (p->scaled.stepped && !plan->searched) {
+        if (DIRECTIONS == 1 && p->scaled.stepped && !plan->searched) {
             plan->searched = 1, plan->switches = 0;
             if (touch_down(p, xi, x, problem) == DONE) continue;
         }
@@ -245,8 +243,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     step->next_h =
         larger(plan.h < plan.resumed ? plan.resumed : 0.0, plan.h * smaller(growth(trial.error), LARGEST_GROWTH));
     step_state(step, step->end, end);
-    for (int c = ANGLE; c < LATERAL; c++)
-        if (!(fabs(end[c]) <= LARGEST_INCLINATION)) return failed(p, TURNS_OVER, step->end, problem);
+    if (turns_over(present_law(p), &trial, end)) return failed(p, TURNS_OVER, step->end, problem);
     append(&now->hole, step, inputs_ahead(now->inputs, last.end - now->inputs_xi));
     if (kink <= SMOOTHEST_KINK)
         add_kink(&now->kinks, p->scaled.n, last.end, kink, step_jump(&last, step, kink, last.end));

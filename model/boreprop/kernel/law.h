@@ -120,11 +120,13 @@ static inline void make_law(
 /* ηΠ where a law was made over that a length `ahead` of there. M and F_0 are divided by ηΠ. */
 static inline double eta_pi_ratio(const Law *law, double ahead) { return 1 / (1 + law->growth * ahead); }
 
-/* A bounded value at one place. */
+/* A bounded value at one place of a trial step. */
 static inline double law_at(
-    const Law *law, const Bound *bound, double xi, const double x[COMPONENTS], double delayed[][DIRECTIONS]
+    const Law *law, const Bound *bound, const Trial *trial, double xi, const double x[COMPONENTS],
+    double delayed[][DIRECTIONS]
 ) {
     const Linear *f = &bound->value;
+    (void)trial;
     double sine = sin(law->axial ? x[ANGLE] : x[LATERAL] - delayed[0][0]);
     double value = f->theta * x[ANGLE] + f->Y * x[LATERAL] + f->g * sine + f->constant;
     for (int i = 0; i < law->count; i++) value += f->delayed[i] * delayed[i][0];
@@ -226,13 +228,6 @@ static inline void rates_along(const Law *law, const Trial *trial, double theta_
     }
 }
 
-/* A function that is seldom called: inlined, it would slow down what is. */
-#ifdef __GNUC__
-#define APART __attribute__((noinline))
-#else
-#define APART
-#endif
-
 #define RAMP_ITERATIONS 20 /* at most; each gains a digit or more */
 
 /* Collocation under a changing ηΠ: what the Jacobian, which is that at the start, neglects is added to the right-hand
@@ -265,11 +260,15 @@ APART static int collocate_on_ramp(
     return 0;
 }
 
-/* Collocation from the state `x` over a trial step, whose place, length and delayed hole are given. */
-static inline void law_try(const Law *law, const Options *options, const double x[COMPONENTS], Trial *trial) {
+/* Collocation from the state `x` over a trial step, whose place, length and delayed hole are given; the last step is for
+   laws that need a guess. */
+static inline void law_try(
+    const Law *law, const Options *options, const Step *last, const double x[COMPONENTS], Trial *trial
+) {
     const Linear *rate = &law->theta_rate, *Theta = &law->Theta;
     const double theta = x[ANGLE], Y = x[LATERAL], h = trial->step.h;
     double frozen[POINTS], f_theta[POINTS], f_Y[POINTS], parts_theta[S], parts_Y[S];
+    (void)last;
     Tangent tangent = tangent_of(law, x, trial);
     Jacobian J = {rate->theta, rate->Y, Theta->theta, Theta->Y};
     *(law->axial ? &J.theta_theta : &J.theta_Y) += rate->g * tangent.cosine;
@@ -324,6 +323,21 @@ static inline void displacement(const Step *step, double xi, double *x, double *
         sideways += weights[k] * node_sine, down += weights[k] * node_cosine;
     }
     *x = sideways * length, *z = down * length;
+}
+
+/* The same as coordinates of a place: sideways and down. */
+static inline void move_along(const Step *step, double xi, double path[AXES]) {
+    double x, z;
+    displacement(step, xi, &x, &z);
+    path[0] += x, path[1] += z;
+}
+
+#define LARGEST_INCLINATION 6.283185307179586 /* beyond a full turn nothing is drilled */
+
+/* Whether the bit, in the state `x` at the end of a trial step, has turned over. */
+static inline int turns_over(const Law *law, const Trial *trial, const double x[COMPONENTS]) {
+    (void)law, (void)trial;
+    return !(fabs(x[ANGLE]) <= LARGEST_INCLINATION);
 }
 
 #endif

@@ -16,10 +16,10 @@ static Structure structure_of(const int members[STRUCTURE_MEMBERS]) {
 
 Run *boreprop_start(
     const int structure[STRUCTURE_MEMBERS], const double *parameters, const Options *options, Count count,
-    const double *measured_depth, const double *inclination, int layers, const double *ground, const Inputs *inputs,
-    Problem *problem
+    const double *measured_depth, const double *inclination, const double *azimuth, int layers, const double *ground,
+    const Inputs *inputs, Problem *problem
 ) {
-    Survey survey = {count, measured_depth, inclination};
+    Survey survey = {count, measured_depth, inclination, azimuth};
     Structure made = structure_of(structure);
     System system = system_of(made, parameters);
     Run *run = calloc(1, sizeof *run);
@@ -71,6 +71,7 @@ int boreprop_restore(Run *run, const double *state, Count count, Problem *proble
     return run_restore(run, state, count, problem) == DONE;
 }
 
+#ifndef SPACE
 Count boreprop_lie(
     const int structure[STRUCTURE_MEMBERS], const double *parameters, double weight_on_bit, double inclination,
     Count rows, const double *loads, double *answers, Count count, const double *s, double *shapes, Problem *problem
@@ -88,3 +89,4 @@ Count boreprop_lie(
     free(bha);
     return k;
 }
+#endif

@@ -10,6 +10,13 @@
 
 typedef long long Count; /* of stations, and of pieces of hole: 32 bits are not enough for a long life */
 
+/* A function that is seldom called: inlined, it would slow down what is. */
+#ifdef __GNUC__
+#define APART __attribute__((noinline))
+#else
+#define APART
+#endif
+
 static inline double larger(double a, double b) { return b > a ? b : a; }
 static inline double smaller(double a, double b) { return b < a ? b : a; }
 

@@ -3,67 +3,30 @@
 #ifndef BOREPROP_PROPAGATION_H
 #define BOREPROP_PROPAGATION_H
 
-#include "integrator.h"
+#ifdef SPACE
+#include "space_response.h"
+#else
+#include "response.h"
+#endif
 
-/* looking */
-
-/* What bends the beam where the bit is. */
-static inline Loads present_loads(const Integrator *p) {
-    double x[COMPONENTS];
-    step_state(&p->now.step, p->now.xi, x);
-    return loads_at(p, p->now.xi, x, inputs_here(&p->now).F_rss);
-}
-
-/* Θ under given loads, eq. (16): algebraic, so it jumps with the inputs. */
-static inline double inclination_under(Integrator *p, double theta, const Loads *loads, ScaledInputs inputs) {
-    const Mode *mode = settle(&p->modes, loads, p->now.regime.contact);
-    return theta - bit_tilt(row_value(&mode->F_0, loads), inputs.eta_pi, inputs.psi_star);
-}
-
-/* Θ as it was when the bit was at `xi`, at most LOOK_BACK behind; where Θ jumped, its value after the jump. */
-static inline double earlier_inclination(Integrator *p, double xi) {
-    const Hole *hole = &p->now.hole;
-    const Piece *at = piece(hole, find(hole, xi + MERGE));
-    if (at->inputs.eta_pi == 0 || p->scaled.points || xi + MERGE < p->now.cleared) { /* Θ is the slope of the hole */
-        const Piece *own = piece(hole, find(hole, xi));
-        return polynomial_slope(own->x[LATERAL], (xi - own->start) * own->rate) * own->rate;
-    }
-    double ahead = larger(xi - at->start, 0.0), x[COMPONENTS];
-    for (int c = 0; c < COMPONENTS; c++) x[c] = polynomial(at->x[c], ahead * at->rate);
-    ScaledInputs inputs = inputs_ahead(at->inputs, ahead);
-    Loads loads = loads_at(p, at->start + ahead, x, inputs.F_rss);
-    bear(p, inputs.W);
-    double Theta = inclination_under(p, x[ANGLE], &loads, inputs);
-    bear(p, p->now.inputs.W);
-    return Theta;
-}
-
-/* Where the bit is in the vertical plane, sideways and down, from the start of the run. */
-static inline void position(const State *now, double *x, double *z) {
-    displacement(&now->step, now->xi, x, z);
-    *x += now->path[0], *z += now->path[1];
-}
-
-/* moving */
-
-/* Take over inputs where the bit is, in the state `x`: find the regime under them, and mark the jump of the inclination,
-   which was Θ so far. */
+/* Take over inputs where the bit is, in the state `x`: find the regime under them, and mark the jump of the direction of
+   the hole, which was Θ so far. */
 static inline Status restart(
-    Integrator *p, ScaledInputs inputs, const double x[COMPONENTS], double Theta, Problem *problem
+    Integrator *p, ScaledInputs inputs, const double x[COMPONENTS], const double Theta[DIRECTIONS], Problem *problem
 ) {
     State *now = &p->now;
+    double jump = 0.0;
     now->inputs = inputs, now->inputs_xi = now->xi;
-    now->step = standstill(now->xi, x);
+    now->step = standstill(&now->step, now->xi, x);
     p->exit_known = 0;
     bear(p, inputs.W);
-    if (p->scaled.stepped && touch_down(p, now->xi, x, problem) != DONE) return FAILED;
-    Loads loads = loads_at(p, now->xi, x, inputs.F_rss);
-    const Mode *mode = settle(&p->modes, &loads, now->regime.contact);
-    double F_0 = row_value(&mode->F_0, &loads), psi_star = inputs.psi_star;
-    double jump = fabs(x[ANGLE] - bit_tilt(F_0, inputs.eta_pi, psi_star) - Theta);
-    if (!isfinite(jump) || !isfinite(F_0)) return failed(p, NOT_FINITE, now->xi, problem);
-    Regime regime = {mode->contact, side_beyond(F_0 / inputs.eta_pi, -psi_star, psi_star, ROUNDING)};
-    change_regime(p, regime);
+    if (DIRECTIONS == 1 && p->scaled.stepped && touch_down(p, now->xi, x, problem) != DONE) return FAILED;
+    Response at = respond(p, x, inputs);
+    for (int d = 0; d < DIRECTIONS; d++) {
+        if (!isfinite(at.Theta[d]) || !isfinite(at.F_0[d])) return failed(p, NOT_FINITE, now->xi, problem);
+        jump = larger(jump, fabs(at.Theta[d] - Theta[d]));
+    }
+    change_regime(p, at.regime);
     add_kink(&now->kinks, p->scaled.n, now->xi, 1, jump);
     if (p->scaled.points) {
         clear_around(p);
@@ -78,28 +41,15 @@ static inline Status restart(
 static inline Status steer(Integrator *p, ScaledInputs inputs, Problem *problem) {
     State *now = &p->now;
     ScaledInputs before = inputs_here(now);
-    double bend = inputs.F_rss_slope - before.F_rss_slope, turn = inputs.eta_pi_slope - before.eta_pi_slope;
     double x[COMPONENTS];
-    Loads loads = present_loads(p);
     step_state(&now->step, now->xi, x);
-    double Theta = inclination_under(p, x[ANGLE], &loads, before);
+    Response so_far = respond(p, x, before);
     move_path(now, now->xi);
-    Status status = restart(p, inputs, x, Theta, problem);
-    int on_ramp = (bend != 0 || turn != 0) && !now->regime.saturation, turns_anew = inputs.epsilon != before.epsilon;
-    if (status != DONE || !(on_ramp || turns_anew)) return status;
-    loads = loads_at(p, now->xi, x, inputs.F_rss);
-    const Mode *mode = mode_of(&p->modes, now->regime.contact);
-    double bent = 0.0; /* jump of Θ' = θ' − ψ' */
-    if (turns_anew) {  /* θ' = M/(εηΠ) */
-        double moment = row_value(&mode->M, &loads);
-        bent = present_law(p)->Theta.theta * moment / inputs.eta_pi * (1 / inputs.epsilon - 1 / before.epsilon);
-    }
-    if (on_ramp) { /* (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ */
-        double psi = row_value(&mode->F_0, &loads) / inputs.eta_pi;
-        bent -= (bend * mode->F_0.rss - turn * psi) / inputs.eta_pi;
-    }
+    Status status = restart(p, inputs, x, so_far.Theta, problem);
+    if (status != DONE) return status;
+    double bent = curvature_jump(p, x, before, inputs);
     if (!isfinite(bent)) return failed(p, NOT_FINITE, now->xi, problem);
-    if (bent != 0) add_kink(&now->kinks, p->scaled.n, now->xi, 2, fabs(bent));
+    if (bent != 0) add_kink(&now->kinks, p->scaled.n, now->xi, 2, bent);
     return DONE;
 }
 
@@ -109,7 +59,7 @@ static inline int are_others(const State *now, ScaledInputs inputs, double way) 
     if (are_ramps(&inputs) || are_ramps(&now->inputs))
         changed = !same_ramps(inputs_here(now), inputs, way > 0 ? way : 1.0);
     changed |= inputs.epsilon != now->inputs.epsilon || inputs.psi_star != now->inputs.psi_star;
-    return changed || inputs.W != now->inputs.W;
+    return changed || inputs.W != now->inputs.W || aims_anew(&inputs, &now->inputs);
 }
 
 /* Drill on to `xi` under inputs that act from where the bit is. After FULL the same call goes on in larger rings. */
@@ -135,14 +85,13 @@ static inline Status change_clearances(Integrator *p, const double *y_star, Prob
     double x[COMPONENTS];
     if (!set_out(p) || !has_room(p)) return FULL;
     ScaledInputs inputs = inputs_here(now);
-    Loads loads = present_loads(p);
     step_state(&now->step, now->xi, x);
-    double Theta = inclination_under(p, x[ANGLE], &loads, inputs);
+    Response so_far = respond(p, x, inputs);
     move_path(now, now->xi);
     memcpy(now->y_star, y_star, (size_t)(p->scaled.n - 1) * sizeof *y_star);
     now->cleared = now->xi;
     clear(p);
-    Status status = restart(p, inputs, x, Theta, problem);
+    Status status = restart(p, inputs, x, so_far.Theta, problem);
     if (status != DONE) go_back(p);
     p->under_way = 0;
     return status;
@@ -152,11 +101,11 @@ static inline Status change_clearances(Integrator *p, const double *y_star, Prob
    After FULL the same call goes on. */
 static inline Status drill_in_layer(Integrator *p, const Ground *ground, double end, int *left, Problem *problem) {
     State *now = &p->now;
-    double last = p->before.accepted + p->options.most_steps, l1 = p->length_scale, x, z;
+    double last = p->before.accepted + p->options.most_steps, l1 = p->length_scale, path[AXES];
     double top = layer_top(ground, now->layer) / l1, bottom = layer_bottom(ground, now->layer) / l1;
     for (;;) {
         double begin = larger(now->step.xi, now->stay);
-        if (!p->exit_known) p->exit_side = first_exit(&now->step, now->path[1], top, bottom, begin, &p->exit);
+        if (!p->exit_known) p->exit_side = first_exit(&now->step, now->path[AXES - 1], top, bottom, begin, &p->exit);
         p->exit_known = 1;
         *left = p->exit <= end ? p->exit_side : 0;
         if (*left) break;
@@ -167,7 +116,8 @@ static inline Status drill_in_layer(Integrator *p, const Ground *ground, double 
         if (status != DONE) return status;
     }
     now->xi = p->exit, now->layer += *left;
-    position(now, &x, &z);
+    position(now, path);
+    double z = path[AXES - 1];
     while (*left > 0 ? z * l1 - layer_bottom(ground, now->layer) > AT_TOP /* through a thin layer */
                      : layer_top(ground, now->layer) - z * l1 > AT_TOP)
         now->layer += *left;
@@ -206,13 +156,15 @@ static inline void prepare(
 static inline Status begin(Integrator *p, const Survey *survey, ScaledInputs inputs, Problem *problem) {
     State *now = &p->now;
     double reach = LOOK_BACK + p->scaled.s[p->scaled.n - 1], x[COMPONENTS] = {0};
-    x[ANGLE] = take_survey(&now->hole, survey, p->length_scale, reach);
-    take_kinks(&now->hole, &now->kinks, survey, p->length_scale, reach);
+    Heading heading = take_survey(&now->hole, survey, p->length_scale, reach);
+    take_kinks(&now->hole, &now->kinks);
+    memcpy(x, heading.angle, sizeof heading.angle);
+    face(&now->step, &heading);
     for (Count k = 0; k < now->hole.end; k++)
         if (!check_finite(Q_STATION_RATE, 0, piece(&now->hole, k)->rate, problem)) return FAILED;
     find_places(now, &p->scaled, now->xi);
     if (p->scaled.points) start_noting(now);
-    if (restart(p, inputs, x, x[ANGLE], problem) != DONE) {
+    if (restart(p, inputs, x, heading.angle, problem) != DONE) {
         wrong(problem, NO_START, Q_PARAMETERS, 0, NAN, NAN);
         return FAILED;
     }

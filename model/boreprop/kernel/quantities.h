@@ -8,7 +8,7 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "b854414c8b563326" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "2660e8bdb0e61a4c" /* of this file, but for this line, and of problems.h */
 #define MOST_DRILLED 100000.0 /* m in a communication step */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: forces between closer ones are rounding errors */
 #define POINTS_ALONG_BHA 36 /* at which its distance from the hole is looked at */
@@ -16,7 +16,7 @@
 
 enum { MAX_STABILIZERS = 6, MAX_SECTIONS = 24, MAX_POINTS = 128 };
 enum { MAX_SENSORS = 8 };
-enum { PARAMETER_COUNT = 18, INPUT_COUNT = 7, OUTPUT_COUNT = 22 };
+enum { PARAMETER_COUNT = 18, INPUT_COUNT = 10, OUTPUT_COUNT = 34 };
 
 /* How a drilling system is made up, which says how many values each quantity has. */
 typedef struct {
@@ -25,6 +25,7 @@ typedef struct {
     int points;      /* number of points at which the body between the stabilizers may touch the wall */
     int layered;     /* whether rock comes in layers by true vertical depth */
     int sensors;     /* their number */
+    int space;       /* whether the hole may leave its vertical plane */
 } Structure;
 
 /* The parameters, in SI units. */
@@ -60,10 +61,13 @@ typedef struct {
     double angular_steering_resistance; /* angular over axial drilling resistance */
     double bit_tilt_limit; /* rad: tilt at which the bit gauge meets the wall */
     double weight_on_bit; /* N: all of the weight on bit, which presses the BHA along its axis; 0: the active weight */
+    double bit_walk_angle; /* rad: walk angle: from the lateral penetration of the bit to the lateral force, positive from the high side to the right looking down the hole */
+    double rss_toolface; /* rad: side to which the pads push, looking down the hole: 0 up or north, π/2 to the right */
+    double toolface_reference; /* from where the toolface counts: 0 from the high side, 1 from north, 2 from the frame of the bit */
 } Inputs;
 
 /* How many values a quantity has. */
-typedef enum { ONE, EACH_STABILIZER, EACH_NON_IDEAL, IF_UNIFORM, EACH_SECTION, IF_STEPPED, IF_AXIAL, EACH_POINT, IF_POINTS, IF_LAYERED, EACH_SENSOR } Size;
+typedef enum { ONE, EACH_STABILIZER, EACH_NON_IDEAL, IF_UNIFORM, EACH_SECTION, IF_STEPPED, IF_AXIAL, EACH_POINT, IF_POINTS, IF_LAYERED, EACH_SENSOR, IF_SPACE, EACH_NON_IDEAL_IN_SPACE } Size;
 
 /* A parameter or input, and its range: above < value, at_least <= value <= at_most. */
 typedef struct {
@@ -95,7 +99,7 @@ static const Quantity PARAMETER_TABLE[PARAMETER_COUNT] = {
     {Q_RELATIVE_TOLERANCE, ONE, offsetof(System, relative_tolerance), 0, -INFINITY, 1e-12, 0.01},
 };
 
-typedef enum { IN_RSS_FORCE, IN_ACTIVE_WEIGHT_ON_BIT, IN_RATE_OF_PENETRATION, IN_LATERAL_STEERING_RESISTANCE, IN_ANGULAR_STEERING_RESISTANCE, IN_BIT_TILT_LIMIT, IN_WEIGHT_ON_BIT } Input;
+typedef enum { IN_RSS_FORCE, IN_ACTIVE_WEIGHT_ON_BIT, IN_RATE_OF_PENETRATION, IN_LATERAL_STEERING_RESISTANCE, IN_ANGULAR_STEERING_RESISTANCE, IN_BIT_TILT_LIMIT, IN_WEIGHT_ON_BIT, IN_BIT_WALK_ANGLE, IN_RSS_TOOLFACE, IN_TOOLFACE_REFERENCE } Input;
 static const Quantity INPUT_TABLE[INPUT_COUNT] = {
     {Q_RSS_FORCE, ONE, 0, 0, -INFINITY, -INFINITY, INFINITY},
     {Q_ACTIVE_WEIGHT_ON_BIT, ONE, 0, 0, 0.0, -INFINITY, INFINITY},
@@ -104,6 +108,9 @@ static const Quantity INPUT_TABLE[INPUT_COUNT] = {
     {Q_ANGULAR_STEERING_RESISTANCE, ONE, 0, 0, 0.0, -INFINITY, INFINITY},
     {Q_BIT_TILT_LIMIT, ONE, 0, 0, 0.0, -INFINITY, 1.5707963267948966},
     {Q_WEIGHT_ON_BIT, IF_AXIAL, 0, 0, -INFINITY, 0.0, INFINITY},
+    {Q_BIT_WALK_ANGLE, IF_SPACE, 0, 0, -INFINITY, -1.5533430342749532, 1.5533430342749532},
+    {Q_RSS_TOOLFACE, IF_SPACE, 0, 0, -INFINITY, -INFINITY, INFINITY},
+    {Q_TOOLFACE_REFERENCE, IF_SPACE, 0, 1, -INFINITY, 0.0, 2.0},
 };
 
 /* The outputs, in their order. */
@@ -123,6 +130,18 @@ typedef enum {
     OUT_BODY_CONTACT_FORCE, /* N: largest force of the wall on the body between the stabilizers, positive from the lower wall */
     OUT_BODY_CONTACT_POSITION, /* m: where that force acts, from the bit; 0 if the body touches no wall */
     OUT_WALL_DISTANCE, /* m: least distance of the body from the wall */
+    OUT_BIT_AZIMUTH, /* rad: azimuth of the bit axis, from north over east */
+    OUT_BOREHOLE_AZIMUTH, /* rad: azimuth of the borehole at the bit, from north over east */
+    OUT_BIT_TILT_HIGH, /* rad: part of the bit tilt to the high side, in a nearly vertical hole to north */
+    OUT_BIT_TILT_RIGHT, /* rad: part of the bit tilt to the right of that, looking down the hole */
+    OUT_BIT_LATERAL_FORCE_HIGH, /* N: part of the lateral force on the bit to the high side, in a nearly vertical hole to north */
+    OUT_BIT_LATERAL_FORCE_RIGHT, /* N: part of the lateral force on the bit to the right of that, looking down the hole */
+    OUT_STABILIZER_FORCE_HIGH, /* N: part of the force of the wall on the stabilizer to the high side, in a nearly vertical hole to north */
+    OUT_STABILIZER_FORCE_RIGHT, /* N: part of the force of the wall on the stabilizer to the right of that, looking down the hole */
+    OUT_STABILIZER_DEFLECTION_HIGH, /* m: part of the offset of the BHA from the borehole axis to the high side, in a nearly vertical hole to north */
+    OUT_STABILIZER_DEFLECTION_RIGHT, /* m: part of the offset of the BHA from the borehole axis to the right of that, looking down the hole */
+    OUT_NORTH, /* m: position of the bit north of the start of the run */
+    OUT_EAST, /* m: position of the bit east of the start of the run */
     OUT_SENSOR_INCLINATION, /* rad: inclination of the BHA at the sensor; with an interval its last reading, with bias and noise */
     OUT_SENSOR_BENDING_MOMENT, /* N.m: bending moment of the BHA at the sensor, positive as in a hole that builds; at the bit the moment on the bit */
     OUT_SENSOR_CLEARANCE, /* m: distance of the body at the sensor from the wall; negative beyond it */
@@ -147,6 +166,18 @@ static const Size OUTPUT_SIZE[OUTPUT_COUNT] = {
     IF_POINTS, /* body_contact_force */
     IF_POINTS, /* body_contact_position */
     IF_POINTS, /* wall_distance */
+    IF_SPACE, /* bit_azimuth */
+    IF_SPACE, /* borehole_azimuth */
+    IF_SPACE, /* bit_tilt_high */
+    IF_SPACE, /* bit_tilt_right */
+    IF_SPACE, /* bit_lateral_force_high */
+    IF_SPACE, /* bit_lateral_force_right */
+    EACH_NON_IDEAL_IN_SPACE, /* stabilizer_force_high */
+    EACH_NON_IDEAL_IN_SPACE, /* stabilizer_force_right */
+    EACH_NON_IDEAL_IN_SPACE, /* stabilizer_deflection_high */
+    EACH_NON_IDEAL_IN_SPACE, /* stabilizer_deflection_right */
+    IF_SPACE, /* north */
+    IF_SPACE, /* east */
     EACH_SENSOR, /* sensor_inclination */
     EACH_SENSOR, /* sensor_bending_moment */
     EACH_SENSOR, /* sensor_clearance */
@@ -171,6 +202,18 @@ static const Name OUTPUT_NAME[OUTPUT_COUNT] = {
     Q_BODY_CONTACT_FORCE,
     Q_BODY_CONTACT_POSITION,
     Q_WALL_DISTANCE,
+    Q_BIT_AZIMUTH,
+    Q_BOREHOLE_AZIMUTH,
+    Q_BIT_TILT_HIGH,
+    Q_BIT_TILT_RIGHT,
+    Q_BIT_LATERAL_FORCE_HIGH,
+    Q_BIT_LATERAL_FORCE_RIGHT,
+    Q_STABILIZER_FORCE_HIGH,
+    Q_STABILIZER_FORCE_RIGHT,
+    Q_STABILIZER_DEFLECTION_HIGH,
+    Q_STABILIZER_DEFLECTION_RIGHT,
+    Q_NORTH,
+    Q_EAST,
     Q_SENSOR_INCLINATION,
     Q_SENSOR_BENDING_MOMENT,
     Q_SENSOR_CLEARANCE,
@@ -179,8 +222,8 @@ static const Name OUTPUT_NAME[OUTPUT_COUNT] = {
     Q_ETA_PI,
     Q_FORMATION,
 };
-static const int OUTPUT_IS_WHOLE[OUTPUT_COUNT] = { 0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1 };
-enum { MOST_PARAMETERS = 392, MOST_OUTPUTS = 60 }; /* values, of the largest assembly */
+static const int OUTPUT_IS_WHOLE[OUTPUT_COUNT] = { 0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1 };
+enum { MOST_PARAMETERS = 392, MOST_OUTPUTS = 88 }; /* values, of the largest assembly */
 
 /* How the integrator takes its steps: core/options.py says what each is. */
 typedef struct {

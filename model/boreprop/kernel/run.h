@@ -2,7 +2,9 @@
 #ifndef BOREPROP_RUN_H
 #define BOREPROP_RUN_H
 
+#ifndef SPACE
 #include "sag.h"
+#endif
 #include "state.h"
 
 typedef struct {

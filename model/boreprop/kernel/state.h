@@ -90,13 +90,19 @@ static inline void pass_snapshot(Tape *tape, const Scaled *scaled, Snapshot *sna
     pass(tape, 1, &now->inputs.epsilon);
     pass(tape, 1, &now->inputs.psi_star);
     pass(tape, 1, &now->inputs.W);
+#ifdef SPACE
+    pass(tape, 1, &now->inputs.toolface);
+    pass(tape, 1, &now->inputs.reference);
+    pass(tape, 1, &now->inputs.walk);
+    for (int axis = NORTH; axis <= DOWN; axis++) pass(tape, 3, step->frame.row[axis]);
+#endif
     pass(tape, 1, &now->cosine);
     pass(tape, 1, &now->inputs_xi);
     now->layer = (int)pass_whole(tape, now->layer, 0, MOST_PIECES);
     pass(tape, 1, &now->stay);
     pass(tape, 1, &now->cleared);
     pass(tape, n - 1, now->y_star);
-    pass(tape, 2, now->path);
+    pass(tape, AXES, now->path);
     pass(tape, DIRECTIONS, now->origin);
     pass(tape, 1, &step->xi);
     pass(tape, 1, &step->h);
@@ -152,6 +158,22 @@ static inline void drilling_save(const Drilling *d, double *state) {
         pass_kink(&tape, kink(&now->kinks, k));
 }
 
+#define UPRIGHT 1e-9 /* what a frame may lack to be one, far above rounding */
+
+/* Whether the frame of a step is one. */
+static inline int is_turned(const Step *step) {
+#ifdef SPACE
+    Frame straight = step->frame;
+    straighten(&straight);
+    for (int axis = NORTH; axis <= DOWN; axis++)
+        for (int k = 0; k < 3; k++)
+            if (!(fabs(straight.row[axis][k] - step->frame.row[axis][k]) <= UPRIGHT)) return 0;
+#else
+    (void)step;
+#endif
+    return 1;
+}
+
 /* Whether the numbers other than pieces and kinks agree with each other. */
 static inline int is_consistent(const Drilling *d, const Snapshot *snapshot) {
     const State *now = &snapshot->now;
@@ -163,7 +185,7 @@ static inline int is_consistent(const Drilling *d, const Snapshot *snapshot) {
     if (d->system.structure.axial ? !(now->inputs.W > 0) || !(fabs(now->cosine) <= 1)
                                   : now->inputs.W != 0 || now->cosine != 0)
         return 0;
-    if (now->layer > d->ground.layers || now->cleared > xi) return 0;
+    if (now->layer > d->ground.layers || now->cleared > xi || !is_turned(step)) return 0;
     for (int i = 0; i < d->system.structure.n - 1; i++)
         if (!(now->y_star[i] >= 0)) return 0;
     if (step->xi > xi || xi > step->end || !(step->h > 0) || !(step->next_h > 0)) return 0;

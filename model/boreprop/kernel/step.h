@@ -2,15 +2,9 @@
 #ifndef BOREPROP_STEP_H
 #define BOREPROP_STEP_H
 
+#include "frame.h"
 #include "radau.h"
 #include "system.h"
-
-/* How many numbers evolve: first the angles of the bit, then as many lateral coordinates of the hole; in the plane these
-   are θ and Y. The integrator is compiled for one such count. */
-#ifndef COMPONENTS
-#define COMPONENTS 2
-#endif
-enum { DIRECTIONS = COMPONENTS / 2, ANGLE = 0, LATERAL = DIRECTIONS }; /* ANGLE, LATERAL: the first of either kind */
 
 enum { NONE = -1 }; /* no event */
 
@@ -19,7 +13,20 @@ typedef struct {
     double xi, h, x[COMPONENTS][S + 1], end;
     int event, side; /* the part whose bound is met at the end, and on which side */
     double next_h;   /* length planned for the next step */
+#ifdef SPACE
+    Frame frame; /* at xi */
+#endif
 } Step;
+
+#ifdef SPACE
+/* Whatever the law in space says at one place. */
+typedef struct {
+    double rate[COMPONENTS], by[COMPONENTS][COMPONENTS]; /* θ⃗' and Θ⃗, and their derivatives by the state */
+    double M[DIRECTIONS], F_0[DIRECTIONS], psi[DIRECTIONS], G[DIRECTIONS], F_rss[DIRECTIONS], eta_pi;
+    double q[MAX_STABILIZERS][DIRECTIONS]; /* of each stabilizer; the others by their number among those in contact */
+    double v[MAX_STABILIZERS][DIRECTIONS], F[MAX_STABILIZERS][DIRECTIONS];
+} Reply;
+#endif
 
 /* A step as the collocation gives it, before events cut it, with values at its points. */
 typedef struct {
@@ -29,6 +36,9 @@ typedef struct {
     double sines[POINTS],
         ahead[POINTS]; /* the sine that goes with the weight; distance from where the inputs were taken over */
     double error;      /* estimated, over the tolerance */
+#ifdef SPACE
+    Reply at[POINTS];
+#endif
 } Trial;
 
 static inline double polynomial(const double c[S + 1], double t) {
@@ -39,9 +49,21 @@ static inline double polynomial_slope(const double c[S + 1], double t) {
     return c[1] + t * (2 * c[2] + t * (3 * c[3] + t * (4 * c[4] + t * 5 * c[5])));
 }
 
+/* A step that is to begin at `xi`, where the last one has led, and to be `h` long. */
+static inline Step next_step(const Step *last, double xi, double h) {
+    Step step = {.xi = xi, .h = h, .end = xi + h, .event = NONE, .next_h = INFINITY};
+#ifdef SPACE
+    step.frame = turned_along(&last->frame, last->x, (xi - last->xi) / last->h);
+#else
+    (void)last;
+#endif
+    return step;
+}
+
 /* A step of length zero at `xi`, so that a run can start or restart there. */
-static inline Step standstill(double xi, const double x[COMPONENTS]) {
-    Step step = {xi, 1.0, {{0}}, xi, NONE, 0, INFINITY};
+static inline Step standstill(const Step *last, double xi, const double x[COMPONENTS]) {
+    Step step = next_step(last, xi, 1.0);
+    step.end = xi;
     for (int c = 0; c < COMPONENTS; c++) step.x[c][0] = x[c];
     return step;
 }

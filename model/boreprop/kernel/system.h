@@ -3,6 +3,7 @@
 #define BOREPROP_SYSTEM_H
 
 #include "checks.h"
+#include "dimensions.h"
 #include "linear.h"
 #include "quantities.h"
 
@@ -53,6 +54,8 @@ static inline int value_count(Size size, Structure structure) {
         case IF_AXIAL: return structure.axial;
         case EACH_POINT: return structure.points;
         case IF_POINTS: return structure.points > 0;
+        case IF_SPACE: return structure.space;
+        case EACH_NON_IDEAL_IN_SPACE: return structure.space ? structure.n - 1 : 0;
         case IF_LAYERED: return structure.layered;
         case EACH_SENSOR: return structure.sensors;
     }
@@ -62,7 +65,7 @@ static inline int value_count(Size size, Structure structure) {
 /* Whether the values of a quantity are numbered. */
 static inline int is_list(Size size) {
     return size == EACH_STABILIZER || size == EACH_NON_IDEAL || size == EACH_SECTION || size == EACH_POINT ||
-           size == EACH_SENSOR;
+           size == EACH_SENSOR || size == EACH_NON_IDEAL_IN_SPACE;
 }
 
 /* Whether a structure is one that there is room for. */
@@ -170,10 +173,16 @@ static inline double force_scale(const System *system) {
     return 3.0 * system->flexural_stiffness / (length_scale(system) * length_scale(system));
 }
 
+/* From which side the toolface counts. */
+enum { FROM_HIGH_SIDE, FROM_NORTH, FROM_FRAME };
+
 /* The inputs where they were taken over: F_RSS and ηΠ, their changes per ξ, the ε = χ/η and ψ* of bit and rock, and the
    weight on the bit W, which is zero if the axial load does not count. */
 typedef struct {
     double F_rss, F_rss_slope, eta_pi, eta_pi_slope, epsilon, psi_star, W;
+#ifdef SPACE
+    double toolface, reference, walk; /* γ and where it counts from; ϖ */
+#endif
 } ScaledInputs;
 
 /* The inputs a length `ahead` of where they were taken over. */
@@ -181,6 +190,17 @@ static inline ScaledInputs inputs_ahead(ScaledInputs inputs, double ahead) {
     inputs.F_rss += inputs.F_rss_slope * ahead;
     inputs.eta_pi += inputs.eta_pi_slope * ahead;
     return inputs;
+}
+
+/* Whether the pads aim at another side, or the bit walks otherwise. */
+static inline int aims_anew(const ScaledInputs *inputs, const ScaledInputs *before) {
+#ifdef SPACE
+    return inputs->toolface != before->toolface || inputs->reference != before->reference ||
+           inputs->walk != before->walk;
+#else
+    (void)inputs, (void)before;
+    return 0;
+#endif
 }
 
 /* Whether inputs change along the way. */

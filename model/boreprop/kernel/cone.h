@@ -1,0 +1,304 @@
+/* Contact in space: a stabilizer i whose offset δ_i from the axis of the hole lies within a disc |δ_i| <= y*_i, and which
+   the wall pushes towards the axis. F minimises ½ Fᵀ(K⁻¹ ⊗ I)F + q̃·F + Σ y*_i |F_i|, so it is unique.
+
+   With k_i = K⁻¹_ii and v_i = δ_i − k_i F_i, the offset is the point of the disc that is nearest to v_i:
+
+       in contact  δ_i = y*_i v_i/|v_i| ,   F_i = −(v_i − δ_i)/k_i ,   |v_i| >= y*_i ;        free  δ_i = v_i ,   F_i = 0
+
+   and v_i = q̃_i + Σ_{j≠i} K⁻¹_ij F_j . Within a regime this is smooth, and solved by Newton's method. */
+#ifndef BOREPROP_CONE_H
+#define BOREPROP_CONE_H
+
+#include "modes.h"
+
+enum { TOUCHES = -1 };                        /* the contact beyond the bound of a free offset, as `change` has it */
+enum { MOST_TOUCHING = 2 * MAX_STABILIZERS }; /* numbers: two for each stabilizer in contact */
+
+/* The direction of a vector whose length is known to be at least `least` while its regime holds: a function w of the
+   square of the length, which is one over the length from REACHED of that on, and a series in the square below, so that it
+   stays smooth where a trial step goes too far. Gives w, and twice its derivative. */
+#define REACHED 0.7
+static inline void direction_factors(double square, double least, double *w, double *bend) {
+    double inner = REACHED * least, from = inner * inner;
+    if (square >= from) {
+        *w = 1 / sqrt(square), *bend = -*w / square;
+        return;
+    }
+    double t = 1 - square / from; /* (1 − t)^(−1/2) about t = 0 */
+    *w = (1 + t * (1.0 / 2 + t * (3.0 / 8 + t * (5.0 / 16 + t * (35.0 / 128))))) / inner;
+    *bend = -2 * (1.0 / 2 + t * (3.0 / 4 + t * (15.0 / 16 + t * (35.0 / 32)))) / (inner * from);
+}
+
+/* What the wall takes of v: v less the nearest point of the disc of radius y, and its derivative by v, row by row. */
+static inline void beyond_disc(const double v[2], double y, double beyond[2], double slope[2][2]) {
+    double w = 0.0, bend = 0.0;
+    if (y > 0) direction_factors(v[0] * v[0] + v[1] * v[1], y, &w, &bend);
+    for (int d = 0; d < 2; d++) {
+        beyond[d] = v[d] - y * w * v[d];
+        for (int c = 0; c < 2; c++) slope[d][c] = (d == c) * (1 - y * w) - y * bend * v[d] * v[c];
+    }
+}
+
+/* Solve a system of up to MOST_TOUCHING equations, row by row in `matrix`, for several right sides, which lie behind it in
+   each row and become the solutions. Returns 0 if it is singular. */
+static inline int solve_touching(int size, int sides, double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1]) {
+    for (int column = 0; column < size; column++) {
+        int pivot = column;
+        for (int i = column + 1; i < size; i++)
+            if (fabs(matrix[i][column]) > fabs(matrix[pivot][column])) pivot = i;
+        if (!(fabs(matrix[pivot][column]) > 0)) return 0;
+        double divisor = matrix[pivot][column];
+        for (int j = column; j < size + sides; j++) {
+            double value = matrix[pivot][j];
+            matrix[pivot][j] = matrix[column][j];
+            matrix[column][j] = value / divisor;
+        }
+        for (int i = 0; i < size; i++) {
+            double factor = matrix[i][column];
+            if (i == column || factor == 0.0) continue;
+            for (int j = column; j < size + sides; j++) matrix[i][j] -= factor * matrix[column][j];
+        }
+    }
+    return 1;
+}
+
+/* The supports of a contact problem: which of the non-ideal stabilizers touch, C, and what belongs to them. */
+typedef struct {
+    int touching, C[MAX_STABILIZERS];
+    double k[MAX_STABILIZERS], y[MAX_STABILIZERS];  /* by number in C */
+    double K_inv[MAX_STABILIZERS][MAX_STABILIZERS]; /* of those in C */
+} Touching;
+
+static inline Touching touching_of(const Modes *modes, Contact contact) {
+    Touching touching = {0};
+    for (int i = 0; i < modes->beam.n - 1; i++)
+        if (contact.of[i]) touching.C[touching.touching++] = i;
+    for (int a = 0; a < touching.touching; a++) {
+        touching.y[a] = modes->y_star[touching.C[a]];
+        touching.k[a] = compliance(&modes->beam, touching.C[a], touching.C[a]);
+        for (int b = 0; b < touching.touching; b++)
+            touching.K_inv[a][b] = compliance(&modes->beam, touching.C[a], touching.C[b]);
+    }
+    return touching;
+}
+
+#define SAME_OFFSET 1e-14 /* relative: so near to the solution no correction brings v nearer */
+enum { MOST_CORRECTIONS = 15 };
+/* Over the largest v: after a change as small as this the next would be below rounding, and one that is NEARLY as small and
+   does not shrink is rounding itself, which stabilizers close together enlarge. */
+#define NEXT_IS_NOTHING 1e-8
+#define NEARLY 1e-3
+
+/* The v of those that touch under their q̃, from a guess in `v`; returns 0 if none is found. Where `answer` is given, it
+   becomes dF/dq̃, row by row, over the directions of each of those that touch. */
+static inline int solve_contacts(
+    const Touching *of, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2], double F[MAX_STABILIZERS][2],
+    double answer[MOST_TOUCHING][MOST_TOUCHING]
+) {
+    int m = of->touching, size = 2 * m, found = 0;
+    double before = INFINITY;
+    double beyond[MAX_STABILIZERS][2], slope[MAX_STABILIZERS][2][2];
+    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1];
+    if (m == 1) v[0][0] = q[0][0], v[0][1] = q[0][1];
+    for (int correction = 0; !found; correction++) {
+        double change = 0.0, scale = 0.0;
+        for (int a = 0; a < m; a++) beyond_disc(v[a], of->y[a], beyond[a], slope[a]);
+        if (m <= 1) break;
+        if (correction == MOST_CORRECTIONS) return 0;
+        for (int a = 0; a < m; a++)
+            for (int d = 0; d < 2; d++) {
+                double *row = matrix[2 * a + d];
+                row[size] = q[a][d] - v[a][d];
+                for (int b = 0; b < m; b++) {
+                    double share = a == b ? 0.0 : of->K_inv[a][b] / of->k[b];
+                    row[size] -= share * beyond[b][d];
+                    for (int c = 0; c < 2; c++) row[2 * b + c] = a == b ? d == c : share * slope[b][d][c];
+                }
+            }
+        if (!solve_touching(size, 1, matrix)) return 0;
+        for (int a = 0; a < m; a++)
+            for (int d = 0; d < 2; d++) {
+                double by = matrix[2 * a + d][size];
+                v[a][d] += by;
+                change = larger(change, fabs(by)), scale = larger(scale, larger(fabs(v[a][d]), of->y[a]));
+            }
+        if (!isfinite(change)) return 0;
+        found = change <= NEXT_IS_NOTHING * scale || (change <= NEARLY * scale && change > before / 2);
+        before = change;
+        if (found)
+            for (int a = 0; a < m; a++) beyond_disc(v[a], of->y[a], beyond[a], slope[a]);
+    }
+    for (int a = 0; a < m; a++)
+        for (int d = 0; d < 2; d++) F[a][d] = -beyond[a][d] / of->k[a];
+    if (!answer) return 1;
+    for (int a = 0; a < m; a++)
+        for (int d = 0; d < 2; d++) {
+            double *row = matrix[2 * a + d];
+            for (int b = 0; b < m; b++) {
+                double share = a == b ? 0.0 : of->K_inv[a][b] / of->k[b];
+                for (int c = 0; c < 2; c++) row[2 * b + c] = a == b ? d == c : share * slope[b][d][c];
+            }
+            for (int j = 0; j < size; j++) row[size + j] = j == 2 * a + d;
+        }
+    if (m > 1 && !solve_touching(size, size, matrix)) return 0;
+    for (int a = 0; a < m; a++)
+        for (int d = 0; d < 2; d++)
+            for (int j = 0; j < size; j++) {
+                double by = slope[a][d][0] * matrix[2 * a][size + j] + slope[a][d][1] * matrix[2 * a + 1][size + j];
+                answer[2 * a + d][j] = -by / of->k[a];
+            }
+    return 1;
+}
+
+enum { MOST_ROUNDS = 60, SMOOTHER = 14, MOST_HALVINGS = 40 };
+#define SHARPER 0.1 /* of μ, from step to step: after SMOOTHER of them it is rounding */
+
+/* Whether v lies beyond the disc, so that the stabilizer touches; without clearance it always does. */
+static inline int is_beyond(const double v[2], double y) { return y == 0.0 || hypot(v[0], v[1]) > y; }
+
+/* How far v is from a solution over all stabilizers, at most; gives where each ought to be for the others. */
+static inline double off_balance(
+    const Modes *modes, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2], double wanted[MAX_STABILIZERS][2]
+) {
+    int count = modes->beam.n - 1;
+    double off = 0.0;
+    for (int i = 0; i < count; i++) memcpy(wanted[i], q[i], sizeof wanted[i]);
+    for (int j = 0; j < count; j++) {
+        double beyond[2], slope[2][2];
+        if (!is_beyond(v[j], modes->y_star[j])) continue;
+        beyond_disc(v[j], modes->y_star[j], beyond, slope);
+        for (int i = 0; i < count; i++)
+            for (int d = 0; d < 2 && i != j; d++)
+                wanted[i][d] -= compliance(&modes->beam, i, j) / compliance(&modes->beam, j, j) * beyond[d];
+    }
+    for (int i = 0; i < count; i++)
+        for (int d = 0; d < 2; d++) off = larger(off, fabs(wanted[i][d] - v[i][d]));
+    return off;
+}
+
+/* One try to bring v to a solution: the forces of those that touch as it is, and where all stabilizers are under them.
+   Returns how far it then is from one; infinity if there are no such forces. */
+static inline double try_contacts(
+    const Modes *modes, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2], double tried[MAX_STABILIZERS][2]
+) {
+    Contact now = {{0}, 0, {0}};
+    double own[MAX_STABILIZERS][2], q_C[MAX_STABILIZERS][2], F[MAX_STABILIZERS][2], wanted[MAX_STABILIZERS][2];
+    int count = modes->beam.n - 1;
+    for (int i = 0; i < count; i++) now.of[i] = is_beyond(v[i], modes->y_star[i]) ? TOUCHES : 0;
+    Touching of = touching_of(modes, now);
+    for (int a = 0; a < of.touching; a++)
+        memcpy(own[a], v[of.C[a]], sizeof own[a]), memcpy(q_C[a], q[of.C[a]], sizeof q_C[a]);
+    if (!solve_contacts(&of, q_C, own, F, NULL)) return INFINITY;
+    for (int i = 0; i < count; i++) memcpy(tried[i], q[i], sizeof tried[i]);
+    for (int a = 0; a < of.touching; a++)
+        for (int i = 0; i < count; i++)
+            for (int d = 0; d < 2; d++) tried[i][d] += compliance(&modes->beam, i, of.C[a]) * F[a][d];
+    for (int a = 0; a < of.touching; a++) memcpy(tried[of.C[a]], own[a], sizeof own[a]);
+    return off_balance(modes, q, tried, wanted);
+}
+
+/* The minimum that F is, with |F_i| made smooth: √(|F_i|² + μ²), in forces times √k_i. */
+typedef struct {
+    int count;
+    double C[MAX_STABILIZERS][MAX_STABILIZERS], root[MAX_STABILIZERS]; /* K⁻¹_ij/√(k_i k_j), √k_i */
+    double q[MAX_STABILIZERS][2], y[MAX_STABILIZERS], mu;
+} Smooth;
+
+static inline double smooth_value(const Smooth *smooth, double u[MAX_STABILIZERS][2]) {
+    double value = 0.0;
+    for (int i = 0; i < smooth->count; i++) {
+        for (int d = 0; d < 2; d++) {
+            double sum = 0.0;
+            for (int j = 0; j < smooth->count; j++) sum += smooth->C[i][j] * u[j][d];
+            value += u[i][d] * (sum / 2 + smooth->q[i][d]);
+        }
+        value += smooth->y[i] * sqrt(u[i][0] * u[i][0] + u[i][1] * u[i][1] + smooth->mu * smooth->mu);
+    }
+    return value;
+}
+
+/* One step of Newton's method towards the minimum, shortened until it goes down; returns 0 where it does not. */
+static inline int go_down(const Smooth *smooth, double u[MAX_STABILIZERS][2]) {
+    int count = smooth->count, size = 2 * count;
+    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1], value = smooth_value(smooth, u), next[MAX_STABILIZERS][2];
+    for (int i = 0; i < count; i++) {
+        double length = sqrt(u[i][0] * u[i][0] + u[i][1] * u[i][1] + smooth->mu * smooth->mu),
+               w = smooth->y[i] / length;
+        for (int d = 0; d < 2; d++) {
+            double *row = matrix[2 * i + d];
+            row[size] = -smooth->q[i][d] - w * u[i][d];
+            for (int j = 0; j < count; j++) {
+                row[size] -= smooth->C[i][j] * u[j][d];
+                for (int c = 0; c < 2; c++) row[2 * j + c] = d == c ? smooth->C[i][j] : 0.0;
+            }
+            for (int c = 0; c < 2; c++)
+                row[2 * i + c] += (d == c ? w : 0.0) - w * u[i][d] * u[i][c] / (length * length);
+        }
+    }
+    if (!solve_touching(size, 1, matrix)) return 0;
+    double share = 1.0;
+    for (int halving = 0; halving < MOST_HALVINGS; halving++, share /= 2) {
+        for (int i = 0; i < count; i++)
+            for (int d = 0; d < 2; d++) next[i][d] = u[i][d] + share * matrix[2 * i + d][size];
+        if (smooth_value(smooth, next) < value) {
+            memcpy(u, next, sizeof next);
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* v near the solution, whatever the start: the minimum is followed while μ goes to zero. It is convex, so that Newton's
+   method ends at it. */
+static inline void come_near(const Modes *modes, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2]) {
+    Smooth smooth = {.count = modes->beam.n - 1};
+    double u[MAX_STABILIZERS][2] = {{0}};
+    for (int i = 0; i < smooth.count; i++) smooth.root[i] = sqrt(compliance(&modes->beam, i, i));
+    for (int i = 0; i < smooth.count; i++) {
+        smooth.y[i] = modes->y_star[i] / smooth.root[i];
+        for (int j = 0; j < smooth.count; j++)
+            smooth.C[i][j] = compliance(&modes->beam, i, j) / (smooth.root[i] * smooth.root[j]);
+        for (int d = 0; d < 2; d++) {
+            smooth.q[i][d] = q[i][d] / smooth.root[i];
+            smooth.mu = larger(smooth.mu, fabs(smooth.q[i][d]));
+        }
+    }
+    for (int k = 0; k < SMOOTHER; k++, smooth.mu *= SHARPER)
+        for (int step = 0; step < MOST_CORRECTIONS && go_down(&smooth, u); step++) continue;
+    for (int i = 0; i < smooth.count; i++)
+        for (int d = 0; d < 2; d++) {
+            v[i][d] = q[i][d] - smooth.root[i] * u[i][d];
+            for (int j = 0; j < smooth.count; j++) v[i][d] += compliance(&modes->beam, i, j) * u[j][d] / smooth.root[j];
+        }
+}
+
+/* The contacts that hold under q̃, with their v: Newton's method with the contacts as they are in the guess `v`, again while
+   that brings it nearer; else from near the solution. */
+static inline Contact settle_discs(
+    const Modes *modes, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2], Contact contact
+) {
+    int count = modes->beam.n - 1, came_near = 0;
+    double wanted[MAX_STABILIZERS][2], tried[MAX_STABILIZERS][2], best[MAX_STABILIZERS][2], scale = 0.0, least;
+    for (int i = 0; i < count; i++)
+        scale = larger(scale, larger(modes->y_star[i], larger(fabs(q[i][0]), fabs(q[i][1]))));
+    double off = off_balance(modes, q, v, wanted);
+    memcpy(best, v, sizeof best), least = off;
+    for (int round = 0; round < MOST_ROUNDS && least > SAME_OFFSET * scale; round++) {
+        double next = try_contacts(modes, q, v, tried);
+        int nearer = next < off / 2;
+        if (nearer) off = next, memcpy(v, tried, sizeof tried);
+        else if (next < off) memcpy(v, tried, sizeof tried), off = next;
+        if (off < least) least = off, memcpy(best, v, sizeof best);
+        if (nearer) continue;
+        if (came_near || least <= ROUNDING * scale) break;
+        came_near = 1;
+        come_near(modes, q, v);
+        off = off_balance(modes, q, v, wanted);
+        if (off < least) least = off, memcpy(best, v, sizeof best);
+    }
+    memcpy(v, best, sizeof best);
+    for (int i = 0; i < count; i++) contact.of[i] = is_beyond(v[i], modes->y_star[i]) ? TOUCHES : 0;
+    return contact;
+}
+
+#endif

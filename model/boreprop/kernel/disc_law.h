@@ -1,0 +1,227 @@
+/* The law in space: the planar one in two directions across the bit's axis, which are those of its frame,
+
+       εηΠ θ⃗' = M⃗ ,   Y⃗' = Θ⃗ = θ⃗ − ψ⃗
+
+   with contacts and a bit tilt that are bounded by discs, the weight and the pads by the frame. Within a regime (which
+   stabilizers touch, tilt saturated or not) the right-hand side is smooth, and a step of Radau collocation is solved by
+   Newton's method. */
+#ifndef BOREPROP_DISC_LAW_H
+#define BOREPROP_DISC_LAW_H
+
+#include "cone.h"
+#include "sides.h"
+#include "step.h"
+
+/* A row of the beam without contacts on the state, in either direction:
+   theta θ + Y Y + Σ_i delayed[i] Y(ξ−s_i) + g G + rss F_RSS + end times the high side. */
+typedef struct {
+    double theta, Y, delayed[MAX_STABILIZERS], g, rss, end;
+} Linear;
+
+static inline Linear linear_of(const Row *row, const Places *places) {
+    Linear linear = {.g = row->g, .rss = row->rss, .end = row->constant};
+    for (int i = 0; i < places->count; i++) {
+        linear.theta -= row->e[i] * places->s[i], linear.Y += row->e[i];
+        linear.delayed[i] = -row->e[i];
+    }
+    return linear;
+}
+
+/* While a regime holds, a value lies between `lower` and `upper`: of the stabilizer `part`, |v| − y* in contact, where it
+   is k times the force, else |δ|; of the tilt, |F_0|/(ηΠ). */
+typedef struct {
+    int part;
+    double lower, upper;
+} Bound;
+
+#define LONGEST_RAMP 0.1 /* by which share ηΠ changes within a step, at most */
+
+/* The right-hand side in one regime under given inputs, and the bounds within which it holds. */
+typedef struct {
+    int count, n, saturated, axial, stands;
+    const Modes *modes;
+    double s_1, s_n, y_star[MAX_STABILIZERS], walk_cosine, walk_sine;
+    ScaledInputs inputs;
+    double inputs_xi; /* where the inputs are those that it was made under */
+    double longest;   /* step under a changing ηΠ */
+    Touching touching;
+    Linear q[MAX_STABILIZERS], M, F_0; /* without contacts */
+    double relaxation;
+    int bound_count;
+    Bound bounds[MAX_STABILIZERS];
+    double gains[MAX_PLACES];
+} Law;
+
+/* How far the law's values change per change of Y(ξ−s_i), at most, and over which length θ forgets: those of a planar hole
+   in which the same stabilizers touch. */
+static inline void find_gains(Law *law, const Mode *mode, const Places *places) {
+    double eta_pi = law->inputs.eta_pi, rate = 1 / (law->inputs.epsilon * eta_pi);
+    Linear M = linear_of(&mode->M, places), F_0 = linear_of(&mode->F_0, places);
+    law->relaxation = 1 / fabs(rate * M.theta - (law->saturated ? 0.0 : F_0.Y / eta_pi));
+    for (int i = 0; i < law->count; i++) {
+        law->gains[i] = fabs(M.delayed[i] / M.theta) + fabs(F_0.delayed[i]) / eta_pi;
+        for (int k = 0; k < law->n - 1; k++) {
+            Linear delta = linear_of(&mode->delta[k], places), F = linear_of(&mode->F[k], places);
+            double k_i = compliance(&law->modes->beam, k, k);
+            law->gains[i] = larger(law->gains[i], larger(fabs(delta.delayed[i]), k_i * fabs(F.delayed[i])));
+        }
+    }
+    if (!law->axial) law->gains[0] += fabs(M.g / M.theta) + fabs(F_0.g) / eta_pi;
+}
+
+static inline void add_bound(Law *law, int part, double lower, double upper) {
+    Bound bound = {part, lower, upper};
+    law->bounds[law->bound_count++] = bound;
+}
+
+/* Make the law of a regime under inputs taken over at `inputs_xi`. */
+static inline void make_law(
+    Law *law, const Scaled *scaled, const Places *places, Modes *modes, Regime regime, ScaledInputs inputs,
+    double inputs_xi
+) {
+    Contact nothing = {{0}, 0, {0}};
+    const Mode *mode = mode_of(modes, nothing);
+    double growth = fabs(inputs.eta_pi_slope / inputs.eta_pi);
+    int n = scaled->n;
+    law->count = places->count, law->n = n, law->axial = scaled->axial, law->saturated = regime.saturation != 0;
+    law->stands = mode->stands;
+    law->modes = modes, law->inputs = inputs, law->inputs_xi = inputs_xi, law->bound_count = 0;
+    law->s_1 = scaled->s[0], law->s_n = scaled->s[n - 1];
+    law->walk_cosine = cos(inputs.walk), law->walk_sine = sin(inputs.walk);
+    law->longest = growth == 0 ? INFINITY : LONGEST_RAMP / growth;
+    law->M = linear_of(&mode->M, places), law->F_0 = linear_of(&mode->F_0, places);
+    law->touching = touching_of(modes, regime.contact);
+    for (int i = 0; i < n - 1; i++) {
+        law->q[i] = linear_of(&mode->delta[i], places), law->y_star[i] = modes->y_star[i];
+        if (modes->y_star[i] == 0.0) continue;
+        if (regime.contact.of[i]) add_bound(law, i, 0.0, INFINITY);
+        else add_bound(law, i, -INFINITY, modes->y_star[i]);
+    }
+    if (law->saturated) add_bound(law, n - 1, inputs.psi_star, INFINITY);
+    else add_bound(law, n - 1, -INFINITY, inputs.psi_star);
+    find_gains(law, mode_of(modes, regime.contact), places);
+}
+
+/* The bit tilt under F_0, and its derivative: |ψ| <= ψ*, and F_0 − ηΠ R₂(ϖ)ψ in the normal cone of that disc. */
+static inline void tilt_under(
+    const Law *law, double eta_pi, double psi_star, const double F_0[2], double psi[2], double by[2][2]
+) {
+    double cosine = law->walk_cosine, sine = law->walk_sine, factor = 1 / eta_pi, w, bend;
+    if (!law->saturated) {
+        psi[0] = factor * (cosine * F_0[0] + sine * F_0[1]), psi[1] = factor * (cosine * F_0[1] - sine * F_0[0]);
+        by[0][0] = by[1][1] = factor * cosine, by[0][1] = factor * sine, by[1][0] = -factor * sine;
+        return;
+    }
+    direction_factors(F_0[0] * F_0[0] + F_0[1] * F_0[1], eta_pi * psi_star, &w, &bend);
+    double limit = eta_pi * psi_star * sine, s = limit * w;
+    double c = sqrt(larger(1 - s * s, 1e-4)), tangent = s / c;
+    for (int d = 0; d < 2; d++) {
+        double turn = d ? -1.0 : 1.0, n = w * F_0[d], m = w * F_0[!d];
+        psi[d] = psi_star * (c * n + turn * s * m);
+        for (int k = 0; k < 2; k++) {
+            double n_by = (d == k ? w : 0.0) + bend * F_0[d] * F_0[k],
+                   m_by = (d != k ? w : 0.0) + bend * F_0[!d] * F_0[k];
+            double s_by = limit * bend * F_0[k];
+            by[d][k] = psi_star * (c * n_by + turn * s * m_by + (turn * m - tangent * n) * s_by);
+        }
+    }
+}
+
+/* A row of the beam without contacts in one direction, less its terms of the hole behind. */
+static inline double row_here(
+    const Linear *row, const double x[COMPONENTS], int d, const Vector *G, const Vector *F_rss, const Vector *high
+) {
+    return row->theta * x[ANGLE + d] + row->Y * x[LATERAL + d] + row->g * G->value[d] + row->rss * F_rss->value[d] +
+           row->end * high->value[d];
+}
+
+/* Its derivatives by the state. */
+static inline void row_slopes(
+    const Linear *row, int d, const Vector *G, const Vector *F_rss, const Vector *high, double by[COMPONENTS]
+) {
+    for (int c = 0; c < 2; c++) {
+        by[ANGLE + c] = (d == c ? row->theta : 0.0) + row->g * G->by_theta[d][c] + row->rss * F_rss->by_theta[d][c] +
+                        row->end * high->by_theta[d][c];
+        by[LATERAL + c] = (d == c ? row->Y : 0.0) + row->g * G->by_Y[d][c];
+    }
+}
+
+/* What the hole behind adds to each row, q_i, M and F_0, in either direction. */
+typedef struct {
+    double q[MAX_STABILIZERS][2], M[2], F_0[2];
+} Behind;
+
+static inline double delayed_part(const Linear *row, int count, const double *delayed, int stride) {
+    double sum = 0.0;
+    for (int i = 0; i < count; i++) sum += row->delayed[i] * delayed[i * stride];
+    return sum;
+}
+
+/* The law in the state `x`, `ahead` of where its inputs were taken over, with the frame in `view` and Y(ξ−s_1) as given.
+   Contacts are sought from those in `at`; returns 0 if none are found. */
+static inline int law_here(
+    const Law *law, const double x[COMPONENTS], double ahead, const View *view, const Behind *behind,
+    const double first[2], double s_1, int slopes, Reply *at
+) {
+    ScaledInputs inputs = inputs_ahead(law->inputs, ahead);
+    int n = law->n, m = law->touching.touching;
+    double a[2], eta_pi = at->eta_pi = inputs.eta_pi, by_F_0[2][2], answer[MOST_TOUCHING][MOST_TOUCHING];
+    double q_C[MAX_STABILIZERS][2], q_by[MOST_TOUCHING][COMPONENTS], M_by[2][COMPONENTS], F_0_by[2][COMPONENTS];
+    for (int d = 0; d < 2; d++) a[d] = (x[LATERAL + d] - first[d]) / s_1 - x[ANGLE + d];
+    Vector G = weight_across(view->down, a, law->axial, s_1), F_rss = pad_force(&inputs, view);
+    Vector high = {{0.0, 0.0}, {{0}}, {{0}}};
+    if (law->modes->beam.end != 0.0) high = side_of(view->down, -1.0);
+    for (int d = 0; d < 2; d++) {
+        at->G[d] = G.value[d], at->F_rss[d] = F_rss.value[d];
+        at->M[d] = row_here(&law->M, x, d, &G, &F_rss, &high) + behind->M[d];
+        at->F_0[d] = row_here(&law->F_0, x, d, &G, &F_rss, &high) + behind->F_0[d];
+        for (int i = 0; i < n - 1; i++) at->q[i][d] = row_here(&law->q[i], x, d, &G, &F_rss, &high) + behind->q[i][d];
+        for (int k = 0; k < m; k++) q_C[k][d] = at->q[law->touching.C[k]][d];
+    }
+    if (m && !solve_contacts(&law->touching, q_C, at->v, at->F, slopes ? answer : NULL)) return 0;
+    for (int k = 0; k < m; k++)
+        for (int d = 0; d < 2; d++) {
+            at->M[d] += law->modes->beam.M_F[law->touching.C[k]] * at->F[k][d];
+            at->F_0[d] += law->modes->beam.F0_F[law->touching.C[k]] * at->F[k][d];
+        }
+    tilt_under(law, eta_pi, inputs.psi_star, at->F_0, at->psi, by_F_0);
+    double rate = 1 / (inputs.epsilon * eta_pi);
+    for (int d = 0; d < 2; d++) {
+        at->rate[ANGLE + d] = rate * at->M[d];
+        at->rate[LATERAL + d] = x[ANGLE + d] - at->psi[d];
+    }
+    if (!slopes) return 1;
+    for (int d = 0; d < 2; d++) {
+        row_slopes(&law->M, d, &G, &F_rss, &high, M_by[d]), row_slopes(&law->F_0, d, &G, &F_rss, &high, F_0_by[d]);
+        for (int k = 0; k < m; k++) row_slopes(&law->q[law->touching.C[k]], d, &G, &F_rss, &high, q_by[2 * k + d]);
+    }
+    for (int k = 0; k < m; k++)
+        for (int d = 0; d < 2; d++)
+            for (int c = 0; c < COMPONENTS; c++) {
+                double F_by = 0.0;
+                for (int j = 0; j < 2 * m; j++) F_by += answer[2 * k + d][j] * q_by[j][c];
+                M_by[d][c] += law->modes->beam.M_F[law->touching.C[k]] * F_by;
+                F_0_by[d][c] += law->modes->beam.F0_F[law->touching.C[k]] * F_by;
+            }
+    for (int d = 0; d < 2; d++)
+        for (int c = 0; c < COMPONENTS; c++) {
+            at->by[ANGLE + d][c] = rate * M_by[d][c];
+            at->by[LATERAL + d][c] = (ANGLE + d == c) - by_F_0[d][0] * F_0_by[0][c] - by_F_0[d][1] * F_0_by[1][c];
+        }
+    return 1;
+}
+
+/* What the hole behind adds, from delayed lateral coordinates, `stride` numbers from direction to direction. */
+static inline void look_behind(const Law *law, const double *delayed, int place, int direction, Behind *behind) {
+    for (int d = 0; d < 2; d++) {
+        behind->M[d] = behind->F_0[d] = 0.0;
+        for (int i = 0; i < law->n - 1; i++) behind->q[i][d] = 0.0;
+        for (int j = 0; j < law->count; j++) {
+            double Y_j = delayed[j * place + d * direction];
+            behind->M[d] += law->M.delayed[j] * Y_j, behind->F_0[d] += law->F_0.delayed[j] * Y_j;
+            for (int i = 0; i < law->n - 1; i++) behind->q[i][d] += law->q[i].delayed[j] * Y_j;
+        }
+    }
+}
+
+#endif

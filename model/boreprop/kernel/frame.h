@@ -1,0 +1,132 @@
+/* The frame that goes with the bit through space, without twist: Q = [e₂ e₃ d] with d the axis of the bit, and
+
+       e₂' = −d θ₂' ,   e₃' = −d θ₃' ,   d' = e₂ θ₂' + e₃ θ₃' .
+
+   At the start e₂ points to where the inclination grows, e₃ = d × e₂ to the right of it, looking down the hole. */
+#ifndef BOREPROP_FRAME_H
+#define BOREPROP_FRAME_H
+
+#include "numbers.h"
+#include "radau_tables.h"
+
+enum { NORTH, EAST, DOWN };  /* axes of the rock, with a row of the frame each */
+enum { HIGH, RIGHT, AHEAD }; /* of the vectors e₂, e₃ and d: columns of the frame */
+
+typedef struct {
+    double row[3][3];
+} Frame;
+
+enum { MOST_TERMS = 48 };
+#define LEAST_TERM 1e-18 /* of a series whose sum is of order one */
+
+/* A row of the frame along a step, as a power series in t. */
+typedef struct {
+    int count;
+    double term[MOST_TERMS][3];
+} Series;
+
+/* The series of a row that begins with `start`, where θ is a polynomial: (m+1) r_{m+1} = Σ_j r_{m−j} Ω_j, Ω' = Q⁻¹ Q'. It
+   converges for any turn, but is given up, with 0, where that would take too many terms. */
+static inline int make_series(const double theta[][S + 1], const double start[3], Series *series) {
+    double rate[2][S];
+    int small = 0;
+    for (int d = 0; d < 2; d++)
+        for (int j = 0; j < S; j++) rate[d][j] = (j + 1) * theta[d][j + 1];
+    memcpy(series->term[0], start, sizeof series->term[0]);
+    for (int m = 0; m < MOST_TERMS - 1; m++) {
+        double high = 0.0, right = 0.0, ahead = 0.0;
+        for (int j = 0; j < S && j <= m; j++) {
+            const double *r = series->term[m - j];
+            high -= r[AHEAD] * rate[0][j], right -= r[AHEAD] * rate[1][j];
+            ahead += r[HIGH] * rate[0][j] + r[RIGHT] * rate[1][j];
+        }
+        double *next = series->term[m + 1], share = 1.0 / (m + 1);
+        next[HIGH] = share * high, next[RIGHT] = share * right, next[AHEAD] = share * ahead;
+        small = fabs(next[HIGH]) + fabs(next[RIGHT]) + fabs(next[AHEAD]) < LEAST_TERM ? small + 1 : 0;
+        if (small == S) { /* S terms make the next one */
+            series->count = m + 2 - S;
+            return 1;
+        }
+    }
+    series->count = MOST_TERMS;
+    return 0;
+}
+
+static inline void series_at(const Series *series, double t, double row[3]) {
+    double high = 0.0, right = 0.0, ahead = 0.0;
+    for (int m = series->count - 1; m >= 0; m--) {
+        const double *r = series->term[m];
+        high = high * t + r[HIGH], right = right * t + r[RIGHT], ahead = ahead * t + r[AHEAD];
+    }
+    row[HIGH] = high, row[RIGHT] = right, row[AHEAD] = ahead;
+}
+
+static inline double dot_3(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* Make a frame orthonormal that has lost a few digits. */
+static inline void straighten(Frame *frame) {
+    double *north = frame->row[NORTH], *east = frame->row[EAST], *down = frame->row[DOWN];
+    double size = sqrt(dot_3(down, down)), along;
+    for (int k = 0; k < 3; k++) down[k] /= size;
+    along = dot_3(north, down);
+    for (int k = 0; k < 3; k++) north[k] -= along * down[k];
+    size = sqrt(dot_3(north, north));
+    for (int k = 0; k < 3; k++) north[k] /= size;
+    for (int k = 0; k < 3; k++)
+        east[k] = down[(k + 1) % 3] * north[(k + 2) % 3] - down[(k + 2) % 3] * north[(k + 1) % 3];
+}
+
+/* The frame at t on a way along which θ is a polynomial, from the frame at its start. */
+static inline Frame turned_along(const Frame *start, const double theta[][S + 1], double t) {
+    Frame frame;
+    Series series;
+    for (int axis = NORTH; axis <= DOWN; axis++) {
+        make_series(theta, start->row[axis], &series);
+        series_at(&series, t, frame.row[axis]);
+    }
+    straighten(&frame);
+    return frame;
+}
+
+/* sin a / a and (1 − cos a)/a², which turn the frame by an angle a. */
+static inline void turn_factors(double square, double *sine, double *cosine) {
+    double a = sqrt(square);
+    if (square < 1e-4) {
+        *sine = 1 - square / 6 * (1 - square / 20 * (1 - square / 42));
+        *cosine = (1 - square / 12 * (1 - square / 30 * (1 - square / 56))) / 2;
+    } else *sine = sin(a) / a, *cosine = (1 - cos(a)) / square;
+}
+
+/* A row of Q R(a), where R(a) takes d towards e₂ a₂ + e₃ a₃ by the angle |a|. */
+static inline void turned_row(const double row[3], const double a[2], double turned[3]) {
+    double sine, cosine, square = a[0] * a[0] + a[1] * a[1], along = row[HIGH] * a[0] + row[RIGHT] * a[1];
+    turn_factors(square, &sine, &cosine);
+    for (int d = 0; d < 2; d++) turned[d] = row[d] - a[d] * (cosine * along + sine * row[AHEAD]);
+    turned[AHEAD] = row[AHEAD] * (1 - cosine * square) + sine * along;
+}
+
+static inline Frame turn_frame(const Frame *frame, const double a[2]) {
+    Frame turned;
+    for (int axis = NORTH; axis <= DOWN; axis++) turned_row(frame->row[axis], a, turned.row[axis]);
+    straighten(&turned);
+    return turned;
+}
+
+/* The angle a by which R(a) turns d of the frame to a direction given by axis. */
+static inline void turn_towards(const Frame *frame, const double direction[3], double a[2]) {
+    double seen[3];
+    for (int k = 0; k < 3; k++)
+        seen[k] = frame->row[NORTH][k] * direction[NORTH] + frame->row[EAST][k] * direction[EAST] +
+                  frame->row[DOWN][k] * direction[DOWN];
+    double aside = hypot(seen[HIGH], seen[RIGHT]), angle = atan2(aside, seen[AHEAD]);
+    for (int d = 0; d < 2; d++) a[d] = aside > 0 ? angle * seen[d] / aside : 0.0;
+}
+
+/* The frame of a bit at an inclination and azimuth, with e₂ to where the inclination grows. */
+static inline Frame frame_of(double inclination, double azimuth) {
+    double sine = sin(inclination), cosine = cos(inclination), north = cos(azimuth), east = sin(azimuth);
+    Frame frame = {{{cosine * north, -east, sine * north}, {cosine * east, north, sine * east}, {-sine, 0.0, cosine}}};
+    return frame;
+}
+
+#endif

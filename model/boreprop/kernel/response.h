@@ -1,0 +1,77 @@
+/* What the drilling system answers where the bit is, with the contacts found that hold there, in the plane. */
+#ifndef BOREPROP_RESPONSE_H
+#define BOREPROP_RESPONSE_H
+
+#include "integrator.h"
+
+/* What bends the beam where the bit is. */
+static inline Loads present_loads(const Integrator *p) {
+    double x[COMPONENTS];
+    step_state(&p->now.step, p->now.xi, x);
+    return loads_at(p, p->now.xi, x, inputs_here(&p->now).F_rss);
+}
+
+/* Θ under given loads, eq. (16): algebraic, so it jumps with the inputs. */
+static inline double inclination_under(Integrator *p, double theta, const Loads *loads, ScaledInputs inputs) {
+    const Mode *mode = settle(&p->modes, loads, p->now.regime.contact);
+    return theta - bit_tilt(row_value(&mode->F_0, loads), inputs.eta_pi, inputs.psi_star);
+}
+
+/* The regime in the state `x`, and the direction of the hole there. */
+typedef struct {
+    Regime regime;
+    double Theta[DIRECTIONS], F_0[DIRECTIONS];
+} Response;
+
+static inline Response respond(Integrator *p, const double x[COMPONENTS], ScaledInputs inputs) {
+    Loads loads = loads_at(p, p->now.xi, x, inputs.F_rss);
+    const Mode *mode = settle(&p->modes, &loads, p->now.regime.contact);
+    double F_0 = row_value(&mode->F_0, &loads), psi_star = inputs.psi_star;
+    Response response = {
+        {mode->contact, side_beyond(F_0 / inputs.eta_pi, -psi_star, psi_star, ROUNDING)},
+        {x[ANGLE] - bit_tilt(F_0, inputs.eta_pi, psi_star)},
+        {F_0}
+    };
+    return response;
+}
+
+/* The jump of Θ' where ε, or the slope of an input, changes in the present regime. */
+static inline double curvature_jump(
+    Integrator *p, const double x[COMPONENTS], ScaledInputs before, ScaledInputs inputs
+) {
+    double bend = inputs.F_rss_slope - before.F_rss_slope, turn = inputs.eta_pi_slope - before.eta_pi_slope;
+    int on_ramp = (bend != 0 || turn != 0) && !p->now.regime.saturation, turns_anew = inputs.epsilon != before.epsilon;
+    double bent = 0.0; /* jump of Θ' = θ' − ψ' */
+    if (!on_ramp && !turns_anew) return 0.0;
+    Loads loads = loads_at(p, p->now.xi, x, inputs.F_rss);
+    const Mode *mode = mode_of(&p->modes, p->now.regime.contact);
+    if (turns_anew) { /* θ' = M/(εηΠ) */
+        double moment = row_value(&mode->M, &loads);
+        bent = present_law(p)->Theta.theta * moment / inputs.eta_pi * (1 / inputs.epsilon - 1 / before.epsilon);
+    }
+    if (on_ramp) { /* (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ */
+        double psi = row_value(&mode->F_0, &loads) / inputs.eta_pi;
+        bent -= (bend * mode->F_0.rss - turn * psi) / inputs.eta_pi;
+    }
+    return fabs(bent);
+}
+
+/* Θ as it was when the bit was at `xi`, at most LOOK_BACK behind; where Θ jumped, its value after the jump. */
+static inline double earlier_inclination(Integrator *p, double xi) {
+    const Hole *hole = &p->now.hole;
+    const Piece *at = piece(hole, find(hole, xi + MERGE));
+    if (at->inputs.eta_pi == 0 || p->scaled.points || xi + MERGE < p->now.cleared) { /* Θ is the slope of the hole */
+        const Piece *own = piece(hole, find(hole, xi));
+        return polynomial_slope(own->x[LATERAL], (xi - own->start) * own->rate) * own->rate;
+    }
+    double ahead = larger(xi - at->start, 0.0), x[COMPONENTS];
+    for (int c = 0; c < COMPONENTS; c++) x[c] = polynomial(at->x[c], ahead * at->rate);
+    ScaledInputs inputs = inputs_ahead(at->inputs, ahead);
+    Loads loads = loads_at(p, at->start + ahead, x, inputs.F_rss);
+    bear(p, inputs.W);
+    double Theta = inclination_under(p, x[ANGLE], &loads, inputs);
+    bear(p, p->now.inputs.W);
+    return Theta;
+}
+
+#endif

@@ -1,0 +1,88 @@
+/* What acts on the bit by its frame: the weight across it, and the force of the pads to one side. */
+#ifndef BOREPROP_SIDES_H
+#define BOREPROP_SIDES_H
+
+#include "frame.h"
+#include "system.h"
+
+/* A vector that depends on the frame, with its derivatives by θ and by Y while the hole behind stays. */
+typedef struct {
+    double value[2], by_theta[2][2], by_Y[2][2];
+} Vector;
+
+/* The weight: G = −((QP)₂·down, (QP)₃·down), P = R(⟨Θ⟩_1 − θ); where the axial load counts, P = 1. */
+static inline Vector weight_across(const double down[3], const double a[2], int axial, double s_1) {
+    double sine, cosine, square = a[0] * a[0] + a[1] * a[1], along = down[HIGH] * a[0] + down[RIGHT] * a[1];
+    Vector G;
+    if (axial) {
+        for (int d = 0; d < 2; d++) {
+            G.value[d] = -down[d];
+            for (int c = 0; c < 2; c++) G.by_theta[d][c] = d == c ? down[AHEAD] : 0.0, G.by_Y[d][c] = 0.0;
+        }
+        return G;
+    }
+    turn_factors(square, &sine, &cosine);
+    double sine_bend = square < 1e-6 ? -1.0 / 3 : ((1 - cosine * square) - sine) / square; /* (d/d|a|)/|a| */
+    double cosine_bend = square < 1e-6 ? -1.0 / 12 : (sine - 2 * cosine) / square;
+    for (int d = 0; d < 2; d++) {
+        G.value[d] = -down[d] + a[d] * (cosine * along + sine * down[AHEAD]);
+        for (int c = 0; c < 2; c++) {
+            double same = d == c;
+            double by_a = same * (cosine * along + sine * down[AHEAD]) +
+                          a[d] * (cosine * down[c] + (cosine_bend * along + sine_bend * down[AHEAD]) * a[c]);
+            double by_frame = same * down[AHEAD] + a[d] * (sine * down[c] - cosine * down[AHEAD] * a[c]);
+            G.by_Y[d][c] = by_a / s_1;
+            G.by_theta[d][c] = by_frame - by_a;
+        }
+    }
+    return G;
+}
+
+/* Within this of the axis that they are measured from no side is up, and none is north: there forces that go by the side
+   fade out. The sine of half a degree. */
+#define NO_SIDE 0.008726535498373935
+
+/* The side, across the bit, to which `seen` points, a vector of the rock as its row of the frame has it; `sign` times it. */
+static inline Vector side_of(const double seen[3], double sign) {
+    double square = seen[HIGH] * seen[HIGH] + seen[RIGHT] * seen[RIGHT], w, bend;
+    Vector side;
+    if (square >= NO_SIDE * NO_SIDE) w = 1 / sqrt(square), bend = -w / square;
+    else {
+        double t = square / (NO_SIDE * NO_SIDE);
+        w = (15 + t * (-10 + 3 * t)) / (8 * NO_SIDE);
+        bend = (-20 + 12 * t) / (8 * NO_SIDE * NO_SIDE * NO_SIDE);
+    }
+    for (int d = 0; d < 2; d++) {
+        side.value[d] = sign * w * seen[d];
+        for (int c = 0; c < 2; c++) {
+            side.by_theta[d][c] = -sign * seen[AHEAD] * ((d == c ? w : 0.0) + bend * seen[d] * seen[c]);
+            side.by_Y[d][c] = 0.0;
+        }
+    }
+    return side;
+}
+
+/* Rows of the frame at a place: down and north. */
+typedef struct {
+    double down[3], north[3];
+} View;
+
+/* The force of the pads: at the toolface from the high side, from north or from e₂. */
+static inline Vector pad_force(const ScaledInputs *inputs, const View *view) {
+    double along = inputs->F_rss * cos(inputs->toolface), across = inputs->F_rss * sin(inputs->toolface);
+    Vector side = {{1.0, 0.0}, {{0}}, {{0}}}, force;
+    int reference = (int)inputs->reference;
+    if (reference == FROM_HIGH_SIDE) side = side_of(view->down, -1.0);
+    if (reference == FROM_NORTH) side = side_of(view->north, 1.0);
+    for (int d = 0; d < 2; d++) {
+        double turn = d ? 1.0 : -1.0;
+        force.value[d] = along * side.value[d] + turn * across * side.value[!d];
+        for (int c = 0; c < 2; c++) {
+            force.by_theta[d][c] = along * side.by_theta[d][c] + turn * across * side.by_theta[!d][c];
+            force.by_Y[d][c] = 0.0;
+        }
+    }
+    return force;
+}
+
+#endif

@@ -1,0 +1,110 @@
+/* The outputs where the bit is, in space. A part of drilling.h. */
+#ifndef BOREPROP_SPACE_OUTPUTS_H
+#define BOREPROP_SPACE_OUTPUTS_H
+
+/* What the outputs are computed from: the state where the bit is. */
+typedef struct {
+    double l1, F_star, eta_pi, path[AXES], T[AXES], earlier[DIRECTIONS], x[COMPONENTS];
+    double high[DIRECTIONS]; /* the side from which parts of forces and tilt are counted, in (e₂, e₃) */
+    Response is;
+} Present;
+
+#define NEARLY_VERTICAL 0.05233595624294383 /* sine of 3 degrees: up to here the high side says little */
+
+/* The direction, in (e₂, e₃), that "high" stands for: the high side, and north where the bit is nearly vertical. */
+static inline void high_side(const Frame *frame, double high[DIRECTIONS]) {
+    const double *down = frame->row[DOWN], *north = frame->row[NORTH];
+    int vertical = hypot(down[HIGH], down[RIGHT]) < NEARLY_VERTICAL;
+    double to[DIRECTIONS] = {vertical ? north[HIGH] : -down[HIGH], vertical ? north[RIGHT] : -down[RIGHT]};
+    double size = size_of(to);
+    for (int d = 0; d < DIRECTIONS; d++) high[d] = to[d] / size;
+}
+
+static inline Present present(Drilling *d) {
+    Integrator *p = &d->integrator;
+    const State *now = &p->now;
+    Present at;
+    at.l1 = length_scale(&d->system), at.F_star = force_scale(&d->system);
+    at.eta_pi = inputs_here(now).eta_pi;
+    step_state(&now->step, now->xi, at.x);
+    at.is = respond(p, at.x, inputs_here(now));
+    high_side(&at.is.frame, at.high);
+    position(now, at.path);
+    const Piece *own = piece(&now->hole, find(&now->hole, now->xi - 1.0));
+    for (int k = 0; k < DIRECTIONS; k++)
+        at.earlier[k] = polynomial_slope(own->x[LATERAL + k], (now->xi - 1.0 - own->start) * own->rate) * own->rate;
+    for (int axis = NORTH; axis <= DOWN; axis++) {
+        double back[DIRECTIONS] = {-at.is.at.psi[0], -at.is.at.psi[1]}, turned[3];
+        turned_row(at.is.frame.row[axis], back, turned);
+        at.T[axis] = turned[AHEAD];
+    }
+    return at;
+}
+
+/* The inclination of the hole between two places behind the bit, whose offsets from the bit's axis are given, on average. */
+static inline double mean_inclination(const Present *at, const double from[2], const double to[2], double length) {
+    double turn[DIRECTIONS], row[3], sideways = 0.0, down = 0.0;
+    for (int d = 0; d < DIRECTIONS; d++) turn[d] = (to[d] - from[d]) / length;
+    for (int axis = NORTH; axis <= DOWN; axis++) {
+        turned_row(at->is.frame.row[axis], turn, row);
+        if (axis == DOWN) down = row[AHEAD];
+        else sideways = hypot(sideways, row[AHEAD]);
+    }
+    return atan2(sideways, down);
+}
+
+/* The part of a vector in (e₂, e₃) to the high side, and that to the right of it. */
+static inline double part_high(const Present *at, const double a[2]) { return a[0] * at->high[0] + a[1] * at->high[1]; }
+static inline double part_right(const Present *at, const double a[2]) {
+    return a[1] * at->high[0] - a[0] * at->high[1];
+}
+
+/* One output, the value with this index if it has several. If an output of the table were missing, it would not compile. */
+static inline double output(const Drilling *d, const Present *at, Output which, int i) {
+    static const double nothing[2] = {0.0, 0.0};
+    const Reply *is = &at->is.at;
+    const Frame *frame = &at->is.frame;
+    double l1 = at->l1, F_star = at->F_star;
+    double turned[DIRECTIONS] = {at->is.Theta[0] - at->earlier[0], at->is.Theta[1] - at->earlier[1]};
+    switch (which) {
+        case OUT_DRILLED_LENGTH: return d->drilled_length;
+        case OUT_BIT_INCLINATION:
+            return atan2(hypot(frame->row[NORTH][AHEAD], frame->row[EAST][AHEAD]), frame->row[DOWN][AHEAD]);
+        case OUT_BIT_AZIMUTH: return atan2(frame->row[EAST][AHEAD], frame->row[NORTH][AHEAD]);
+        case OUT_BOREHOLE_INCLINATION: return atan2(hypot(at->T[NORTH], at->T[EAST]), at->T[DOWN]);
+        case OUT_BOREHOLE_AZIMUTH: return atan2(at->T[EAST], at->T[NORTH]);
+        case OUT_BIT_TILT: return size_of(is->psi);
+        case OUT_BIT_TILT_HIGH: return part_high(at, is->psi);
+        case OUT_BIT_TILT_RIGHT: return part_right(at, is->psi);
+        case OUT_AVERAGE_INCLINATION: /* λ_i (⟨Θ⟩_i − θ) = e_i − e_{i−1} */
+            return mean_inclination(at, i ? at->is.e[i - 1] : nothing, at->is.e[i], lambda_(&d->integrator.scaled, i));
+        case OUT_STABILIZER_DEFLECTION: return size_of(at->is.delta[i]) * l1;
+        case OUT_STABILIZER_DEFLECTION_HIGH: return part_high(at, at->is.delta[i]) * l1;
+        case OUT_STABILIZER_DEFLECTION_RIGHT: return part_right(at, at->is.delta[i]) * l1;
+        case OUT_STABILIZER_FORCE: return size_of(is->F[i]) * F_star;
+        case OUT_STABILIZER_FORCE_HIGH: return part_high(at, is->F[i]) * F_star;
+        case OUT_STABILIZER_FORCE_RIGHT: return part_right(at, is->F[i]) * F_star;
+        case OUT_STABILIZER_CONTACT: return size_of(is->F[i]) > 0;
+        case OUT_BIT_TILT_SATURATION: return at->is.regime.saturation;
+        case OUT_BIT_LATERAL_FORCE: return size_of(is->F_0) * F_star;
+        case OUT_BIT_LATERAL_FORCE_HIGH: return part_high(at, is->F_0) * F_star;
+        case OUT_BIT_LATERAL_FORCE_RIGHT: return part_right(at, is->F_0) * F_star;
+        case OUT_BIT_MOMENT: return size_of(is->M) * F_star * l1;
+        case OUT_BOREHOLE_CURVATURE: return size_of(turned) / l1;
+        case OUT_BODY_CONTACT_FORCE: /* the body has no points in space */
+        case OUT_BODY_CONTACT_POSITION:
+        case OUT_WALL_DISTANCE:
+        case OUT_SENSOR_INCLINATION: /* nor are there sensors */
+        case OUT_SENSOR_BENDING_MOMENT:
+        case OUT_SENSOR_CLEARANCE: break;
+        case OUT_FORMATION: return d->integrator.now.layer;
+        case OUT_NORTH: return at->path[NORTH] * l1;
+        case OUT_EAST: return at->path[EAST] * l1;
+        case OUT_DISPLACEMENT: return hypot(at->path[NORTH], at->path[EAST]) * l1;
+        case OUT_TRUE_VERTICAL_DEPTH: return at->path[DOWN] * l1;
+        case OUT_ETA_PI: return at->eta_pi;
+    }
+    return NAN;
+}
+
+#endif
