@@ -8,18 +8,20 @@ the hole winds to its side. If they are as large as each other, the ellipse is a
 from dataclasses import dataclass
 from enum import StrEnum
 from math import atan2, hypot, inf, nan, pi, radians
+from typing import NamedTuple
 
 import numpy as np
 
-from ..arrays import Floats
+from ..arrays import Complexes, Floats
 from .search import AT_THE_END
 from .space import untwisted
 from .waves import mean_over
 
 NARROW = 0.1  # minor over major axis: a narrower ellipse counts as a line
+HARMONICS = 5  # of a wave that are looked at: chaotic ones may be patterns of several that are alike
 CERTAIN = 3.0  # standard errors by which the hole must wind to one side
-SCATTER_OF = 8  # waves at the end from whose differences the standard error is determined
-HALF = 0.5  # of what it is at the end: a hole counts as winding since it has wound by this
+FOLLOWED = 20  # waves at the end: in none may it wind to the other side, and from their differences comes the error
+HALF = 0.5  # of their size at the end: smaller waves count as something else
 NEARLY_VERTICAL = radians(3.0)  # up to here the high side says little, and directions count from north
 
 
@@ -41,15 +43,15 @@ class Ellipse:
     shape
         Whether it winds, and to which side.
     major, minor
-        Semi-axes, m: the mean over the waves.
+        Semi-axes, m: those of the ellipse with the same second moments, in the mean over the waves.
     direction
         Of the major axis, rad, from 0 to π, looking down the hole: from the high side to the right; from north over
         east if `from_north`.
     from_north
         Whether the hole is nearly vertical, within 3°.
     since
-        The drilled length from which on it has wound, minor over major axis, at least half as much as at the end, m;
-        nan if it does not wind to one side.
+        The drilled length from which on it has wound to this side in an ellipse that is not a line, m; nan if it does
+        not wind to one side.
     """
 
     shape: Shape
@@ -60,17 +62,23 @@ class Ellipse:
     since: float
 
 
-def ellipse_of(length: Floats, position: Floats, wavelength: float) -> Ellipse | None:
-    """The ellipse of the last waves of a hole; None if the rows are too few.
+class Sideways(NamedTuple):
+    """How far a hole is off its own trend, seen along the trend, in a frame that does not twist.
 
-    Parameters
-    ----------
-    length
-        Drilled length, m, increasing, shape (rows,).
-    position
-        Of the hole's axis, to north, east and down, m, shape (rows, 3).
-    wavelength
-        Of the waves, m.
+    `length`, m, shape (rows,), and `away`, the parts to both sides, m, complex, shape (rows,); `frame` as `untwisted`
+    gives it, and the direction of the trend, `forward`, shape (rows, 3) each.
+    """
+
+    length: Floats
+    away: Complexes
+    frame: Complexes
+    forward: Floats
+
+
+def sideways(length: Floats, position: Floats, wavelength: float) -> Sideways | None:
+    """How far a hole is off its mean over a wavelength, m; None if there are too few rows.
+
+    The length increases, m, shape (rows,); the position is to north, east and down, m, shape (rows, 3).
     """
     means = [mean_over(length, coordinate, wavelength) for coordinate in position.T]
     inside, trend = means[0][0], np.column_stack([mean for _, mean in means])
@@ -79,40 +87,51 @@ def ellipse_of(length: Floats, position: Floats, wavelength: float) -> Ellipse |
     forward = np.gradient(trend, axis=0)
     forward /= np.linalg.norm(forward, axis=1)[:, None]
     frame = untwisted(forward)
-    x, away = length[inside], np.sum((position[inside] - trend) * frame, axis=1)
-    turn = np.exp(2j * pi / wavelength * x)
-    within, right = mean_over(x, away * turn.conj(), wavelength)
-    _, left = mean_over(x, away * turn, wavelength)
-    if not len(right):
+    return Sideways(length[inside], np.sum((position[inside] - trend) * frame, axis=1), frame, forward)
+
+
+def ellipse_of(hole: Sideways, wavelength: float) -> Ellipse | None:
+    """The ellipse of the last waves of a hole, which are so long, m; None if there are too few."""
+    spacing = (hole.length[-1] - hole.length[0]) / (len(hole.length) - 1)
+    within = mean_over(hole.length, hole.length, wavelength)[0]
+    x = hole.length[within]
+    if not len(x):
         return None
-    x = x[within]
-    waves = x[-1] - wavelength * np.arange(SCATTER_OF)[::-1]
+    right, left, line = np.zeros(len(x)), np.zeros(len(x)), np.zeros(len(x), complex)
+    for k in range(1, min(HARMONICS, int(wavelength / spacing / 2)) + 1):
+        turn = np.exp(2j * pi * k / wavelength * hole.length)
+        clockwise, other = (mean_over(hole.length, hole.away * way, wavelength)[1] for way in (turn.conj(), turn))
+        right, left, line = right + abs(clockwise) ** 2, left + abs(other) ** 2, line + clockwise * other
+    waves = x[-1] - wavelength * np.arange(FOLLOWED)[::-1]
     waves = waves[waves >= x[0]]
-    long, short = abs(right) + abs(left), abs(right) - abs(left)
-    axes = np.array([np.interp(waves, x, axis)[-AT_THE_END:].mean() for axis in (long, abs(short))])
-    winding = np.divide(short, long, out=np.zeros_like(long), where=long > 0)
-    winds, shape = _shape(np.interp(waves, x, winding))
+    major, minor = (np.sqrt(np.maximum(right + left + sign * 2 * abs(line), 0.0)) for sign in (1, -1))
+    axes = [np.interp(waves, x, axis)[-AT_THE_END:].mean() for axis in (major, minor)]
+    right, left = np.sqrt(right), np.sqrt(left)
+    winding = np.divide(right - left, right + left, out=np.zeros_like(right), where=right + left > 0)
+    small = np.flatnonzero(np.interp(waves, x, major) < HALF * axes[0])
+    first = min(int(small[-1]) + 1 if len(small) else 0, max(len(waves) - AT_THE_END, 0))
+    last = np.interp(waves[first:], x, winding)
+    shape, winds = _shape(axes[1] / axes[0], last), float(last[-AT_THE_END:].mean())
     since = nan
     if shape in (Shape.RIGHT, Shape.LEFT):
-        less = np.flatnonzero(winding * np.sign(winds) < HALF * abs(winds))
+        less = np.flatnonzero(winding * np.sign(winds) < min(NARROW, abs(winds) / 2))
         since = float(x[less[-1]] if len(less) else x[0])
-    last = slice(np.searchsorted(x, waves[-AT_THE_END:][0]), None)
-    direction = np.exp(0.5j * np.angle(np.sum(right[last] * left[last])))
-    end = within.stop - 1
-    side, from_north = _side((np.conj(direction) * frame[end]).real, forward[end])
+    mean_line = np.sum(line[np.searchsorted(x, waves[-AT_THE_END:][0]) :])
+    direction, end = np.exp(0.5j * np.angle(mean_line)), within.stop - 1
+    side, from_north = _side((np.conj(direction) * hole.frame[end]).real, hole.forward[end])
     return Ellipse(shape, float(axes[0]), float(axes[1]), side, from_north, since)
 
 
-def _shape(winding: Floats) -> tuple[float, Shape]:
-    """By how much the last waves wind, and in words; from minor over major axis of waves, positive to the right."""
+def _shape(narrow: float, winding: Floats) -> Shape:
+    """The shape of waves, from minor over major axis of the last four and by how much each of the last ones winds."""
+    if narrow < NARROW:
+        return Shape.PLANE
     late = winding[-AT_THE_END:]
-    mean = float(late.mean())
-    if np.abs(late).mean() < NARROW:
-        return mean, Shape.PLANE
-    error = float(np.sqrt(np.mean(np.diff(winding) ** 2) / 2 / len(late))) if len(winding) > 1 else inf
-    if abs(mean) < CERTAIN * error:
-        return mean, Shape.UNCLEAR
-    return mean, Shape.RIGHT if mean > 0 else Shape.LEFT
+    error = np.sqrt(np.mean(np.diff(winding) ** 2) / 2 / len(late)) if len(winding) > 1 else inf
+    other = -min(winding * np.sign(late.mean()))  # by how much it winds to the other side, at most
+    if abs(late.mean()) < max(NARROW / 2, CERTAIN * error) or other > NARROW:
+        return Shape.UNCLEAR
+    return Shape.RIGHT if late.mean() > 0 else Shape.LEFT
 
 
 def _side(across: Floats, forward: Floats) -> tuple[float, bool]:

@@ -24,12 +24,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Floats
+from ..arrays import Complexes, Floats
 from ..core.system import BottomHoleAssembly
 from ..errors import InputError
 from ..run.ground import STEADY
 from ..run.trajectory import Trajectory
-from .ellipse import Ellipse, ellipse_of
+from .ellipse import Ellipse, ellipse_of, sideways
 from .search import AT_THE_END, Found, State, search
 from .space import direction_of, is_in_space, position_of, sides_of
 from .waves import FEWEST_ROWS, FEWEST_WAVES, LastWaves, large_since, mean_over, slope
@@ -225,16 +225,22 @@ def _with_ellipse(run: Trajectory, found: Found) -> Rippling:
     length = run["drilled_length"]
     moved = np.append(np.diff(length) > 0, True)
     starts = found.waves.along(found.waves.axis).starts()
-    ellipse = ellipse_of(length[moved], position_of(run)[moved], found.wavelength)
+    hole = sideways(length[moved], position_of(run)[moved], found.wavelength)
     inside, inclination = mean_over(length[moved], run["borehole_inclination"][moved], found.wavelength)
     late = length[moved][inside] >= found.waves.x[0]
     return replace(
         _with_course(found),
         spread=float(np.std(np.diff(starts))) if len(starts) > 1 else nan,
         inclination_drift=slope(length[moved][inside][late], inclination[late]),
-        axis_amplitude=ellipse.major if ellipse else nan,
-        ellipse=ellipse,
+        axis_amplitude=_height(found.waves, hole.length, hole.away) / 2 if hole else nan,
+        ellipse=ellipse_of(hole, found.wavelength) if hole else None,
     )
+
+
+def _height(waves: LastWaves, x: Floats, away: Complexes) -> float:
+    """The height of the mean of the last waves of the axis, to the side to which it is largest, m."""
+    axis = replace(waves, deviation=np.interp(waves.x, x, away))
+    return axis.along(axis.axis).height()
 
 
 def modes_of(run: Trajectory) -> NDArray[np.int_]:

@@ -16,8 +16,9 @@ from ..run.completion import case_of
 from ..run.trajectory import Trajectory
 from ..units import BUILD_LENGTH
 from .hole import bit_positions, hole_of
-from .rippling import Rippling, State, find_rippling, visible_waves
+from .rippling import Rippling, find_rippling, visible_waves
 from .sag import Sag, largest_sag
+from .search import State
 
 SHORT_WAVE, LONG_WAVE = 0.25, 1.8  # half lengths of the BHA: the usual wavelengths of ripples lie in between
 
