@@ -12,6 +12,7 @@ ANALYSES = (
     "hysteresis",
     "sample",
     "simulate",
+    "spiral",
     "stability_chart",
     "steady_response",
     "summarize",

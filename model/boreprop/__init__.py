@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from .analysis.hysteresis import hysteresis as hysteresis
     from .analysis.rippling import find_rippling as find_rippling
+    from .analysis.spiral.closed_form import spiral as spiral
     from .analysis.stability.chart import stability_chart as stability_chart
     from .analysis.stability.roots import critical_eta_pi as critical_eta_pi
     from .analysis.stability.roots import find_roots as find_roots
@@ -71,6 +72,7 @@ _HOMES = {  # public name → module
     "read_trajectory": "run.results",
     "sample": "analysis.study.design",
     "simulate": "run.simulate",
+    "spiral": "analysis.spiral.closed_form",
     "stability_chart": "analysis.stability.chart",
     "steady_response": "analysis.steering",
     "study": "analysis.study.compute",

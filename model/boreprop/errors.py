@@ -22,6 +22,10 @@ class RootsNotFound(BorepropError):
     """Some of the roots of a mode could not be found. The message says how many, and what to do."""
 
 
+class SpiralNotFound(BorepropError):
+    """The equations of a spiral could not be solved. The message says where, and what to do."""
+
+
 def shown(value: object) -> str:
     """The text of `value` in an error message: of a table its keys, of anything long its beginning."""
     short = Repr()

@@ -63,7 +63,7 @@ class System:
     stations: Vector  # ξ <= 0 of the stations of the existing hole, the last at 0
     directions: Vector  # Θ there, shape (k, 2), linear in between, in the chart of the frame at the start
     frame: Vector  # Q at the start
-    pushes: tuple[Push, ...] = (Push(0.0, 0.0),)
+    pushes: tuple[Push, ...] = (Push(0.0, 0.0, reference="frame"),)  # none
 
 
 @dataclass(frozen=True)

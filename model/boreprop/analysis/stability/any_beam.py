@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...core.errors import ParameterError
-from ...core.system import BitRock, BottomHoleAssembly, epsilon, scale
+from ...core.system import BitRock, BottomHoleAssembly, check_in_plane, epsilon, scale
 from ...kernel.binding import lie
 from .characteristic import Characteristic, upright
 
@@ -41,10 +41,11 @@ def characteristic_of(
     Raises
     ------
     ParameterError
-        If the body of the BHA may touch the wall, a value is out of range, or the BHA buckles.
+        If the bit walks, the body of the BHA may touch the wall, a value is out of range, or the BHA buckles.
     KernelError
         If the BHA is not the paper's, and the native engine cannot be used.
     """
+    check_in_plane(bit)
     if bha.structure.is_of_the_paper:
         return Characteristic.of(scale(bha, bit), contact, saturated, inclination)
     if bha.body_point_positions:

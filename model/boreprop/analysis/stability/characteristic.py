@@ -12,13 +12,19 @@ and ν is a root of
     saturated:     P = εηΠν − m_θ − m .
 
 B_i is entire, so the freedom to shift the whole hole sideways adds no root.
+
+In a vertical hole the same equations hold for complex numbers, real to one side and imaginary to the side 90° to the
+right of it looking down the hole, if a stabilizer that touches is held all around. The bit may then walk by ϖ:
+ηΠ e^{iϖ} stands for ηΠ in the law of the tilt, and roots do not come in pairs any more. One with Im ν > 0 winds to the
+right. One with Im ν < 0 winds to the left; it is the conjugate of a root for −ϖ.
 """
 
+from cmath import exp
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,15 +69,24 @@ class Characteristic:
     f_theta: float
     epsilon: float
     saturated: bool
+    walk: float = 0.0  # ϖ
 
     @classmethod
     def of(
-        cls, scaled: Scaled, contact: tuple[int, ...], saturated: bool, inclination: float = 0.0
+        cls,
+        scaled: Scaled,
+        contact: tuple[int, ...],
+        saturated: bool,
+        inclination: float = 0.0,
+        walk: float = 0.0,
     ) -> "Characteristic":
-        """That of the mode with `contact` (0 where a stabilizer is free) in a straight hole of `inclination`, rad."""
+        """That of the mode with `contact` (0 where a stabilizer is free) in a straight hole of `inclination`, rad.
+
+        A bit that walks, by so many rad, has one in a vertical hole.
+        """
         mode, weight = Mode(Beam(scaled), scaled.y_star, contact), upright(inclination)
         M, F_0 = ((list(row.e), row.g * weight) for row in (mode.M, mode.F_0))
-        return cls.made_of(list(scaled.s), M, F_0, scaled.epsilon, saturated)
+        return cls.made_of(list(scaled.s), M, F_0, scaled.epsilon, saturated, walk=walk)
 
     @classmethod
     def made_of(
@@ -83,6 +98,7 @@ class Characteristic:
         saturated: bool,
         *,
         axial: bool = False,
+        walk: float = 0.0,
     ) -> "Characteristic":
         """That of M and F_0 as Σ m_i e_i + m_g times the angle of the weight: ⟨Θ⟩_1, or θ under an axial load."""
         (m, m_g), (f, f_g) = M, F_0
@@ -97,6 +113,7 @@ class Characteristic:
             f_theta=along_bit * f_g - dot(f, s),
             epsilon=epsilon,
             saturated=saturated,
+            walk=walk,
         )
 
     def __call__(self, nu: Complexes, eta_pi: float | Floats) -> tuple[Complexes, Complexes]:
@@ -108,11 +125,11 @@ class Characteristic:
             f += f_i * B
             m_slope += m_i * slope
             f_slope += f_i * slope
-        drag, rest = self.epsilon * eta_pi, eta_pi - self.f_theta
-        turning = drag * nu - self.m_theta
+        drag, rock = self.epsilon * eta_pi, self._direction * eta_pi
+        turning, rest = drag * nu - self.m_theta, rock - self.f_theta
         if self.saturated:
             return turning - m, drag - m_slope
-        return turning * (eta_pi + f) - rest * m, drag * (eta_pi + f) + turning * f_slope - rest * m_slope
+        return turning * (rock + f) - rest * m, drag * (rock + f) + turning * f_slope - rest * m_slope
 
     def size(self, nu: Complexes, eta_pi: Floats) -> Floats:
         """The sum of the moduli of the terms of P: rounding errors of P are proportional to it."""
@@ -123,6 +140,11 @@ class Characteristic:
             f += abs(f_i) * B
         turning = self.epsilon * eta_pi * abs(nu) + abs(self.m_theta)
         return turning + m if self.saturated else turning * (eta_pi + f) + (eta_pi + abs(self.f_theta)) * m
+
+    @cached_property
+    def _direction(self) -> Any:
+        """e^{iϖ}; the real number 1 for a bit that does not walk."""
+        return exp(1j * self.walk) if self.walk else 1.0
 
     @cached_property
     def _terms(self) -> Floats:
@@ -141,7 +163,8 @@ class Characteristic:
         turning = self.epsilon * eta_pi * nu - self.m_theta
         value: Complexes = turning * nu - m
         if not self.saturated:
-            value = turning * (eta_pi * nu + f) - (eta_pi - self.f_theta) * m
+            rock = self._direction * eta_pi
+            value = turning * (rock * nu + f) - (rock - self.f_theta) * m
         return value
 
     def at_zero(self) -> tuple[float, float]:
@@ -178,10 +201,11 @@ class Characteristic:
         if self.saturated:
             single: Complexes = ((self.m_theta + m) / drag)[None]
             return single
-        b, c = drag * f - self.m_theta - m, self.f_theta * m - self.m_theta * f
-        root = np.sqrt(b * b - 4 * drag * c)
+        direction = self._direction
+        a, b, c = drag * direction, drag * f - (self.m_theta + m) * direction, self.f_theta * m - self.m_theta * f
+        root = np.sqrt(b * b - 4 * a * c)
         sum_ = b + np.where((b * root.conj()).real < 0, -root, root)
-        return np.stack([-sum_ / (2 * drag), -2 * c / sum_])
+        return np.stack([-sum_ / (2 * a), -2 * c / sum_])
 
     def crossings(self, smallest: float) -> Crossings:
         """All crossings of the imaginary axis at ηΠ >= `smallest`, except those at ω = 0.
@@ -260,12 +284,13 @@ class Characteristic:
         rows = np.flatnonzero(columns)[-1] + 1
         return FREQUENCIES[: rows + 1], abscissas[columns[: rows + 1]]
 
-    def _free(self, eta_pi: Floats) -> tuple[Floats, Floats, Floats]:
-        """The coefficients of the quadratic Q_0."""
+    def _free(self, eta_pi: Floats) -> tuple[Any, Any, Any]:
+        """The coefficients of the quadratic Q_0, each of the shape of ηΠ."""
         drag, m, f = self.epsilon * eta_pi, self.m.sum(), self.f.sum()
         if self.saturated:
             return drag, -self.m_theta + 0 * drag, -m + 0 * drag
-        return drag * eta_pi, drag * f - self.m_theta * eta_pi, -self.m_theta * f - (eta_pi - self.f_theta) * m
+        rock = self._direction * eta_pi
+        return drag * rock, drag * f - self.m_theta * rock, -self.m_theta * f - (rock - self.f_theta) * m
 
     def _free_roots(self, eta_pi: Floats) -> tuple[Complexes, Complexes]:
         """The zeros of Q_0."""
@@ -276,7 +301,7 @@ class Characteristic:
     def _delayed_share(self, nu: Complexes, eta_pi: Floats) -> Floats:
         """Σ |Q_i e^{−ν s_i}| / |Q_0|."""
         turning = 0.0 if self.saturated else self.epsilon * eta_pi * nu - self.m_theta
-        rest = 1.0 if self.saturated else eta_pi - self.f_theta
+        rest = 1.0 if self.saturated else self._direction * eta_pi - self.f_theta
         delayed = np.zeros(np.broadcast_shapes(nu.shape, eta_pi.shape))
         for s_i, m_i, f_i in self._terms.tolist():
             delayed += abs(rest * m_i - turning * f_i) * np.exp(-nu.real * s_i)

@@ -8,9 +8,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 from math import pi
+from typing import Protocol
 
 import numpy as np
 
+from ...arrays import Complexes, Floats
 from ...case.case import Case
 from ...core.checks import check_number
 from ...core.errors import ParameterError
@@ -18,7 +20,6 @@ from ...core.system import BitRock, BottomHoleAssembly
 from ...errors import InputError, RootsNotFound
 from ..lying import pressing_weight
 from .any_beam import characteristic_of
-from .characteristic import Characteristic
 from .zeros import Strip, find_zeros
 
 SMALLEST_ETA_PI = 1e-4  # smaller values would take too long: the number of roots right of an abscissa grows as 1/ηΠ
@@ -250,9 +251,24 @@ def verdict(roots: Iterable[complex]) -> Verdict:
     return Verdict.DRIFT if unstable else Verdict.STABLE
 
 
-def rightmost_roots(
-    characteristic: Characteristic, eta_pi: float, abscissa: float | None = None
-) -> tuple[complex, ...]:
+class Searched(Protocol):
+    """A function whose zeros are roots: a `Characteristic`, or what is made of some."""
+
+    @property
+    def s(self) -> Floats:
+        """The delays."""
+
+    def __call__(self, nu: Complexes, eta_pi: float | Floats) -> tuple[Complexes, Complexes]:
+        """The function and its derivative."""
+
+    def on_grid(self, x: Floats, y: Floats, eta_pi: float) -> Complexes:
+        """The function at x + iy; it may have further zeros."""
+
+    def outline(self, eta_pi: float, abscissa: float) -> tuple[Floats, Floats]:
+        """A bound on the zeros."""
+
+
+def rightmost_roots(characteristic: Searched, eta_pi: float, abscissa: float | None = None) -> tuple[complex, ...]:
     """All roots with Re ν >= `abscissa` (<= 0), the rightmost first; if there are none, further left until there are.
 
     Of each pair only the root with imaginary part > 0 is listed; a multiple root is repeated.
@@ -290,6 +306,6 @@ def rightmost_roots(
     return tuple(roots[np.lexsort([roots.imag, -roots.real])].tolist())
 
 
-def usual_abscissa(characteristic: Characteristic) -> float:
+def usual_abscissa(characteristic: Searched) -> float:
     """The abscissa right of which roots are listed if none is given."""
     return max(ABSCISSA, -DAMPING / float(characteristic.s[-1]))

@@ -1,0 +1,146 @@
+"""How fast a ripple leaves its plane: the Floquet multipliers of what is across a planar ripple of a vertical hole.
+
+A small disturbance across the plane obeys linear delay equations whose coefficients follow from the planar ripple, of
+period P: a wall that bears a stabilizer with the force F gives way sideways as a pendulum does, and so does a gauge,
+
+    K⁻¹F⊥ + y*/|F| F⊥ = −q̃⊥  (of those that touch) ,   ψ⊥ = F_0⊥ / max(ηΠ, |F_0|/ψ*) .
+
+With the history on a grid they make a matrix over one period; its eigenvalues e^{σP} give the growth σ.
+"""
+
+from dataclasses import dataclass, replace
+from math import nan, radians
+
+import numpy as np
+
+from ...arrays import Complexes, Floats
+from ...case.case import Case
+from ...core.beam import Beam
+from ...core.survey import Survey
+from ...core.system import scale
+from ...run.simulate import simulate
+from ...run.trajectory import Trajectory
+from ..rippling import find_rippling
+from .stability import eigenvalues
+
+DOGLEG = radians(0.5)  # over ℓ₁, in the vertical hole from which the planar ripple starts
+SETTLED = 200.0  # ℓ₁ drilled until the planar ripple is periodic
+WAVES = 10  # at the end of the run, whose mean is the period
+FINE = 0.002  # ℓ₁ between the rows of the planar run
+PARTS = 400  # of a period: steps of the matrix, of order 2; the growth is then right to about 0.002 per ℓ₁
+NEUTRAL = 2  # multipliers of 1: a shift across, and a turn of the plane, which change nothing
+
+
+@dataclass(frozen=True)
+class TransverseGrowth:
+    """What becomes of a disturbance across the plane of a ripple.
+
+    Parameters
+    ----------
+    growth
+        Its growth per metre drilled; nan if the case does not ripple in the plane.
+    wavelength
+        Of the planar ripple, m; likewise.
+    """
+
+    growth: float
+    wavelength: float
+
+
+def transverse_growth(case: Case) -> TransverseGrowth:
+    """Compute how fast the planar ripple of a case, in a vertical hole with a dogleg, grows out of its plane.
+
+    Errors are those of `simulate`; a bit that walks has no planar ripple and is refused.
+    """
+    l1 = case.length_scale
+    vertical = replace(case, survey=Survey((0.0, l1), (0.0, DOGLEG)), inputs=None, formations=())
+    vertical = replace(vertical, schedule=type(case.schedule)())
+    run = simulate(vertical, length=SETTLED * l1, sample_interval=FINE * l1)
+    if not find_rippling(run).ripples:
+        return TransverseGrowth(nan, nan)
+    start, period = last_period(run["drilled_length"] / l1, run["bit_inclination"])
+    at: Floats = start + period / PARTS * np.arange(PARTS + 1.0)
+    multipliers: Complexes = eigenvalues(over_a_period(*coefficients(vertical, run, at), case, period))
+    for _ in range(NEUTRAL):
+        multipliers = np.delete(multipliers, np.argmin(abs(multipliers - 1.0)))
+    return TransverseGrowth(float(np.log(abs(multipliers).max())) / period / l1, period * l1)
+
+
+def last_period(xi: Floats, inclination: Floats) -> tuple[float, float]:
+    """Where the last whole wave begins, rising through zero, and the mean length of the last waves."""
+    rises = np.flatnonzero((inclination[:-1] < 0) & (inclination[1:] >= 0))
+    before, after = inclination[rises], inclination[rises + 1]
+    places = xi[rises] + (xi[rises + 1] - xi[rises]) * before / (before - after)
+    return float(places[-2]), float(places[-1] - places[-1 - WAVES]) / WAVES
+
+
+def coefficients(case: Case, run: Trajectory, at: Floats) -> tuple[Floats, Floats]:
+    """M⊥ and ψ⊥ by the offsets e_i and by ⟨Θ⟩_1 across the plane, at each of some places, shape (k, n + 1)."""
+    scaled, force_scale, eta_pi = scale(case.bha, case.bit), case.bha.force_scale, case.eta_pi
+    beam, n = Beam(scaled), len(scaled.s)
+    xi = run["drilled_length"] / case.length_scale
+    F = np.array([np.interp(at, xi, run[f"stabilizer_force[{i}]"]) for i in range(1, n)]).reshape(n - 1, -1).T
+    F_0 = np.interp(at, xi, run["bit_lateral_force"]) / force_scale
+    q = np.column_stack([np.eye(n)[:-1], beam.delta_g])
+    q[:, n - 1] += beam.delta_e
+    F = abs(F) / force_scale
+    rows_M, rows_psi = np.zeros((2, len(at), n + 1))
+    rows_M[:, n - 1], rows_M[:, n] = beam.M_e, beam.M_g
+    rows_psi[:, n - 1], rows_psi[:, n] = beam.F0_e, beam.F0_g
+    for k, forces in enumerate(F):
+        touching = np.flatnonzero(forces > 0)
+        stiff = np.array(beam.K_inv).reshape(n - 1, n - 1)[np.ix_(touching, touching)]
+        stiff = stiff + np.diag(np.array(scaled.y_star)[touching] / forces[touching])
+        across = -np.linalg.solve(stiff, q[touching])
+        rows_M[k] += np.array(beam.M_F)[touching] @ across
+        rows_psi[k] += np.array(beam.F0_F)[touching] @ across
+    return rows_M, rows_psi / np.maximum(eta_pi, abs(F_0) / scaled.psi_star)[:, None]
+
+
+def over_a_period(rows_M: Floats, rows_psi: Floats, case: Case, period: float) -> Floats:
+    """The matrix that takes θ⊥ and the history of Y⊥, on a grid back to λ and a little beyond, over one period.
+
+    The trapezoidal rule; delayed values between the points of the grid are those of cubics.
+    """
+    scaled, step = scale(case.bha, case.bit), period / PARTS
+    s, drag = np.array(scaled.s), scaled.epsilon * case.eta_pi
+    length = int(np.ceil(s[-1] / step)) + 3
+    size = length + 1  # Y at 0, −1, …, −(length − 1) steps, then θ
+    history: Floats = np.eye(length, size)
+    theta: Floats = np.eye(size)[-1]
+    delays = [_cubic(s_i / step, length) for s_i in s.tolist()]
+
+    def rates(k: int) -> tuple[Floats, Floats]:
+        """What θ′ and Y′ are of θ and Y, and of the delayed Y."""
+        M, psi = rows_M[k] / drag, rows_psi[k]
+        by_Y = np.array([M.sum(), -psi.sum()])
+        by_theta = np.array([-M[:-1] @ s, 1.0 + psi[:-1] @ s])
+        return np.column_stack([by_theta, by_Y]), np.array([[*-M[:-1]], [*psi[:-1]]])
+
+    def delayed(terms: Floats, k: int, behind: Floats) -> Floats:
+        """What θ′ and Y′ are of the delayed Y, with the weight."""
+        weight = np.array([-rows_M[k, -1] / drag, rows_psi[k, -1]])
+        total: Floats = terms @ behind + np.outer(weight, behind[0])
+        return total
+
+    jacobian, terms = rates(0)
+    slope = jacobian @ np.vstack([theta, history[0]]) + delayed(terms, 0, np.array([d @ history for d in delays]))
+    for k in range(1, PARTS + 1):
+        jacobian, terms = rates(k)
+        ahead = np.array([d[1:] @ history[:-1] for d in delays])  # the grid has moved on by a step
+        known = np.vstack([theta, history[0]]) + step / 2 * (slope + delayed(terms, k, ahead))
+        theta, Y = new = np.linalg.solve(np.eye(2) - step / 2 * jacobian, known)
+        slope = jacobian @ new + delayed(terms, k, ahead)
+        history = np.vstack([Y, history[:-1]])
+    return np.vstack([history, theta])
+
+
+def _cubic(place: float, length: int) -> Floats:
+    """Weights of the points of a grid, of spacing one, for a value at a place between them, by a cubic."""
+    first = int(place) - 1
+    nodes = np.arange(first, first + 4)
+    row = np.zeros(length)
+    for node in nodes:
+        others = nodes[nodes != node]
+        row[node] = np.prod((place - others) / (node - others))
+    return row
