@@ -24,9 +24,10 @@ PROGRAMS: dict[str, Any] = {
     "boreprop-fmu": boreprop_fmu.cli,
     "boreprop-view": boreprop_viz.cli,
 }
-NUMBERS = {"n": "[1…n]", "n-1": "[1…n−1]", "sections": "[1…]", "points": "[1…]"}
+NUMBERS = {"n": "[1…n]", "n-1": "[1…n−1]", "sections": "[1…]", "points": "[1…]", "sensors": "[1…]"}
 ONLY = dict.fromkeys(("sections", "stepped"), "only with sections")
 ONLY |= dict.fromkeys(("points", "body"), "only with body_contact") | {"axial": "only with axial_load"}
+ONLY["sensors"] = "only with [[sensor]]"
 
 
 def variables(role: str) -> str:
@@ -46,7 +47,7 @@ def case_keys() -> str:
     """The table of all keys of a case file, with the units that they have there."""
     head = ["key", "unit", "symbol", "what it is", "accepted"]
     chosen = [_as_in_files(quantity) for quantity in QUANTITIES if quantity.key]
-    keys = sorted(chosen, key=lambda quantity: TABLES.index(quantity.key.partition(".")[0]))
+    keys = sorted(chosen, key=lambda quantity: (*TABLES, "sensor").index(quantity.key.partition(".")[0]))
     return _table(head, ([f"`{q.key}`", _unit(q), q.symbol, q.meaning, q.range] for q in keys))
 
 

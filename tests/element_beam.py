@@ -19,6 +19,7 @@ class ElementBeam:
         for s_i, force in zip(scaled.s[:-1], contact, strict=True):
             points[s_i] = points.get(s_i, 0.0) + force
         self.nodes = sorted({0.0, extra, *points, *scaled.s})
+        self.moments = np.zeros(len(self.nodes))
         size = 2 * len(self.nodes)
         stiffness, load = np.zeros((size, size)), np.zeros(size)
         for k, (a, b) in enumerate(pairwise(self.nodes)):
@@ -48,11 +49,20 @@ class ElementBeam:
         # reactions of the bit on the beam. A growing θ turns the axis up the hole to the low side, dv/ds = −θ, so the
         # moment on the bit, opposite to that on the beam, has the beam's sign when counted with θ
         reactions = stiffness @ values - load
-        self.deflections = values[::2]
+        for k, (a, b) in enumerate(pairwise(self.nodes)):  # EI v'' at both ends of an element
+            L, own = b - a, values[2 * k : 2 * k + 4]
+            bent = np.array([[-6, -4 * L, 6, -2 * L], [6, 2 * L, -6, 4 * L]]) / L**2 @ own
+            self.moments[[k, k + 1]] = EI * bent - scaled.w * at.sin_Theta_1 * L**2 / 12
+        self.deflections, self.slopes = values[::2], values[1::2]
         self.bit_force, self.bit_moment = reactions[0], reactions[1]
 
     def at(self, s: float) -> float:
         return float(self.deflections[self.nodes.index(s)])
+
+    def bent(self, s: float) -> tuple[float, float]:
+        """Slope of the deflection, and bending moment."""
+        k = self.nodes.index(s)
+        return float(self.slopes[k]), float(self.moments[k])
 
 
 def well_spaced(scaled: Scaled, extra: float) -> bool:

@@ -16,8 +16,21 @@ VERTICAL = Survey((0.0,), (0.0,))
 
 def begin(engine: str, scaled: Scaled, survey: Survey, F_rss: float, eta_pi: float, **options: float) -> Engine:
     """The engine of this name at the end of a survey in units of ℓ₁."""
+    s, intervals, biases, noises, seeds, clearances = zip(*scaled.sensors, strict=True) if scaled.sensors else ((),) * 6
     return DRILLING[engine](
-        BottomHoleAssembly(scaled.s, scaled.y_star, scaled.Delta, scaled.w, 1 / 3),
+        BottomHoleAssembly(
+            scaled.s,
+            scaled.y_star,
+            scaled.Delta,
+            scaled.w,
+            1 / 3,
+            sensor_positions=s,
+            sensor_intervals=intervals,
+            sensor_biases=biases,
+            sensor_noises=noises,
+            sensor_seeds=seeds,
+            sensor_body_clearances=clearances,
+        ),
         BitRock(1.0, scaled.epsilon, scaled.psi_star),
         survey,
         active_weight_on_bit=eta_pi,

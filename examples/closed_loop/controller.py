@@ -18,7 +18,7 @@ from pythonfmu.variables import Real
 
 VARIABLES = (
     # name, causality, unit, start, meaning
-    ("inclination", "input", "rad", 0.0, "inclination of the hole at the sensor"),
+    ("inclination", "input", "rad", 0.0, "last reading of the sensor"),
     ("drilled_length", "input", "m", 0.0, "where the bit is, from the start of the run"),
     ("rss_force", "output", "N", 0.0, "steering force, positive builds"),
     ("start_inclination", "parameter", "rad", 0.0, "plan: inclination of the straight hole before the build"),
@@ -47,7 +47,7 @@ HOW = {
     "input": (Fmi2Variability.continuous, None),
     "output": (Fmi2Variability.discrete, Fmi2Initial.calculated),
     "parameter": (Fmi2Variability.fixed, Fmi2Initial.exact),
-    "local": (Fmi2Variability.discrete, Fmi2Initial.exact),
+    "local": (Fmi2Variability.discrete, Fmi2Initial.calculated),
 }
 POSITIVE = {"survey_interval", "steering_response", "integral_length", "force_limit"}
 CLOSE = 1e-6  # m: a survey this much early is in time
@@ -75,6 +75,7 @@ class InclinationController(Fmi2Slave):
 
     def enter_initialization_mode(self) -> None:
         """Before the first survey there is the feed-forward; without a plan, or with a bad value, no force at all."""
+        self.next_survey = self.survey_interval
         if not self.fault():
             self.rss_force = self.limited(self.feed_forward(0.0))
 

@@ -57,7 +57,7 @@ class System:
             raise InputError(f"{ssp}: must be an SSP made by make_ssp.py, got: {error}") from error
         given = {p.name: float(p.value) for p in parameters(borehole)}
         self.case = with_parameters(read_packed_case(directory / borehole.source), given)
-        self.recorded = scalar_names(INPUTS + OUTPUTS, len(self.case.bha.stabilizer_positions))
+        self.recorded = scalar_names(INPUTS + OUTPUTS, self.case.bha.structure)
 
 
 def parameters(element: Any) -> list[Any]:

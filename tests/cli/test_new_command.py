@@ -128,10 +128,85 @@ def test_the_case_is_steered_and_drilled_at_once(command: Command, tmp_path: Pat
     assert abs(run["bit_tilt"]).max() <= atan(1 / 128) + 1e-9
 
 
+SECTIONS = ("4 ft, 6 3/4 in, 2 in", "30 ft, 6 3/4 in, 2 13/16 in", "40 ft, 6 1/2 in, 2 13/16 in")
+
+
+def stepped(*sections: str, **changed: str | None) -> list[str]:
+    """The command line of a BHA in sections."""
+    given = chain.from_iterable(("--section", section) for section in sections)
+    return [*options(FIELD, collar_outer=None, collar_inner=None, **changed), *given]
+
+
+def test_a_bha_in_sections_has_what_a_calculator_gives(command_here: Command, tmp_path: Path) -> None:
+    result = command_here("boreprop", "new", "my.toml", *stepped(*SECTIONS))
+    assert (result.returncode, result.stderr) == (0, "")
+    case, inch, foot = load_case(tmp_path / "my.toml"), 0.0254, 0.3048
+    bha = case.bha
+    assert bha.section_lengths == pytest.approx((4 * foot, 30 * foot, 40 * foot))
+    assert bha.section_outer_diameters == pytest.approx((6.75 * inch, 6.75 * inch, 6.5 * inch))
+    for EI, outer, inner in zip(bha.section_flexural_stiffnesses, (6.75, 6.75, 6.5), (2, 2.8125, 2.8125), strict=True):
+        assert pytest.approx(206e9 * pi / 64 * inch**4 * (outer**4 - inner**4)) == EI
+    weight = 101.5 / foot * 4.44822 * (1 - 10 / 65.5)  # of 6 3/4 by 2 3/4 in, from a handbook
+    assert bha.section_distributed_weights[1] == pytest.approx(weight, rel=0.01)
+    assert bha.axial_load
+    assert case.weight_on_bit == pytest.approx(20e3 * 4.4482216)
+    assert bha.body_point_positions
+    assert bha.body_point_clearances[0] == pytest.approx((8.5 - 6.75) / 2 * inch)
+    text = (tmp_path / "my.toml").read_text("utf-8")
+    assert all(section in text for section in SECTIONS)
+
+
+@pytest.mark.usefixtures("kernel")
+def test_a_bha_in_sections_is_drilled_and_told_of_at_once(command: Command) -> None:
+    assert command("boreprop", "new", "my.toml", *stepped(*SECTIONS)).returncode == 0
+    for words in (("simulate", "my.toml", "--output", "run.csv"), ("summary", "run.csv"), ("steering", "my.toml")):
+        result = command("boreprop", *words)
+        assert (result.returncode, result.stderr) == (0, ""), words
+
+
+def test_one_section_is_the_collar_of_the_same_size(command_here: Command, tmp_path: Path) -> None:
+    command_here("boreprop", "new", "one.toml", *stepped("100 ft, 6 3/4 in, 2.75 in"))
+    command_here("boreprop", "new", "collar.toml", *options(FIELD))
+    one, collar = (load_case(tmp_path / name) for name in ("one.toml", "collar.toml"))
+    assert numbers(one) == pytest.approx(numbers(collar), rel=1e-8)
+
+
+@pytest.mark.parametrize("stabilizers", ["3 ft, 90 ft", "1, 6, 120 m", "3, 20, 40, 60, 80, 100 ft"])
+def test_bhas_of_any_length_have_no_more_points_on_the_body_than_fit(
+    command_here: Command, tmp_path: Path, stabilizers: str
+) -> None:
+    changed = {"stabilizers": stabilizers, "under_gauge": "1/8 in"}
+    result = command_here("boreprop", "new", "my.toml", *stepped("130 m, 6 3/4 in, 3 in", **changed))
+    assert (result.returncode, result.stderr) == (0, "")
+    assert 30 < len(load_case(tmp_path / "my.toml").bha.body_point_positions) <= 128
+
+
+@pytest.mark.parametrize(
+    ("sections", "changed", "named"),
+    [
+        (("9 m, 6 3/4 in",), {}, ("--section", "between commas", "'9 m, 6 3/4 in'")),
+        (("9 kg, 6 3/4 in, 2 in",), {}, ("--section", "between commas", "'9 kg")),
+        (("30, 6, 2 ft",), {}, ("--section", "and an outer diameter of", "have that of the next")),
+        (("9 m, 9 in, 2 in",), {}, ("--section", "below the diameter of the hole")),
+        (("30 m, 6 in, 7 in",), {}, ("--section", "inner diameter below the outer one")),
+        (("9 m, 6 3/4 in, 2 in",), {}, ("--stabilizers", "must not lie beyond the sections, which reach to 9 m")),
+        (("30 m, 6 in, 2 in",), {"collar_outer": "6 in"}, ("--collar-outer", "must be left out beside --section")),
+        (("30 m, 6 in, 2 in",), {"under_gauge": "3 in"}, ("--under-gauge", "larger than the collar")),
+        (("1 m, 6 in, 2 in",) * 25, {}, ("--section", "at most 24 times")),
+    ],
+)
+def test_sections_that_cannot_be_are_named(
+    command_here: Command, tmp_path: Path, sections: tuple[str, ...], changed: dict[str, str], named: tuple[str, ...]
+) -> None:
+    line = [*stepped(*sections), *options({}, **changed)]
+    assert_refused(command_here("boreprop", "new", "my.toml", *line), *named)
+    assert not list(tmp_path.iterdir())
+
+
 def test_every_question_has_one_option_and_every_option_a_question() -> None:
     command = load_command("new", COMMANDS)
     declared = [option for parameter in command.params for option in parameter.opts if option.startswith("--")]
-    assert sorted(declared) == sorted(["--force", *(question.option for question in QUESTIONS)])
+    assert sorted(declared) == sorted(["--force", "--section", *(question.option for question in QUESTIONS)])
     assert len({question.name for question in QUESTIONS}) == len(QUESTIONS)
     assert {question.option for question in QUESTIONS} == set(FIELD)
 

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from boreprop.case.case import Case, Schedule
 from boreprop.case.file import load_case
+from boreprop.core.sensors import Sensor
 from boreprop.core.survey import Survey
 from boreprop.core.system import Scaled
 from boreprop.run.simulate import simulate
@@ -66,6 +67,14 @@ def test_both_take_the_same_steps_along_a_reference_case(name: str) -> None:
 def crooked_runs(draw: st.DrawFn) -> tuple[Scaled, Survey, Legs]:
     """Random systems in crooked holes under changing inputs."""
     scaled = draw(scaled_systems())
+    shares = st.sampled_from([0.0, scaled.s[0] / scaled.s[-1], 1.0]) | st.floats(0.0, 1.0)
+    sensors = st.builds(
+        lambda share, interval, seed: Sensor(share * scaled.s[-1], interval, 0.01, 1e-3 * (interval > 0), seed, 0.02),
+        shares,
+        st.just(0.0) | st.floats(0.01, 3.0),
+        st.integers(0, 2**31 - 1),
+    )
+    scaled = replace(scaled, sensors=tuple(draw(st.lists(sensors, max_size=3))))
     depths = np.cumsum([0.0, *(draw(st.floats(0.05, 2.0)) for _ in range(draw(st.integers(0, 8))))])
     first = draw(st.floats(0.0, 1.5))
     survey = Survey(tuple(depths.tolist()), tuple(first + draw(st.floats(-0.03, 0.03)) for _ in depths))

@@ -104,6 +104,7 @@ def controller() -> Any:
     slave.start_inclination, slave.build_length = 1.0, 1.0
     slave.proportional_gain, slave.force_limit = 1e3, 100.0
     slave.enter_initialization_mode()
+    slave.next_survey = 0.0
     return slave
 
 
@@ -162,8 +163,8 @@ def test_the_plan_in_it_is_the_plan_of_the_example(ssp: Path) -> None:
     assert given.start_inclination == before
     assert given.build_length == pytest.approx(end - start, abs=1e-9)
     assert given.build_rate == pytest.approx((after - before) / (end - start), rel=1e-12)
-    first, second, _ = CASE.bha.stabilizer_positions
-    assert given.sensor_distance == pytest.approx((first + second) / 2)
+    assert (given.sensor_distance,) == CASE.bha.sensor_positions
+    assert (given.survey_interval,) == CASE.bha.sensor_intervals
 
 
 def test_the_controllers_module_is_named_after_its_content(unpacked: Path) -> None:

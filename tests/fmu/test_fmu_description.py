@@ -102,7 +102,8 @@ def starting_outputs(case: Case, force: float) -> dict[str, float]:
 def followers(case: Case, force: float) -> dict[str, set[str]]:
     """Which outputs differ at the start where an input or a parameter does, by the name of that."""
     bent = replace(case.survey, inclination=tuple(x + 0.01 * x**2 for x in case.survey.inclination))
-    changed = {name: (with_parameters(case, {name: 1.01 * value}), force) for name, value in parameters(case).items()}
+    other = {name: value + 1 if isinstance(value, int) else 1.01 * value for name, value in parameters(case).items()}
+    changed = {name: (with_parameters(case, {name: value}), force) for name, value in other.items()}
     changed |= {"rss_force": (case, force + 100.0), "survey_file": (replace(case, survey=bent), force)}
     before = starting_outputs(case, force)
     return {

@@ -83,6 +83,7 @@ def test_a_folder_that_is_none_is_refused(start: Start, folder: Path) -> None:
         ("layered 0", "layered 2", "case.txt:7: layered: must be 0 to 1, got 2.0"),
         ("ground 0", "ground 9", "ground: must be as many numbers as layers have, got 9"),
         ("body_points 0", "body_points -1", "case.txt:6: body_points: must be 0 to 128, got -1.0"),
+        ("sensors 0", "sensors 9", "case.txt:7: sensors: must be 0 to 8, got 9.0"),
         ("rss_position", "rss_place", "must be 'rss_position' and a value, got 'rss_place 0.6'"),
         ("rss_force 0.0", "rss_force nan", "case.txt:8: rss_force: must be a finite number, got 'nan'"),
         ("rss_force 0.0", "rss_force 0,0", "case.txt:8: rss_force: must be a finite number, got '0,0'"),

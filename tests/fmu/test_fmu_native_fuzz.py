@@ -86,6 +86,9 @@ def test_random_lives_of_an_instance_end_well(
 ) -> None:
     positions = tuple(case.bha.stabilizer_positions[0] * i for i in range(1, stabilizers + 1))
     bha = replace(case.bha, stabilizer_positions=positions, stabilizer_clearances=(3e-3,) * (stabilizers - 1))
+    if stabilizers > 2:
+        instrument = {"sensor_positions": (5.0, 0.0), "sensor_intervals": (0.4, 0.0), "sensor_noises": (1e-3, 0.0)}
+        bha = replace(bha, **instrument)  # type: ignore[arg-type]
     fuzz(fuzzers("fuzz_native"), replace(case, bha=bha), LIVES // 2, tmp_path)
 
 

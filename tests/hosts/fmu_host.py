@@ -70,8 +70,8 @@ class Instance:
 
     def set_names(self, values: dict[str, object]) -> None:
         for name, value in values.items():
-            put = {"Real": self.slave.setReal, "String": self.slave.setString}[self.variables[name].type]
-            put([self.variables[name].valueReference], [value])
+            put = {"Real": self.slave.setReal, "Integer": self.slave.setInteger, "String": self.slave.setString}
+            put[self.variables[name].type]([self.variables[name].valueReference], [value])
 
     def get(self, name: str) -> Any:
         get = {"Real": self.slave.getReal, "Integer": self.slave.getInteger, "String": self.slave.getString}

@@ -46,8 +46,8 @@ def compiled(folder: Path, outputs: tuple[Quantity, ...]) -> Path:
 
 
 def test_an_output_that_c_does_not_compute_is_an_error_of_the_compiler(tmp_path: Path) -> None:
-    half_added = Quantity("sensor_inclination", "output", "rad", "", "", "inclination at the sensor", size="n-1")
-    with pytest.raises(CompilerError, match="OUT_SENSOR_INCLINATION"):
+    half_added = Quantity("sensor_torque", "output", "N.m", "", "", "torque at the sensor", size="sensors")
+    with pytest.raises(CompilerError, match="OUT_SENSOR_TORQUE"):
         compiled(tmp_path, (*OUTPUTS, half_added))
 
 
@@ -82,7 +82,7 @@ def started(
 
 
 def as_built(case: Case) -> Case:
-    """A case with two sections of the same beam, and two points of the body."""
+    """A case with two sections of the same beam, two points of the body, and two sensors."""
     bha = replace(
         case.bha,
         section_lengths=(3.0, 5.0),
@@ -91,6 +91,7 @@ def as_built(case: Case) -> Case:
         section_outer_diameters=(0.17, 0.17),
         body_point_positions=(2.0, 5.0),
         body_point_clearances=(0.02, 0.02),
+        sensor_positions=(2.0, 0.0),
     )
     return replace(case, bha=bha)
 
@@ -100,8 +101,12 @@ def as_built(case: Case) -> Case:
 def test_c_refuses_a_parameter_that_python_refuses_with_the_same_problem(case: Case, quantity: Quantity) -> None:
     case = case if quantity.count(2) else as_built(case)
     scalar, index = quantity.names(case.bha.structure)[-1], quantity.count(case.bha.structure) * quantity.is_list
-    bounds = {"above": quantity.above, "at_least": quantity.at_least, "at_most": quantity.at_most}
-    outside = [quantity.above, quantity.at_least - 1e-9, quantity.at_most + 1e-9]
+    bounds = {"above": quantity.above, "at_least": float(quantity.at_least), "at_most": float(quantity.at_most)}
+    outside = [
+        quantity.above,
+        quantity.at_least - 1e-9,
+        max(quantity.at_most + 1e-9, np.nextafter(quantity.at_most, inf)),
+    ]
     for value in (inf, -inf, nan, *filter(isfinite, outside)):
         with pytest.raises(ParameterError) as refused:
             check_number(quantity.name, float(value), index=index, **bounds)

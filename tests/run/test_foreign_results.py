@@ -108,7 +108,7 @@ def test_of_a_system_in_fmpy_the_borehole_is_read_and_not_what_also_takes_its_le
         next(csv.reader(file.read_text().splitlines()))
     )
     run = read_trajectory(file)
-    assert list(run.columns) == ["time", "rss_force", "drilled_length", "average_inclination[2]"]
+    assert list(run.columns) == ["time", "rss_force", "drilled_length", "sensor_inclination[1]"]
     np.testing.assert_array_equal(run["drilled_length"], run["time"] + 0.5)  # fmpy's rows have the time before the step
 
 

@@ -137,7 +137,7 @@ def log_plots(track: Track, shapes: Shapes) -> None:
     """The curves of all plots for which the run has columns."""
     rows = shapes.rows
     for name, plot in PLOTS.items():
-        curves = {track.entity(curve(name, scalar)): scalar for scalar in plot.names(rows.n)}
+        curves = {track.entity(curve(name, scalar)): scalar for scalar in plot.names(rows.structure)}
         for entity, scalar in (curves | {planned_curve(track, name): plot.planned}).items():
             if scalar in rows.columns:
                 send_curve(track, entity, moments(rows), plot.unit.factor * rows[scalar])

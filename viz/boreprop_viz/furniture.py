@@ -74,7 +74,7 @@ def log_styles(track: Track) -> None:
         rec.log(track.entity(f"bit_frame/{force}/label"), text, static=True)
     rec.log(track.entity("bit_frame/tilt/label"), text, static=True)
     for name, plot in PLOTS.items():
-        scalars = plot.names(n)
+        scalars = plot.names(track.case.structure)
         for scalar, colour in zip(scalars, track.shades(plot.colours[: len(scalars)]), strict=True):
             log_curve_style(track, curve(name, scalar), curve_label(scalar, plot.unit), colour, 2.0)
         if plot.planned:

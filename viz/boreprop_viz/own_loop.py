@@ -17,7 +17,7 @@ from boreprop.case.case import Case
 from boreprop.case.file import load_case
 from boreprop.case.packed import read_packed_case
 from boreprop.cli.console import check_output, warn
-from boreprop.core.quantities import BY_NAME, CLEARANCES, names_of_runs
+from boreprop.core.quantities import BY_NAME, CLEARANCES, Structure, names_of_runs
 from boreprop.core.survey import Survey
 from boreprop.errors import InputError, shown
 
@@ -184,7 +184,7 @@ class LiveView:
         rows = self._rows
         if rows.ended.is_set():
             raise InputError(f"send: must be called inside the with block, got a row at {time:g} s after its end")
-        row = scalars({"time": time, **values}, rows.n)
+        row = scalars({"time": time, **values}, rows.case.structure)
         if not rows.columns:
             rows.begin(row)
             self._thread.start()
@@ -278,8 +278,8 @@ class Rows:
             raise self.error
 
 
-def scalars(values: dict[str, Any], n: int) -> dict[str, float]:
-    """Values by scalar name, from values of quantities, some of which are one for each of `n` stabilizers."""
+def scalars(values: dict[str, Any], structure: int | Structure) -> dict[str, float]:
+    """Values by scalar name, from values of quantities, some of which are one for each stabilizer or sensor."""
     if NUMBERS.issuperset(map(type, values.values())):
         return values
     by_name: dict[str, float] = {}
@@ -291,7 +291,7 @@ def scalars(values: dict[str, Any], n: int) -> dict[str, float]:
         if elements.ndim == 0:
             by_name[name] = float(elements)
             continue
-        names = BY_NAME[name].names(n) if name in BY_NAME else [name]
+        names = BY_NAME[name].names(structure) if name in BY_NAME else [name]
         if elements.shape != (len(names),):
             raise InputError(f"{name}: must have {len(names)} values, got the shape {elements.shape}")
         by_name |= zip(names, elements.tolist(), strict=True)

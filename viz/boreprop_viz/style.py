@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 
-from boreprop.core.quantities import BY_NAME
+from boreprop.core.quantities import BY_NAME, MAX_SENSORS, Structure
 from boreprop.run.trajectory import Trajectory
-from boreprop.units import BUILD_LENGTH, UNITS, Unit
+from boreprop.units import BUILD_LENGTH, SMALL_LENGTH, UNITS, Unit
 
 from .scene import Array
 
@@ -26,13 +26,17 @@ BY_SEVERITY = ((140, 92, 10), (176, 116, 0), (208, 142, 8), (234, 170, 34), (250
 BY_RUN = (ORANGE, SKY_BLUE, GREEN, VERMILION, BLUE, VIOLET, OLIVE, BROWN, CRIMSON, TEAL)
 
 
-SHADES = (0.0, 0.5, 0.65, 0.75, 0.8)  # of a run's colour, the first is the colour itself, the others are greyer
+# of a run's colour, the first is the colour itself, the others are greyer
+SHADES = (0.0, 0.5, 0.65, 0.75, 0.8, 0.83, 0.86, 0.88)
 
 
 def mixed(colour: Colour, other: Colour, share: float) -> Colour:
     """`colour` with a share of another one."""
     red, green, blue = (round(c + share * (o - c)) for c, o in zip(colour, other, strict=True))
     return red, green, blue
+
+
+BY_SENSOR = tuple(mixed(BLUE, WHITE, i / MAX_SENSORS) for i in range(MAX_SENSORS))
 
 
 @dataclass(frozen=True)
@@ -91,21 +95,29 @@ class Plot:
     columns: tuple[str, ...]
     colours: tuple[Colour, ...]
     planned: str = ""  # the column with what is planned, which all runs share
+    small: bool = False  # a length shown in mm
 
     @property
     def unit(self) -> Unit:
         """The unit in which the columns are shown."""
         column = self.columns[0]
+        if self.small:
+            return SMALL_LENGTH
         return UNITS[BY_NAME[column].unit if column in BY_NAME else SI_OF_HOLE[column]]
 
-    def names(self, n: int) -> list[str]:
-        """The scalar names of the columns for `n` stabilizers. A column that is not in the table is a scalar."""
-        scalars = [BY_NAME[column].names(n) if column in BY_NAME else [column] for column in self.columns]
+    def names(self, structure: int | Structure) -> list[str]:
+        """The scalar names of the columns for a structure. A column that is not in the table is a scalar."""
+        scalars = [BY_NAME[column].names(structure) if column in BY_NAME else [column] for column in self.columns]
         return list(chain.from_iterable(scalars))
 
     def curves(self, runs: Sequence[Trajectory]) -> list[Array]:
         """The values of all columns that some runs have, in SI units."""
-        return [run.columns[name] for run in runs for name in [*self.names(run.n), self.planned] if name in run.columns]
+        return [
+            run.columns[name]
+            for run in runs
+            for name in [*self.names(run.structure), self.planned]
+            if name in run.columns
+        ]
 
 
 PLOTS = {
@@ -117,6 +129,11 @@ PLOTS = {
     "bit_lateral_force": Plot("Bit side force", ("bit_lateral_force",), (BIT,)),
     "stabilizer_force": Plot("Contact forces, + from the low side", ("stabilizer_force",), BY_STABILIZER),
     "rss_force": Plot("RSS force, + builds", ("rss_force",), (RSS,)),
+    "sensor_inclination": Plot("Inclination at the sensors", ("sensor_inclination",), BY_SENSOR),
+    "sensor_bending_moment": Plot("Bending moment at the sensors", ("sensor_bending_moment",), BY_SENSOR),
+    "sensor_clearance": Plot(
+        "Distance of the body from the wall at the sensors", ("sensor_clearance",), BY_SENSOR, small=True
+    ),
     "active_weight_on_bit": Plot("Active weight on bit", ("active_weight_on_bit",), (BLUE,)),
     "rate_of_penetration": Plot("Rate of penetration", ("rate_of_penetration",), (BLUE,)),
 }
@@ -124,6 +141,7 @@ TABS = (  # names of tabs and the plots in each
     ("Hole", ("inclination", "build_rate", "bit_tilt")),
     ("Plan", ("distance_from_plan", "inclination_less_plan")),
     ("Forces", ("stabilizer_force", "rss_force", "bit_lateral_force")),
+    ("Sensors", ("sensor_inclination", "sensor_bending_moment", "sensor_clearance")),
     ("Drilling", ("active_weight_on_bit", "rate_of_penetration")),
 )
 

@@ -164,6 +164,13 @@ fmi2Status fmi2GetString(fmi2Component instance, const fmi2ValueReference vr[], 
     return status;
 }
 
+/* Take a number over. */
+static void take(Component *c, fmi2ValueReference reference, double value) {
+    if (value == c->value[reference]) return;
+    c->value[reference] = value;
+    changed(c);
+}
+
 /* Inputs and parameters are taken as they are, all of them or none, and checked when they are used. */
 fmi2Status fmi2SetReal(fmi2Component instance, const fmi2ValueReference vr[], size_t count, const fmi2Real value[]) {
     Component *c = called(instance, "fmi2SetReal", INSTANTIATED | INITIALIZATION | STEPPING);
@@ -176,10 +183,7 @@ fmi2Status fmi2SetReal(fmi2Component instance, const fmi2ValueReference vr[], si
     }
     for (size_t i = 0; i < count; i++) {
         if ((int)vr[i] == c->packed.variables.relative_tolerance) c->has_tolerance = 1;
-        if (value[i] != c->value[vr[i]]) {
-            c->value[vr[i]] = value[i];
-            changed(c);
-        }
+        take(c, vr[i], value[i]);
     }
     return fmi2OK;
 }
@@ -190,9 +194,14 @@ fmi2Status fmi2SetInteger(
     Component *c = called(instance, "fmi2SetInteger", INSTANTIATED | INITIALIZATION | STEPPING);
     char got[32];
     if (!c || !has(c, "fmi2SetInteger", count, vr, value)) return fmi2Error;
-    if (count) snprintf(got, sizeof got, "%d", value[0]);
-    if (count && is_of_kind(c, vr[0], INTEGER)) settable(c, vr[0], got); /* which says no: all of them are outputs */
-    return count ? fmi2Error : fmi2OK;
+    for (size_t i = 0; i < count; i++) {
+        if (!is_of_kind(c, vr[i], INTEGER)) return fmi2Error;
+        snprintf(got, sizeof got, "%d", value[i]);
+        int other = variable_at(c, vr[i])->role == OUTPUT || value[i] != c->value[vr[i]];
+        if (other && !settable(c, vr[i], got)) return fmi2Error;
+    }
+    for (size_t i = 0; i < count; i++) take(c, vr[i], value[i]);
+    return fmi2OK;
 }
 
 fmi2Status fmi2SetBoolean(

@@ -131,14 +131,15 @@ static int read_ground(CaseFile *file, PackedCase *packed, char why[LINE]) {
 }
 
 static int read_structure(CaseFile *file, Structure *structure, char why[LINE]) {
-    long n, sections, axial, points, layered;
+    long n, sections, axial, points, layered, sensors;
     if (!read_count(file, "stabilizers", 1, MAX_STABILIZERS, &n, why)) return 0;
     if (!read_count(file, "sections", 0, MAX_SECTIONS, &sections, why)) return 0;
     if (!read_count(file, "axial_load", 0, 1, &axial, why)) return 0;
     if (!read_count(file, "body_points", 0, MAX_POINTS, &points, why)) return 0;
     if (!read_count(file, "layered", 0, 1, &layered, why)) return 0;
+    if (!read_count(file, "sensors", 0, MAX_SENSORS, &sensors, why)) return 0;
     structure->n = (int)n, structure->sections = (int)sections, structure->axial = (int)axial;
-    structure->points = (int)points, structure->layered = (int)layered;
+    structure->points = (int)points, structure->layered = (int)layered, structure->sensors = (int)sensors;
     return 1;
 }
 
@@ -148,10 +149,13 @@ static int read_lines(CaseFile *file, PackedCase *packed, char why[LINE]) {
     Structure structure;
     if (!read_identity(file, packed, why) || !read_structure(file, &structure, why)) return 0;
     list_variables(all, structure);
-    for (int i = 0; i < all->count; i++)
-        if (all->at[i].role != OUTPUT && all->at[i].kind == REAL &&
-            !read_number(file, all->at[i].name, &packed->start[i], why))
-            return 0;
+    for (int i = 0; i < all->count; i++) {
+        const Variable *own = &all->at[i];
+        if (own->role == OUTPUT || own->kind == STRING) continue;
+        if (!read_number(file, own->name, &packed->start[i], why)) return 0;
+        if (!is_value_of(own->kind, packed->start[i]))
+            return explain(why, "%s:%ld: %s: must be a whole number", file->path, file->line, own->name);
+    }
     if (!read_radius(file, packed, why)) return 0;
     if (!read_stations(file, packed, why) || !read_ground(file, packed, why)) return 0;
     if (!*file->at) return 1;

@@ -38,7 +38,11 @@ static int restore(Component *c, const Saved *saved, char why[LINE]) {
     Problem problem;
     if (size < least) return explain(why, "state: must be one of this FMU, got one of %lu bytes", (unsigned long)size);
     for (int i = 0; i < FIXED; i++) fixed[i] = get_double(&from);
-    for (int i = 0; i < all->count; i++) value[i] = get_double(&from);
+    for (int i = 0; i < all->count; i++) {
+        value[i] = get_double(&from);
+        if (!is_value_of(all->at[i].kind, value[i]))
+            return explain(why, "state: must be one of this FMU, got one whose %s is no Integer", all->at[i].name);
+    }
     double text = fixed[8];
     int phase = fixed[0] >= 0.0 && fixed[0] <= 8.0 ? (int)fixed[0] : 0;
     if (!(phase == INSTANTIATED || phase == INITIALIZATION || phase == STEPPING || phase == TERMINATED) ||

@@ -3,6 +3,7 @@
 #define BOREPROP_VARIABLES_H
 
 #include "system.h"
+#include <limits.h>
 
 typedef enum { INPUT, OUTPUT, PARAMETER } Role;
 typedef enum { REAL, INTEGER, BOOLEAN, STRING } Kind;
@@ -25,6 +26,11 @@ typedef struct {
     Variable at[MOST_VARIABLES];
 } Variables;
 
+/* Whether a number can be the value of a variable of this kind. */
+static int is_value_of(Kind kind, double value) {
+    return kind != INTEGER || (fabs(value) <= INT_MAX && value == floor(value));
+}
+
 static void add_variables(Variables *all, int place, Name quantity, Size size, Role role, Kind kind) {
     for (int i = 0; i < value_count(size, all->structure); i++) {
         Variable *next = &all->at[all->count++];
@@ -45,9 +51,10 @@ static void list_variables(Variables *all, Structure structure) {
     }
     all->first_parameter = all->count;
     for (int k = 0; k < PARAMETER_COUNT; k++) {
+        Kind kind = PARAMETER_TABLE[k].is_whole ? INTEGER : REAL;
         if (PARAMETER_TABLE[k].name == Q_RELATIVE_TOLERANCE) all->relative_tolerance = all->count;
         if (PARAMETER_TABLE[k].name == Q_STABILIZER_CLEARANCE) all->first_clearance = all->count;
-        add_variables(all, k, PARAMETER_TABLE[k].name, PARAMETER_TABLE[k].size, PARAMETER, REAL);
+        add_variables(all, k, PARAMETER_TABLE[k].name, PARAMETER_TABLE[k].size, PARAMETER, kind);
     }
     all->survey_file = all->count;
     add_variables(all, 0, Q_SURVEY_FILE, ONE, PARAMETER, STRING);

@@ -152,7 +152,7 @@ def _add_variable(
         typed.set("max", number(quantity.at_most))
     if name in start:
         value = start[name]
-        typed.set("start", value if isinstance(value, str) else repr(value))
+        typed.set("start", value if isinstance(value, str) else number(value))
 
 
 def _add_structure(element: Element, scalars: list[tuple[str, Quantity]], structure: int | Structure) -> None:

@@ -126,7 +126,7 @@ class Borehole(Fmi2Slave):  # type: ignore[misc]
         self._call("fmi2SetReal", BEFORE_THE_END, self._set, vrs, values, "Real")
 
     def set_integer(self, vrs: list[int], values: list[int]) -> None:
-        """There are no Integer inputs and parameters."""
+        """Take parameters over, all or none."""
         self._call("fmi2SetInteger", BEFORE_THE_END, self._set, vrs, values, "Integer")
 
     def set_boolean(self, vrs: list[int], values: list[bool]) -> None:

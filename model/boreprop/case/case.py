@@ -15,6 +15,7 @@ from ..core.quantities import BY_NAME, CLEARANCES, INPUTS, ROCK, Structure, quan
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly, eta_pi
 from .formations import DEPTHS, Formation
+from .sensors import with_clearances
 
 CLOSE = 0.005  # m: depths are given to the centimetre, so a first entry this little beyond the bit is at it
 
@@ -278,6 +279,7 @@ class Case:
         check_quantity("bit_true_vertical_depth", self.true_vertical_depth)
         self._take_first_inputs()
         check_part("", self)
+        object.__setattr__(self, "bha", with_clearances(self.bha, self.bit_diameter))
         if self.weight_on_bit:
             check_number("weight_on_bit", self.weight_on_bit, at_least=self.active_weight_on_bit)
 

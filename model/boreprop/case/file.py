@@ -18,6 +18,7 @@ from .case import Case
 from .formations import file_degrees, formations_in_file
 from .schema import OF_FILES, TABLES, Read, parse, read_toml
 from .sections import sections_in_file
+from .sensors import sensors_in_file
 
 
 def load_case(path: str | Path) -> Case:
@@ -147,13 +148,14 @@ def dump_case(case: Case, **run: str | None) -> str:
             value = attrgetter(quantity.field)(case)
             if value == quantity.start:
                 continue
-            written = (
-                file_degrees if key.endswith("_deg") else {"String": str, "Boolean": bool}.get(quantity.kind, float)
-            )
+            kinds = {"String": str, "Boolean": bool, "Integer": int}
+            written = file_degrees if key.endswith("_deg") else kinds.get(quantity.kind, float)
             columns = document.setdefault(table, {})
             columns[key] = list(map(written, value)) if isinstance(value, tuple) else written(value)
     if "section" in document:
         document["bha"]["section"] = sections_in_file(document.pop("section"))
+    if "sensor" in document:
+        document["sensor"] = sensors_in_file(document["sensor"])
     if case.inputs is not None:
         entries = {"drilled_length": case.inputs.drilled_length, **dict(case.inputs.inputs)}
         document["drilling"]["schedule"] = {name: list(map(float, values)) for name, values in entries.items()}

@@ -27,6 +27,7 @@ from .case import CLOSE, INTERPOLATIONS, Case, InputSchedule, Schedule
 from .formations import lift_formations, lift_wear
 from .schedules import LENGTHS, NAMES_OF_COLUMNS, force_schedule, input_schedule
 from .sections import lift_sections
+from .sensors import lift_sensors
 from .tables import BY_KEY, read_inputs, read_schedule, read_survey
 
 Document = dict[str, dict[str, Any]]  # table → key → value
@@ -72,6 +73,7 @@ def parse(text: str, source: Path) -> Read:
     document = read_toml(text, source)
     formations, wear = lift_formations(document, source), lift_wear(document, source)
     lift_sections(document, source)
+    lift_sensors(document, source)
     place_points(document, source)
     check_keys(document, source)
     case, notes = _case(document, source), []
@@ -247,7 +249,7 @@ def check_keys(document: dict[str, Any], source: Path) -> None:
     Keys whose values are texts are checked for their type too; pydantic checks all other types.
     """
     for table, content in document.items():
-        if table not in (*TABLES, "section"):
+        if table not in (*TABLES, "section", "sensor"):
             raise InputError(f"{source}: {table}: {_unknown(table)}, got {shown(content)}")
         if not isinstance(content, dict):
             raise InputError(f"{source}: {table}: must be a table, got {shown(content)}")

@@ -1,18 +1,20 @@
 """The questions of `boreprop new`: what an engineer knows of an assembly, a bit and a hole."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import inf
 
-from ..case.template import Answer
-from ..core.quantities import MAX_STABILIZERS
+from ..case.template import SECTION, Answer, sections
+from ..core.quantities import MAX_SECTIONS, MAX_STABILIZERS
 from ..core.system import LEAST_SPAN
 from ..errors import InputError, shown
 from ..units import read_amounts
 
 Answers = Mapping[str, Answer]
 
+OUTER = (0.03, 0.5)  # m, of a collar
+LENGTHS = (0.05, 200.0)  # m, of a section
 LEAST_FORCE = 100.0  # N: a smaller one is a number of kN or klbf without its unit
 COLLARS = (
     (0.145, "3 1/2 in", "1 1/2 in"),
@@ -116,9 +118,11 @@ def _below(other: str, what: str) -> Callable[[tuple[float, ...], Answers], str]
     )
 
 
-def _positions(values: tuple[float, ...], _: Answers) -> str:
+def _positions(values: tuple[float, ...], before: Answers) -> str:
     if len(values) > MAX_STABILIZERS:
         return f"must be 1 to {MAX_STABILIZERS} positions"
+    if sections(before) and values[-1] > sum(length for length, _, _ in sections(before)) * (1 + 1e-9):
+        return f"must not lie beyond the sections, which reach to {sum(s[0] for s in sections(before)):.6g} m together"
     apart = all(above - below >= LEAST_SPAN * (1 - 1e-9) for below, above in pairwise(values))
     return "" if apart else f"must increase by at least {LEAST_SPAN:g} m, from the bit up"
 
@@ -127,7 +131,8 @@ def _under_gauge(values: tuple[float, ...], before: Answers) -> str:
     count = len(before["stabilizers"].values) - 1
     if len(values) not in (1, max(count, 1)):
         return f"must be one amount, or one for each stabilizer but the last, here {count}"
-    room = before["hole_size"].value - before["collar_outer"].value
+    outer = max(outer for _, outer, _ in sections(before)) if sections(before) else before["collar_outer"].value
+    room = before["hole_size"].value - outer
     return "" if max(values) < room else f"must leave a blade larger than the collar, so less than {room:.4g} m"
 
 
@@ -140,13 +145,25 @@ def _force(values: tuple[float, ...], _: Answers) -> str:
     return "" if values[0] == 0.0 or abs(values[0]) >= LEAST_FORCE else f"must be 0 or at least {LEAST_FORCE:g} N"
 
 
+def _one_collar(before: Answers) -> bool:
+    return "sections" not in before
+
+
 def _several_stabilizers(before: Answers) -> bool:
     return len(before["stabilizers"].values) > 1
 
 
 QUESTIONS = (
     Question("hole_size", "Diameter of the hole", "m", "8.5 in", 0.05, 1.2),
-    Question("collar_outer", "Outer diameter of the collars", "m", _collar(1), 0.03, 0.5, _below("hole_size", "hole")),
+    Question(
+        "collar_outer",
+        "Outer diameter of the collars",
+        "m",
+        _collar(1),
+        *OUTER,
+        _below("hole_size", "hole"),
+        needed=_one_collar,
+    ),
     Question(
         "collar_inner",
         "Inner diameter of the collars",
@@ -155,6 +172,7 @@ QUESTIONS = (
         0.0,
         0.4,
         _below("collar_outer", "outer diameter"),
+        needed=_one_collar,
     ),
     Question("mud_weight", "Density of the mud", "kg/m³", "10 ppg", 500.0, 2600.0),
     Question(
@@ -190,3 +208,29 @@ QUESTIONS = (
     Question("length", "Length to drill", "m", "200 m", 0.01, 2e4),
 )
 """All questions, in the order in which they are asked."""
+
+
+def read_sections(texts: Sequence[str], hole_size: Answer | None) -> Answer:
+    """The answers to --section, one after the other; `InputError` if one is wrong or does not fit into the hole."""
+    if len(texts) > MAX_SECTIONS:
+        raise InputError(f"--section: must be given at most {MAX_SECTIONS} times, got {len(texts)}")
+    values: tuple[float, ...] = ()
+    for text in texts:
+        try:
+            read = read_amounts(text, "m")
+        except ValueError:
+            read = ()
+        if len(read) != SECTION:
+            constraint = "must be length, outer and inner diameter between commas, such as 9 m, 6 3/4 in, 2 13/16 in"
+            raise InputError(f"--section: {constraint}, got {shown(text)}")
+        length, outer, inner = read
+        hole = hole_size.value if hole_size else inf
+        if not (LENGTHS[0] <= length <= LENGTHS[1] and OUTER[0] <= outer <= OUTER[1]):
+            constraint = f"must have a length of {LENGTHS[0]:g} to {LENGTHS[1]:g} m and an outer diameter of "
+            constraint += f"{OUTER[0]:g} to {OUTER[1]:g} m (numbers without a unit have that of the next, or are in m)"
+            raise InputError(f"--section: {constraint}, got {shown(text)}")
+        if not 0 <= inner < outer < hole:
+            constraint = "must have an inner diameter below the outer one, and that below the diameter of the hole"
+            raise InputError(f"--section: {constraint}, got {shown(text)}")
+        values += read
+    return Answer(values, "; ".join(" ".join(text.replace(";", ",").split()) for text in texts))

@@ -8,6 +8,8 @@ of the bit's own axis from the hole axis at the stabilizers, the RSS force, the 
 sums over ⟨Θ⟩_k − θ in (14), (17) and (21) depend on these offsets only, so the coefficients below belong to e_i.
 """
 
+from typing import NamedTuple
+
 from .linear import dot
 from .system import Scaled
 
@@ -37,6 +39,14 @@ def force_moment(p: float, lambda_: float) -> float:
 def force_reaction(p: float, lambda_: float) -> float:
     """Lateral force F_0 at the bit under a unit force at `p`: (24b) and (24c)."""
     return -(2 * lambda_**3 - 3 * lambda_ * p * p + p**3) / (2 * lambda_**3)
+
+
+class Line(NamedTuple):
+    """The beam at a place, from the bit's axis: its distance, the slope of that, and the bending moment."""
+
+    v: float
+    slope: float
+    moment: float
 
 
 class Beam:
@@ -97,3 +107,15 @@ class Beam:
             + flexibility(s, self.Delta, self.lambda_) * F_rss
             + weight_deflection(s, self.w, self.lambda_) * sin_Theta_1
         )
+
+    def line(self, s: float, M: float, F_0: float, F: list[float], F_rss: float, sin_Theta_1: float) -> Line:
+        """The beam at `s`, 0 <= s <= λ, from the bit on: v'' = 3 m, m'' = −w sin⟨Θ⟩_1 and the forces, m(0) = −M."""
+        v = -M * s * s / 2 + F_0 * s**3 / 6 - self.w * sin_Theta_1 * s**4 / 24
+        slope = -M * s + F_0 * s * s / 2 - self.w * sin_Theta_1 * s**3 / 6
+        moment = -M + F_0 * s - self.w * sin_Theta_1 * s * s / 2
+        for p, force in zip((self.Delta, *self.s), (F_rss, *F)):  # noqa: B905 - nothing pushes the last stabilizer
+            above = max(s - p, 0.0)
+            v += force * above**3 / 6
+            slope += force * above * above / 2
+            moment += force * above
+        return Line(3 * v, 3 * slope, moment)

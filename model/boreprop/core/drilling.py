@@ -254,6 +254,8 @@ class Drilling:
             "bit_lateral_force": F_0 * F_star,
             "bit_moment": -mode.M(loads) * F_star * l1,
             "borehole_curvature": (Theta - p.earlier_inclination(p.xi - 1.0)) / l1,
+        }
+        values |= self._sensed() | {
             "displacement": x * l1,
             "true_vertical_depth": z * l1,
             "eta_pi": p.eta_pi,
@@ -261,6 +263,18 @@ class Drilling:
         if isinstance(p, GroundIntegrator) and p.ground.tops:
             values["formation"] = p.layer
         return values
+
+    def _sensed(self) -> dict[str, float]:
+        """The outputs of the sensors where the bit is."""
+        p, l1, F_star = self.integrator, self._length, self._force
+        inclinations, moments, clearances = {}, {}, {}
+        for i, (sensor, reading) in enumerate(zip(p.scaled.sensors, p.readings, strict=True), 1):
+            inclination, offset, moment = p.sensed(sensor.s, p.xi)
+            told = reading.inclination if sensor.interval else inclination + sensor.bias
+            inclinations[f"sensor_inclination[{i}]"] = told
+            moments[f"sensor_bending_moment[{i}]"] = moment * F_star * l1
+            clearances[f"sensor_clearance[{i}]"] = (sensor.clearance - abs(offset)) * l1
+        return inclinations | moments | clearances
 
     def save(self) -> dict[str, Any]:
         """The whole evolving state, of numbers, strings, lists and tuples; JSON keeps it exactly."""

@@ -16,18 +16,18 @@ from .errors import CannotContinue
 from .events import Event, first_event
 from .hole import Drilled, Hole
 from .inputs import Inputs
-from .kinks import MERGE, SMOOTHEST_KINK, Kinks
+from .kinks import MERGE, Kinks
 from .law import Law, Laws, bend
 from .modes import Loads, Mode, Modes, Regime, bit_tilt, saturation
 from .options import Options, Statistics
-from .plan import CLOSER, LARGEST_GROWTH, SMALLEST_GROWTH, Plan, growth
+from .plan import CLOSER, LARGEST_GROWTH, SMALLEST_GROWTH, Plan, first_plan, growth
 from .problems import Problem
+from .sensors import Reading, Sensed
 from .step import Step, Trial, try_step
 from .survey import Survey
 
 LOOK_BACK = 1.0  # ℓ₁: how far behind the bit Θ may be asked for, as the curvature over the last ℓ₁ does
-STRETCH = 1.3  # how much longer than planned a step may be if it then ends on the next kink: one long step that may be
-# rejected is tried before two short ones
+STRETCH = 1.3  # how much longer than planned a step may be to end on the next kink: one long step before two short ones
 LARGEST_INCLINATION = 2 * pi  # beyond a full turn nothing is drilled
 MOST_SLACK = 1e-6  # of that slack: what needs more is no touch that rounding hides
 ORIGIN_LIMIT = 8.0  # |Y| beyond which the origin of Y is moved to the bit: rounding errors of Y stay below 1e-15
@@ -84,7 +84,9 @@ class Integrator:
         theta = self.hole.final_inclination
         self.present = Step.standstill(0.0, theta, 0.0)  # the step that the bit is in
         inputs = Inputs(F_rss, eta_pi, 0.0, 0.0, self.scaled.epsilon, self.scaled.psi_star)
+        self.readings = [Reading() for _ in self.scaled.sensors]
         self._restart(self._loads(0.0, theta, 0.0, F_rss), inputs, theta)
+        self._read(0.0)
 
     # moving
 
@@ -101,6 +103,7 @@ class Integrator:
                     self._steer(inputs)
                 self._take_steps(xi)
         self.xi = xi
+        self._read(xi)
 
     def change_clearances(self, y_star: tuple[float, ...]) -> None:
         """Let the stabilizers have other clearances from where the bit is; errors as in `drill`."""
@@ -132,6 +135,7 @@ class Integrator:
         with self._all_or_nothing():
             self._take_step()
         self.xi = self.present.end
+        self._read(self.xi)
         return self.present
 
     @contextmanager
@@ -153,6 +157,13 @@ class Integrator:
         while xi > self.present.end:
             self._check_way(xi, last)
             self._take_step()
+
+    def _read(self, xi: float) -> None:
+        """Let each sensor take the last reading that is due with the bit at `xi`, in the present step."""
+        for i, sensor in enumerate(self.scaled.sensors):
+            if sensor.interval and (number := sensor.due(xi)) > self.readings[i].number:
+                inclination = self.sensed(sensor.s, min(number * sensor.interval, xi)).inclination
+                self.readings[i] = Reading(number, sensor.reads(inclination, i, number))
 
     def _check_way(self, xi: float, last: int) -> None:
         """Raise unless so many steps at most may lead to `xi`."""
@@ -222,6 +233,13 @@ class Integrator:
         e = [Y - Y_i - s_i * theta for Y_i, s_i in zip(delayed, self.scaled.s)]
         return Loads(e, F_rss, sin(Y - delayed[0]))
 
+    def sensed(self, s: float, xi: float) -> Sensed:
+        """The BHA at `s` behind the bit while that is at `xi`, in the present step."""
+        theta, Y = self.present.state(xi)
+        loads = self._loads(xi, theta, Y, self.inputs.ahead(xi - self.inputs_xi).F_rss)
+        v, slope, moment = self.settled(loads).line(self.modes.beam, s, loads)
+        return Sensed(theta - slope, Y - self.hole.Y(xi - s) - s * theta + v, moment)
+
     def settled(self, loads: Loads) -> Mode:
         """The mode whose contacts hold under `loads`."""
         return self.modes.settle(loads, self.regime.contact)
@@ -252,6 +270,7 @@ class Integrator:
             "kinks": self.kinks.save(),
             "step": self.present,
             "hole": self.hole.save(),
+            "readings": self.readings[:],
         }
 
     def restore(self, state: dict[str, Any]) -> None:
@@ -265,6 +284,7 @@ class Integrator:
         xi, h, theta, Y, *rest = state["step"]
         self.present = Step(xi, h, tuple(theta), tuple(Y), *rest)
         self.hole.restore(state["hole"])
+        self.readings = [Reading(*reading) for reading in state["readings"]]
         self._take_over(Inputs(*state["inputs"]), state["inputs_xi"])
         contact, side = state["regime"]
         self._change_regime(Regime(tuple(contact), side))
@@ -312,12 +332,13 @@ class Integrator:
     def _take_step(self) -> None:
         """Append one step at the end of the last one."""
         last, xi = self.present, self.present.end
+        self._read(xi)
         theta, Y, kink = self._leave(last)
         inputs = self.inputs.ahead(xi - self.inputs_xi)
         if inputs.eta_pi_slope:  # each step has laws of its own
             self._laws = Laws(self.modes, inputs, xi)
             self._change_regime(self.regime)
-        plan = self._first_plan(last, kink)
+        plan = first_plan(last, kink, self.options.layers * self._law.relaxation)
         trial, event = self._find_step(plan, xi, theta, Y)
         _, h, thetas, Ys, end, *_ = trial.step
         next_h = h * min(growth(trial.error), LARGEST_GROWTH)
@@ -331,15 +352,6 @@ class Integrator:
         if kink is not None:
             self.kinks.add_images(xi, kink, abs(step.derivative(kink, xi) - last.derivative(kink, xi)))
         self._accepted += 1
-
-    def _first_plan(self, last: Step, kink: int | None) -> Plan:
-        """The plan of the next step: as the last one left it, but after a kink no longer than `layers` allow."""
-        plan = Plan(last.next_h, last.next_h)
-        if (kink is not None and kink <= SMOOTHEST_KINK) or last.end == last.xi:
-            plan.h = min(plan.h, self.options.layers * self._law.relaxation)
-            if last.event is not None:
-                plan.resumed = plan.h
-        return plan
 
     def _find_step(self, plan: Plan, xi: float, theta: float, Y: float) -> tuple[Trial, Event | None]:
         """The first trial of a step whose error is tolerable and whose regime holds beyond its start; its first event.

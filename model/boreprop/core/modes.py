@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from math import inf
 from typing import NamedTuple
 
-from .beam import Beam
+from .beam import Beam, Line
 from .linear import dot, inverse
 from .system import Scaled
 
@@ -92,6 +92,11 @@ class Mode:
         self.M = Row([beam.M_e * c for c in e_n], beam.M_rss, beam.M_g).plus(beam.M_F, self.F)
         self.F_0 = Row([beam.F0_e * c for c in e_n], beam.F0_rss, beam.F0_g).plus(beam.F0_F, self.F)
         self.bounds = [self._bound(i, y) for i, y in enumerate(y_star) if y]
+
+    def line(self, beam: Beam, s: float, loads: Loads) -> Line:
+        """The beam of this mode at `s` under `loads`."""
+        F = [row(loads) for row in self.F]
+        return beam.line(s, self.M(loads), self.F_0(loads), F, loads.F_rss, loads.sin_Theta_1)
 
     def _bound(self, i: int, y_star: float) -> Bound:
         """While it touches a wall, F_i keeps its sign; while it is free, δ_i stays within the clearance, (7).

@@ -3,7 +3,9 @@
 from dataclasses import dataclass
 
 from . import radau
+from .kinks import SMOOTHEST_KINK
 from .modes import ROUNDING
+from .step import Step
 
 SAFETY = 0.85  # of the step that the error estimate asks for, so that few of the next ones are rejected
 LARGEST_GROWTH = 8.0  # of a step over the last, as in RADAU5 (Hairer & Wanner, IV.8): an estimate reaches no farther
@@ -32,6 +34,16 @@ class Plan:
         """Try again, each regime having met a bound before the first point."""
         self.h, self.repeated, self.switches = h, True, 0
         self.slack *= CLOSER
+
+
+def first_plan(last: Step, kink: int | None, longest: float) -> Plan:
+    """The plan of the next step: as the last one left it, but after a kink no longer than `longest`."""
+    plan = Plan(last.next_h, last.next_h)
+    if (kink is not None and kink <= SMOOTHEST_KINK) or last.end == last.xi:
+        plan.h = min(plan.h, longest)
+        if last.event is not None:
+            plan.resumed = plan.h
+    return plan
 
 
 def growth(error: float) -> float:

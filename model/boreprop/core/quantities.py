@@ -14,12 +14,13 @@ from typing import Any, Literal, NamedTuple
 Role = Literal["input", "output", "parameter", "case"]  # "case": only a case has it, an FMU has not
 Kind = Literal["Real", "Integer", "Boolean", "String"]
 Size = Literal[
-    "1", "n", "n-1", "uniform", "sections", "stepped", "axial", "points", "body", "layered", "column"
+    "1", "n", "n-1", "uniform", "sections", "stepped", "axial", "points", "body", "layered", "sensors", "column"
 ]  # "column": as long as its table
 
 MAX_STABILIZERS = 6
 MAX_SECTIONS = 24
 MAX_POINTS = 128  # of the body at which it may touch the wall
+MAX_SENSORS = 8
 MOST_DRILLED = 1e5  # m in a communication step of an FMU: no hole is longer, and a step must end soon
 RELATIVE_TOLERANCE = 1e-7  # with it θ is within 5e-7 rad of the reference trajectories
 
@@ -32,6 +33,7 @@ class Structure(NamedTuple):
     axial_load: int = 0  # 1: the load along the beam counts
     body_points: int = 0  # of the beam between the stabilizers, at which its body may touch the wall
     layered: int = 0  # 1: rock comes in layers by true vertical depth
+    sensors: int = 0
 
     @property
     def is_of_the_paper(self) -> bool:
@@ -48,7 +50,7 @@ class Structure(NamedTuple):
 @cache
 def counts(structure: Structure) -> dict[str, int]:
     """Size → how many values a quantity of that size has."""
-    n, sections, axial, points, layered = structure
+    n, sections, axial, points, layered, sensors = structure
     return {
         "1": 1,
         "n": n,
@@ -61,6 +63,7 @@ def counts(structure: Structure) -> dict[str, int]:
         "points": points,
         "body": int(bool(points)),
         "layered": layered,
+        "sensors": sensors,
     }
 
 
@@ -125,7 +128,7 @@ class Quantity:
     @property
     def is_list(self) -> bool:
         """Whether its values are numbered."""
-        return self.size in ("n", "n-1", "sections", "points")
+        return self.size in ("n", "n-1", "sections", "points", "sensors")
 
     @property
     def part(self) -> str:
@@ -150,6 +153,7 @@ SHAPE = (
     *("body_point_position", "body_point_clearance"),
 )
 FORCE = ("rss_force", "weight_on_bit", "survey_file", *SHAPE)
+INSTRUMENT = ("sensor_bias", "sensor_noise", "sensor_seed")
 FORCE_AND_WEIGHT = (*FORCE, "active_weight_on_bit", "lateral_steering_resistance", "bit_tilt_limit")
 
 QUANTITIES: tuple[Quantity, ...] = (
@@ -177,6 +181,9 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("body_contact_force", "output", "N", "F_ℓ − F_u", "(7)", "largest force of the wall on the body between the stabilizers, positive from the lower wall", size="body", nominal=1e4, follows=FORCE),
     Quantity("body_contact_position", "output", "m", "s", "", "where that force acts, from the bit; 0 if the body touches no wall", size="body", at_least=0.0, nominal=10.0, follows=FORCE),
     Quantity("wall_distance", "output", "m", "", "", "least distance of the body from the wall", size="body", nominal=1e-2, follows=FORCE),
+    Quantity("sensor_inclination", "output", "rad", "", "", "inclination of the BHA at the sensor; with an interval its last reading, with bias and noise", size="sensors", follows=(*FORCE, "sensor_position", *INSTRUMENT)),
+    Quantity("sensor_bending_moment", "output", "N.m", "", "", "bending moment of the BHA at the sensor, positive as in a hole that builds; at the bit the moment on the bit", size="sensors", nominal=1e4, follows=(*FORCE, "sensor_position")),
+    Quantity("sensor_clearance", "output", "m", "", "", "distance of the body at the sensor from the wall; negative beyond it", size="sensors", nominal=1e-2, follows=(*FORCE, "sensor_position", "sensor_body_clearance")),
     Quantity("displacement", "output", "m", "x", "", "horizontal position of the bit from the start of the run", nominal=100.0),
     Quantity("true_vertical_depth", "output", "m", "z", "", "depth of the bit below the start of the run", nominal=100.0),
     Quantity("eta_pi", "output", "", "ηΠ", "(9)", "lateral penetration stiffness of the rock over the BHA's bending stiffness", nominal=0.01, follows=("active_weight_on_bit", "lateral_steering_resistance", "flexural_stiffness", "stabilizer_position")),
@@ -194,6 +201,12 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("body_point_position", "parameter", "m", "s", "", "where the body between the stabilizers may touch the wall, from the bit", size="points", above=0.0, nominal=10.0, key="bha.body_point_positions", field="bha.body_point_positions"),
     Quantity("body_point_clearance", "parameter", "m", "y*", "(7)", "clearance between the body there and the wall on each side", size="points", above=0.0, nominal=1e-2, key="bha.body_point_clearances", field="bha.body_point_clearances"),
     Quantity("end_deflection", "parameter", "m", "δ_n", "(5)", "offset of the BHA from the borehole axis at the last stabilizer, positive to the high side", size="stepped", nominal=1e-2, key="bha.end_deflection", field="bha.end_deflection"),
+    Quantity("sensor_position", "parameter", "m", "s", "", "distance of the sensor from the bit", size="sensors", at_least=0.0, nominal=10.0, key="sensor.position", field="bha.sensor_positions"),
+    Quantity("sensor_interval", "parameter", "m", "", "", "drilled length from reading to reading of the inclination; 0: it is read all the time", size="sensors", at_least=0.0, nominal=10.0, key="sensor.interval", field="bha.sensor_intervals"),
+    Quantity("sensor_bias", "parameter", "rad", "", "", "what is always added to a reading", size="sensors", nominal=1e-3, key="sensor.bias_deg", field="bha.sensor_biases"),
+    Quantity("sensor_noise", "parameter", "rad", "", "", "standard deviation of what is added to each reading", size="sensors", at_least=0.0, nominal=1e-3, key="sensor.noise_deg", field="bha.sensor_noises"),
+    Quantity("sensor_seed", "parameter", "", "", "", "which noise: the same seed gives the same readings again", kind="Integer", size="sensors", at_least=0, at_most=2**31 - 1, key="sensor.seed", field="bha.sensor_seeds"),
+    Quantity("sensor_body_clearance", "parameter", "m", "", "", "clearance between the body at the sensor, where it is centred, and the wall on each side", size="sensors", at_least=0.0, nominal=1e-2, key="sensor.body_clearance", field="bha.sensor_body_clearances"),
     Quantity("relative_tolerance", "parameter", "", "", "", "local error allowed in one step of the integrator, relative to 1 rad and ℓ₁", at_least=1e-12, at_most=1e-2, nominal=1e-7, start=RELATIVE_TOLERANCE),
     Quantity("survey_file", "parameter", "", "", "", "survey of the existing hole, its last station is the bit (plain CSV: UTF-8, commas, decimal points, m, degrees); empty: the survey packed in the FMU", kind="String", start="", key="hole.survey"),
 
@@ -241,7 +254,8 @@ def scalar_names(quantities: tuple[Quantity, ...], structure: int | Structure) -
 
 def names_of_runs(n: int) -> list[str]:
     """The scalar names of all inputs and outputs that a run with `n` stabilizers may have, whatever its beam."""
-    return scalar_names(INPUTS + OUTPUTS, Structure(n, axial_load=1, body_points=1, layered=1))
+    made = Structure(n, axial_load=1, body_points=1, layered=1, sensors=MAX_SENSORS)
+    return scalar_names(INPUTS + OUTPUTS, made)
 
 
 def quantity_of(scalar_name: str) -> Quantity:

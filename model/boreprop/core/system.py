@@ -6,8 +6,9 @@ from itertools import pairwise
 from .checks import check_increasing, check_number, check_part
 from .errors import ParameterError, error_of
 from .problems import CONSTRAINTS, DERIVED, Problem
-from .quantities import MAX_POINTS, MAX_SECTIONS, Structure
+from .quantities import MAX_POINTS, MAX_SECTIONS, MAX_SENSORS, PARAMETERS, Structure
 from .quantities import MAX_STABILIZERS as MAX_STABILIZERS
+from .sensors import Sensor
 
 LEAST_SPAN = 0.01  # m between stabilizers, at least: none stand closer, and the forces there would be rounding errors
 
@@ -44,6 +45,15 @@ class BottomHoleAssembly:
     axial_load
         Whether the weight on bit, and the weight along the hole, press and pull the beam, which makes it softer and
         stiffer. Only the native engine has this, sections and points of the body.
+    sensor_positions
+        Distance of up to 8 sensors from the bit, m, in any order, up to the last stabilizer.
+    sensor_intervals, sensor_biases, sensor_noises, sensor_seeds
+        How each reads the inclination: every so many metres drilled, from the start of the run on (0: all the time);
+        what is always added, rad; the standard deviation of what is added to each reading, rad, which needs an
+        interval; and which noise that is, 0 to 2³¹ − 1. Left out they are 0.
+    sensor_body_clearances
+        Clearance of a centred body on each side at each sensor, m. Where it is 0, a `Case` puts that of the section
+        there, or the radius of the hole if no diameter is known.
 
     Raises
     ------
@@ -64,10 +74,17 @@ class BottomHoleAssembly:
     body_point_clearances: tuple[float, ...] = ()
     end_deflection: float = 0.0
     axial_load: bool = False
+    sensor_positions: tuple[float, ...] = ()
+    sensor_intervals: tuple[float, ...] = ()
+    sensor_biases: tuple[float, ...] = ()
+    sensor_noises: tuple[float, ...] = ()
+    sensor_seeds: tuple[int, ...] = ()
+    sensor_body_clearances: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         if self.section_lengths:
             self._take_sections()
+        self._take_sensors()
         n = len(self.stabilizer_positions)
         if not 1 <= n <= MAX_STABILIZERS:
             constraint = CONSTRAINTS["wrong count"][0].format(limit=MAX_STABILIZERS)
@@ -85,6 +102,32 @@ class BottomHoleAssembly:
                 raise error_of(Problem("too close", "stabilizer_position", 0, after, before, LEAST_SPAN))
         check_number("rss_position", self.rss_position, at_most=self.length_scale)
         self._check_body()
+        self._check_sensors()
+
+    def _take_sensors(self) -> None:
+        """Put zeros for what is left out of the sensors, and check how many values there are."""
+        count = len(self.sensor_positions)
+        if count > MAX_SENSORS:
+            raise ParameterError("sensor_position", f"must hold at most {MAX_SENSORS} values", self.sensor_positions)
+        for name in ("intervals", "biases", "noises", "seeds", "body_clearances"):
+            field = f"sensor_{name}"
+            values = getattr(self, field)
+            if not values:
+                object.__setattr__(self, field, (0,) * count if name == "seeds" else (0.0,) * count)
+            elif len(values) != count:
+                quantity = next(quantity.name for quantity in PARAMETERS if quantity.attribute == field)
+                raise ParameterError(quantity, f"must hold one value per sensor, here {count}", values)
+
+    def _check_sensors(self) -> None:
+        """Check the sensors together with the BHA."""
+        rows = zip(self.sensor_positions, self.sensor_intervals, self.sensor_noises, self.sensor_seeds, strict=True)
+        for index, (position, interval, noise, seed) in enumerate(rows, 1):
+            check_number("sensor_position", position, index=index, at_most=self.stabilizer_positions[-1])
+            if noise:
+                check_number("sensor_interval", interval, index=index, above=0.0)
+            if seed != int(seed):
+                raise ParameterError(f"sensor_seed[{index}]", "must be a whole number", seed)
+        object.__setattr__(self, "sensor_seeds", tuple(map(int, self.sensor_seeds)))
 
     def _check_body(self) -> None:
         """Check the points of the body together."""
@@ -124,6 +167,7 @@ class BottomHoleAssembly:
             len(self.section_lengths),
             int(self.axial_load),
             len(self.body_point_positions),
+            len(self.sensor_positions),
         )
 
     @property
@@ -186,6 +230,7 @@ class Scaled:
     w: float  # w̃ = w ℓ₁ / F*
     epsilon: float  # ε = χ/η
     psi_star: float  # ψ*, rad
+    sensors: tuple[Sensor, ...] = ()
 
     @property
     def lambda_(self) -> tuple[float, ...]:
@@ -221,6 +266,18 @@ def scale(bha: BottomHoleAssembly, bit: BitRock) -> Scaled:
         w=w,
         epsilon=epsilon(bit),
         psi_star=bit.tilt_limit,
+        sensors=tuple(
+            Sensor(position / l1, interval / l1, bias, noise, int(seed), clearance / l1)
+            for position, interval, bias, noise, seed, clearance in zip(
+                bha.sensor_positions,
+                bha.sensor_intervals,
+                bha.sensor_biases,
+                bha.sensor_noises,
+                bha.sensor_seeds,
+                bha.sensor_body_clearances,
+                strict=True,
+            )
+        ),
     )
 
 

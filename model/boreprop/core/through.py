@@ -34,6 +34,7 @@ class GroundIntegrator(Integrator):
                     self._steer(inputs)
                 if not self._leave_layer(end):
                     self.xi = end
+                    self._read(end)
                     if end == xi:
                         return
 
@@ -51,6 +52,7 @@ class GroundIntegrator(Integrator):
             self._check_way(end, last)
             self._take_step()
         self.xi = left.xi
+        self._read(self.xi)
         self.layer += left.side
         depth = self.position()[1] * self.length_scale
         while left.side * (depth - self.ground.bounds(self.layer)[left.side > 0]) > CLOSE:  # through a thin layer

@@ -146,24 +146,74 @@ typedef struct {
     double F[MAX_SUPPORTS], F_rss, g, M, F_0;
 } Bending;
 
+/* A walk along a beam in sections, from the bit up: the node below, and the line just above it. */
+typedef struct {
+    int node;
+    double line[PARTS];
+} Walk;
+
+/* Add the forces at the node of a walk. */
+static inline void add_forces(const Beam *beam, const Bending *bending, int supports, Walk *walk) {
+    if (walk->node == beam->pads) walk->line[SHEAR] += bending->F_rss;
+    for (int i = 0; i < supports; i++)
+        if (beam->node[i] == walk->node) walk->line[SHEAR] += bending->F[i];
+}
+
+static inline Walk walk_from_bit(const Beam *beam, const Bending *bending, int supports) {
+    Walk walk = {0, {0.0, 0.0, -bending->M, bending->F_0}};
+    add_forces(beam, bending, supports, &walk);
+    return walk;
+}
+
+/* Walk on to `s`, in ℓ₁, not back: gives the line there. */
+static inline void walk_to(
+    const Beam *beam, const Bending *bending, int supports, double s, Walk *walk, double line[PARTS]
+) {
+    const Nodes *nodes = &beam->nodes;
+    while (walk->node < nodes->count - 2 && s > nodes->s[walk->node + 1]) {
+        pass_stretch(&nodes->above[walk->node++], bending->g, walk->line);
+        add_forces(beam, bending, supports, walk);
+    }
+    memcpy(line, walk->line, sizeof walk->line);
+    carry_from(nodes, walk->node, s - nodes->s[walk->node], bending->g, line);
+}
+
 /* How far the beam is from the bit's axis at increasing places s, 0 <= s <= λ ℓ₁; lengths in the unit of ℓ₁. */
 static inline void beam_shape(
     const Beam *beam, const Bending *bending, int supports, double l1, Count count, const double *s, double *v
 ) {
-    const Nodes *nodes = &beam->nodes;
-    double line[PARTS] = {0.0, 0.0, -bending->M, bending->F_0}, at[PARTS];
-    Count next = 0;
-    for (int k = 0; k < nodes->count - 1; k++) {
-        if (k == beam->pads) line[SHEAR] += bending->F_rss;
-        for (int i = 0; i < supports; i++)
-            if (beam->node[i] == k) line[SHEAR] += bending->F[i];
-        for (; next < count && (s[next] <= nodes->s[k + 1] * l1 || k == nodes->count - 2); next++) {
-            memcpy(at, line, sizeof at);
-            carry_from(nodes, k, s[next] / l1 - nodes->s[k], bending->g, at);
-            v[next] = at[DEFLECTION] * l1;
-        }
-        pass_stretch(&nodes->above[k], bending->g, line);
+    Walk walk = walk_from_bit(beam, bending, supports);
+    double line[PARTS];
+    for (Count k = 0; k < count; k++) {
+        walk_to(beam, bending, supports, s[k] / l1, &walk, line);
+        v[k] = line[DEFLECTION] * l1;
     }
+}
+
+/* The line of a uniform beam at `s`, from the bit on: v'' = 3 m, m'' = −w g and the forces, m(0) = −M. */
+static inline void uniform_line(const Scaled *scaled, const Bending *bending, double s, double line[PARTS]) {
+    double load = scaled->w * bending->g, m = -bending->M, q = bending->F_0;
+    double v = m * s * s / 2 + q * s * s * s / 6 - load * s * s * s * s / 24;
+    double slope = m * s + q * s * s / 2 - load * s * s * s / 6, moment = m + q * s - load * s * s / 2;
+    for (int i = -1; i < scaled->n - 1; i++) { /* first the pads */
+        double force = i < 0 ? bending->F_rss : bending->F[i];
+        double above = larger(s - (i < 0 ? scaled->Delta : scaled->s[i]), 0.0);
+        v += force * above * above * above / 6, slope += force * above * above / 2, moment += force * above;
+        q += above > 0 ? force : 0.0;
+    }
+    line[DEFLECTION] = 3 * v, line[SLOPE_OF_BEAM] = 3 * slope, line[MOMENT] = moment, line[SHEAR] = q - load * s;
+}
+
+/* The line of any beam at `s`, 0 <= s <= λ. */
+static inline void line_at(
+    const Beam *beam, const Scaled *scaled, const Bending *bending, double s, double line[PARTS]
+) {
+    if (!beam->stepped) {
+        uniform_line(scaled, bending, s, line);
+        return;
+    }
+    Walk walk = walk_from_bit(beam, bending, scaled->n + scaled->points);
+    walk_to(beam, bending, scaled->n + scaled->points, s, &walk, line);
 }
 
 static inline void make_beam(Beam *beam, const Scaled *scaled, Axial axial) {

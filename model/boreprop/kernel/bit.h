@@ -5,6 +5,11 @@
 #include "body.h"
 #include "ground.h"
 
+/* The last reading of a sensor: how many there have been, and the inclination that it told. */
+typedef struct {
+    double count, inclination;
+} Reading;
+
 /* A range of inclinations. */
 typedef struct {
     double low, high;
@@ -37,6 +42,7 @@ typedef struct {
     Kinks kinks;
     Inclinations inclinations;
     double accepted, rejected, events; /* counts of steps, of rejected trials and of bounds met */
+    Reading reading[MAX_SENSORS];
 } State;
 
 /* The points of the body at the end of the last step: where they are, from the origin of the lateral coordinates, how far

@@ -12,6 +12,8 @@
 #define EXPORT __attribute__((visibility("default")))
 #endif
 
+enum { STRUCTURE_MEMBERS = sizeof(Structure) / sizeof(int) }; /* members of a Structure */
+
 /* A digest of the sources that this was compiled from. */
 EXPORT const char *boreprop_sources_digest(void);
 
@@ -26,8 +28,9 @@ EXPORT void boreprop_sentence(const Problem *problem, char line[MESSAGE]);
    tolerance is that of the parameters; the other options are not checked. The ground is of so many layers, and made of
    numbers as ground.h says, or NULL. */
 EXPORT Run *boreprop_start(
-    const int structure[5], const double *parameters, const Options *options, Count count, const double *measured_depth,
-    const double *inclination, int layers, const double *ground, const Inputs *inputs, Problem *problem
+    const int structure[STRUCTURE_MEMBERS], const double *parameters, const Options *options, Count count,
+    const double *measured_depth, const double *inclination, int layers, const double *ground, const Inputs *inputs,
+    Problem *problem
 );
 EXPORT void boreprop_end(Run *run);
 
@@ -64,8 +67,8 @@ EXPORT int boreprop_restore(Run *run, const double *state, Count count, Problem 
 /* How a BHA lies in holes that are given, row by row as `lie` of lying.h does, under a weight on bit, N, and its own at an
    inclination, rad. Returns how many rows are done; if not all are, there is a problem. */
 EXPORT Count boreprop_lie(
-    const int structure[5], const double *parameters, double weight_on_bit, double inclination, Count rows,
-    const double *loads, double *answers, Count count, const double *s, double *shapes, Problem *problem
+    const int structure[STRUCTURE_MEMBERS], const double *parameters, double weight_on_bit, double inclination,
+    Count rows, const double *loads, double *answers, Count count, const double *s, double *shapes, Problem *problem
 );
 
 #endif

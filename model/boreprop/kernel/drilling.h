@@ -153,6 +153,7 @@ static inline Status drill_through(Drilling *d, double xi, Inputs given, Problem
         if (status == FAILED) go_back(p);
         if (status != DONE) return status;
         if (!left) now->xi = end;
+        read_sensors(p, now->xi);
     } while (left || end < xi);
     p->under_way = 0;
     return DONE;
@@ -203,6 +204,7 @@ static inline void drilling_cancel(Drilling *d) { go_back(&d->integrator); }
 typedef struct {
     double l1, F_star, eta_pi, theta, Y, Theta, psi, F_0, F[MAX_PLACES], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
     double body_force, body_place, wall_distance; /* the largest force on the body and where it acts; the least gap */
+    Sensed sensed[MAX_SENSORS];
     Loads loads;
     const Mode *mode;
 } Present;
@@ -238,6 +240,8 @@ static inline Present present(Drilling *d) {
     at.Theta = at.theta - at.psi;
     position(now, &at.x, &at.z);
     find_body(d, &at);
+    for (int i = 0; i < p->scaled.sensors; i++)
+        at.sensed[i] = sensed(p, p->scaled.sensor[i].s, now->xi, state, at.mode, &at.loads);
     return at;
 }
 
@@ -265,6 +269,9 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_BODY_CONTACT_FORCE: return at->body_force * F_star;
         case OUT_BODY_CONTACT_POSITION: return at->body_place * l1;
         case OUT_WALL_DISTANCE: return at->wall_distance * l1;
+        case OUT_SENSOR_INCLINATION: return told(&d->integrator, i, &at->sensed[i]);
+        case OUT_SENSOR_BENDING_MOMENT: return at->sensed[i].moment * F_star * l1;
+        case OUT_SENSOR_CLEARANCE: return (scaled->sensor[i].clearance - fabs(at->sensed[i].offset)) * l1;
         case OUT_DISPLACEMENT: return at->x * l1;
         case OUT_TRUE_VERTICAL_DEPTH: return at->z * l1;
         case OUT_ETA_PI: return at->eta_pi;
@@ -283,9 +290,10 @@ static inline int output_count(Structure structure) {
 /* Every output of the table of quantities where the bit is, in its order; returns how many values. */
 static inline int drilling_outputs(Drilling *d, double out[MOST_OUTPUTS]) {
     Present at = present(d);
+    const Structure structure = d->system.structure;
     double *next = out;
     for (int k = 0; k < OUTPUT_COUNT; k++)
-        for (int i = 0; i < value_count(OUTPUT_SIZE[k], d->system.structure); i++)
+        for (int i = 0, count = value_count(OUTPUT_SIZE[k], structure); i < count; i++)
             *next++ = output(d, &at, (Output)k, i);
     return (int)(next - out);
 }

@@ -12,6 +12,7 @@ from ..core.quantities import (
     INPUTS,
     MAX_POINTS,
     MAX_SECTIONS,
+    MAX_SENSORS,
     MAX_STABILIZERS,
     MOST_DRILLED,
     OUTPUTS,
@@ -26,7 +27,7 @@ from ..replacing import replacing
 from .compiler import FOLDER
 
 Table = tuple[Quantity, ...]
-SYSTEM = tuple(quantity for quantity in PARAMETERS if quantity.kind == "Real")
+SYSTEM = tuple(quantity for quantity in PARAMETERS if quantity.kind != "String")
 """The parameters that the kernel has, in the order in which it takes their values."""
 
 SIZES = {
@@ -40,14 +41,16 @@ SIZES = {
     "points": "EACH_POINT",
     "body": "IF_POINTS",
     "layered": "IF_LAYERED",
+    "sensors": "EACH_SENSOR",
 }
 ROOMS = {
     "n": "[MAX_STABILIZERS]",
     "n-1": "[MAX_STABILIZERS - 1]",
     "sections": "[MAX_SECTIONS]",
     "points": "[MAX_POINTS]",
+    "sensors": "[MAX_SENSORS]",
 }
-LARGEST = Structure(MAX_STABILIZERS, MAX_SECTIONS, 1, MAX_POINTS, 1)
+LARGEST = Structure(MAX_STABILIZERS, MAX_SECTIONS, 1, MAX_POINTS, 1, MAX_SENSORS)
 
 NAMES = {quantity.name: quantity.name for quantity in QUANTITIES} | {
     **{name: name for name in (f"{quantity.name}_slope" for quantity in INPUTS if quantity.slope)},
@@ -80,6 +83,7 @@ QUANTITIES_HEADER = """\
 #define OFTEN {often!r} /* of its length, at most, from look to look */
 
 enum {{ MAX_STABILIZERS = {most}, MAX_SECTIONS = {most_sections}, MAX_POINTS = {most_points} }};
+enum {{ MAX_SENSORS = {most_sensors} }};
 enum {{ PARAMETER_COUNT = {parameters}, INPUT_COUNT = {inputs}, OUTPUT_COUNT = {outputs} }};
 
 /* How a drilling system is made up, which says how many values each quantity has. */
@@ -88,6 +92,7 @@ typedef struct {{
     int axial;       /* whether the load along the beam counts */
     int points;      /* number of points at which the body between the stabilizers may touch the wall */
     int layered;     /* whether rock comes in layers by true vertical depth */
+    int sensors;     /* their number */
 }} Structure;
 
 /* The parameters, in SI units. */
@@ -109,6 +114,7 @@ typedef struct {{
     Name name;
     Size size;
     size_t offset; /* of a parameter, in System */
+    int is_whole;
     double above, at_least, at_most;
 }} Quantity;
 
@@ -247,6 +253,7 @@ def quantities_header(system: Table = SYSTEM, inputs: Table = INPUTS, outputs: T
         "most": MAX_STABILIZERS,
         "most_sections": MAX_SECTIONS,
         "most_points": MAX_POINTS,
+        "most_sensors": MAX_SENSORS,
         "parameters": len(system),
         "inputs": len(inputs),
         "outputs": len(outputs),
@@ -300,7 +307,9 @@ def _note(unit: str, meaning: str) -> str:
 
 def _range_row(quantity: Quantity, offset: str) -> str:
     bounds = ", ".join(_bound(bound) for bound in (quantity.above, quantity.at_least, quantity.at_most))
-    return f"{{Q_{quantity.name.upper()}, {SIZES[quantity.size]}, {offset}, {bounds}}},"
+    return (
+        f"{{Q_{quantity.name.upper()}, {SIZES[quantity.size]}, {offset}, {int(quantity.kind == 'Integer')}, {bounds}}},"
+    )
 
 
 def _bound(value: float) -> str:

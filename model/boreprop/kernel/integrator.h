@@ -6,6 +6,7 @@
 #ifndef BOREPROP_INTEGRATOR_H
 #define BOREPROP_INTEGRATOR_H
 
+#include "sensors.h"
 #include "surroundings.h"
 
 /* integrator.py gives the reasons for these numbers. */
@@ -231,6 +232,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     double x[COMPONENTS], end[COMPONENTS];
     Trial trial;
     if (!has_room(p)) return FULL;
+    read_sensors(p, last.end);
     int kink = leave(p, &last, x);
     if (now->inputs.eta_pi_slope != 0) p->law_known = 0;
     Plan plan = first_plan(&last, kink, present_law(p), p->options.layers);

@@ -7,12 +7,20 @@ const char *boreprop_quantities_digest(void) { return QUANTITIES_DIGEST; }
 
 void boreprop_sentence(const Problem *problem, char line[MESSAGE]) { sentence(problem, line); }
 
+/* The structure whose members these are. */
+static Structure structure_of(const int members[STRUCTURE_MEMBERS]) {
+    Structure made;
+    memcpy(&made, members, sizeof made);
+    return made;
+}
+
 Run *boreprop_start(
-    const int structure[5], const double *parameters, const Options *options, Count count, const double *measured_depth,
-    const double *inclination, int layers, const double *ground, const Inputs *inputs, Problem *problem
+    const int structure[STRUCTURE_MEMBERS], const double *parameters, const Options *options, Count count,
+    const double *measured_depth, const double *inclination, int layers, const double *ground, const Inputs *inputs,
+    Problem *problem
 ) {
     Survey survey = {count, measured_depth, inclination};
-    Structure made = {structure[0], structure[1], structure[2], structure[3], structure[4]};
+    Structure made = structure_of(structure);
     System system = system_of(made, parameters);
     Run *run = calloc(1, sizeof *run);
     met(problem, NO_MEMORY, MOST_PIECES, 0.0);
@@ -64,10 +72,10 @@ int boreprop_restore(Run *run, const double *state, Count count, Problem *proble
 }
 
 Count boreprop_lie(
-    const int structure[5], const double *parameters, double weight_on_bit, double inclination, Count rows,
-    const double *loads, double *answers, Count count, const double *s, double *shapes, Problem *problem
+    const int structure[STRUCTURE_MEMBERS], const double *parameters, double weight_on_bit, double inclination,
+    Count rows, const double *loads, double *answers, Count count, const double *s, double *shapes, Problem *problem
 ) {
-    Structure made = {structure[0], structure[1], structure[2], structure[3], structure[4]};
+    Structure made = structure_of(structure);
     System system = system_of(made, parameters);
     Lying *bha = calloc(1, sizeof *bha);
     Count k = 0;

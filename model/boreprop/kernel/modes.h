@@ -198,6 +198,15 @@ typedef struct {
     int count, next;
 } Modes;
 
+/* What acts on the beam of a mode under `loads`. */
+static inline Bending bending_of(const Mode *mode, const Loads *loads, int n) {
+    Bending bending = {.F_rss = loads->F_rss, .g = loads->g};
+    bending.M = row_value(&mode->M, loads), bending.F_0 = row_value(&mode->F_0, loads);
+    for (int i = 0; i < loads->count; i++)
+        if (mode->contact.of[i]) bending.F[support_at(&mode->contact, n, i)] = row_value(&mode->F[i], loads);
+    return bending;
+}
+
 /* Make the beam as it is under an axial load; no mode is known then. */
 static inline void load_beam(Modes *modes, const Scaled *scaled, Axial axial) {
     make_beam(&modes->beam, scaled, axial);

@@ -125,6 +125,7 @@ static inline Status drill(Integrator *p, double xi, ScaledInputs inputs, Proble
         p->under_way = 0;
     }
     now->xi = xi;
+    read_sensors(p, xi);
     return DONE;
 }
 
@@ -183,6 +184,7 @@ static inline Status drill_step(Integrator *p, Problem *problem) {
     if (status != DONE) return status;
     p->under_way = 0;
     p->now.xi = p->now.step.end;
+    read_sensors(p, p->now.xi);
     return DONE;
 }
 
@@ -210,9 +212,12 @@ static inline Status begin(Integrator *p, const Survey *survey, ScaledInputs inp
         if (!check_finite(Q_STATION_RATE, 0, piece(&now->hole, k)->rate, problem)) return FAILED;
     find_places(now, &p->scaled, now->xi);
     if (p->scaled.points) start_noting(now);
-    if (restart(p, inputs, x, x[ANGLE], problem) == DONE) return DONE;
-    wrong(problem, NO_START, Q_PARAMETERS, 0, NAN, NAN);
-    return FAILED;
+    if (restart(p, inputs, x, x[ANGLE], problem) != DONE) {
+        wrong(problem, NO_START, Q_PARAMETERS, 0, NAN, NAN);
+        return FAILED;
+    }
+    read_sensors(p, now->xi);
+    return DONE;
 }
 
 #endif

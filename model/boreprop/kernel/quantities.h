@@ -8,14 +8,15 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "8d6088295c877db5" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "1a336ba60694e8a5" /* of this file, but for this line, and of problems.h */
 #define MOST_DRILLED 100000.0 /* m in a communication step */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: forces between closer ones are rounding errors */
 #define POINTS_ALONG_BHA 36 /* at which its distance from the hole is looked at */
 #define OFTEN 0.125 /* of its length, at most, from look to look */
 
 enum { MAX_STABILIZERS = 6, MAX_SECTIONS = 24, MAX_POINTS = 128 };
-enum { PARAMETER_COUNT = 12, INPUT_COUNT = 7, OUTPUT_COUNT = 19 };
+enum { MAX_SENSORS = 8 };
+enum { PARAMETER_COUNT = 18, INPUT_COUNT = 7, OUTPUT_COUNT = 22 };
 
 /* How a drilling system is made up, which says how many values each quantity has. */
 typedef struct {
@@ -23,6 +24,7 @@ typedef struct {
     int axial;       /* whether the load along the beam counts */
     int points;      /* number of points at which the body between the stabilizers may touch the wall */
     int layered;     /* whether rock comes in layers by true vertical depth */
+    int sensors;     /* their number */
 } Structure;
 
 /* The parameters, in SI units. */
@@ -39,6 +41,12 @@ typedef struct {
     double body_point_position[MAX_POINTS]; /* m: where the body between the stabilizers may touch the wall, from the bit */
     double body_point_clearance[MAX_POINTS]; /* m: clearance between the body there and the wall on each side */
     double end_deflection; /* m: offset of the BHA from the borehole axis at the last stabilizer, positive to the high side */
+    double sensor_position[MAX_SENSORS]; /* m: distance of the sensor from the bit */
+    double sensor_interval[MAX_SENSORS]; /* m: drilled length from reading to reading of the inclination; 0: it is read all the time */
+    double sensor_bias[MAX_SENSORS]; /* rad: what is always added to a reading */
+    double sensor_noise[MAX_SENSORS]; /* rad: standard deviation of what is added to each reading */
+    double sensor_seed[MAX_SENSORS]; /* which noise: the same seed gives the same readings again */
+    double sensor_body_clearance[MAX_SENSORS]; /* m: clearance between the body at the sensor, where it is centred, and the wall on each side */
     double relative_tolerance; /* local error allowed in one step of the integrator, relative to 1 rad and ℓ₁ */
 } System;
 
@@ -55,40 +63,47 @@ typedef struct {
 } Inputs;
 
 /* How many values a quantity has. */
-typedef enum { ONE, EACH_STABILIZER, EACH_NON_IDEAL, IF_UNIFORM, EACH_SECTION, IF_STEPPED, IF_AXIAL, EACH_POINT, IF_POINTS, IF_LAYERED } Size;
+typedef enum { ONE, EACH_STABILIZER, EACH_NON_IDEAL, IF_UNIFORM, EACH_SECTION, IF_STEPPED, IF_AXIAL, EACH_POINT, IF_POINTS, IF_LAYERED, EACH_SENSOR } Size;
 
 /* A parameter or input, and its range: above < value, at_least <= value <= at_most. */
 typedef struct {
     Name name;
     Size size;
     size_t offset; /* of a parameter, in System */
+    int is_whole;
     double above, at_least, at_most;
 } Quantity;
 
 static const Quantity PARAMETER_TABLE[PARAMETER_COUNT] = {
-    {Q_STABILIZER_POSITION, EACH_STABILIZER, offsetof(System, stabilizer_position), 0.0, -INFINITY, INFINITY},
-    {Q_STABILIZER_CLEARANCE, EACH_NON_IDEAL, offsetof(System, stabilizer_clearance), -INFINITY, 0.0, INFINITY},
-    {Q_RSS_POSITION, ONE, offsetof(System, rss_position), -INFINITY, 0.0, INFINITY},
-    {Q_DISTRIBUTED_WEIGHT, IF_UNIFORM, offsetof(System, distributed_weight), -INFINITY, 0.0, INFINITY},
-    {Q_FLEXURAL_STIFFNESS, IF_UNIFORM, offsetof(System, flexural_stiffness), 0.0, -INFINITY, INFINITY},
-    {Q_SECTION_LENGTH, EACH_SECTION, offsetof(System, section_length), 0.0, -INFINITY, INFINITY},
-    {Q_SECTION_DISTRIBUTED_WEIGHT, EACH_SECTION, offsetof(System, section_distributed_weight), -INFINITY, 0.0, INFINITY},
-    {Q_SECTION_FLEXURAL_STIFFNESS, EACH_SECTION, offsetof(System, section_flexural_stiffness), 0.0, -INFINITY, INFINITY},
-    {Q_BODY_POINT_POSITION, EACH_POINT, offsetof(System, body_point_position), 0.0, -INFINITY, INFINITY},
-    {Q_BODY_POINT_CLEARANCE, EACH_POINT, offsetof(System, body_point_clearance), 0.0, -INFINITY, INFINITY},
-    {Q_END_DEFLECTION, IF_STEPPED, offsetof(System, end_deflection), -INFINITY, -INFINITY, INFINITY},
-    {Q_RELATIVE_TOLERANCE, ONE, offsetof(System, relative_tolerance), -INFINITY, 1e-12, 0.01},
+    {Q_STABILIZER_POSITION, EACH_STABILIZER, offsetof(System, stabilizer_position), 0, 0.0, -INFINITY, INFINITY},
+    {Q_STABILIZER_CLEARANCE, EACH_NON_IDEAL, offsetof(System, stabilizer_clearance), 0, -INFINITY, 0.0, INFINITY},
+    {Q_RSS_POSITION, ONE, offsetof(System, rss_position), 0, -INFINITY, 0.0, INFINITY},
+    {Q_DISTRIBUTED_WEIGHT, IF_UNIFORM, offsetof(System, distributed_weight), 0, -INFINITY, 0.0, INFINITY},
+    {Q_FLEXURAL_STIFFNESS, IF_UNIFORM, offsetof(System, flexural_stiffness), 0, 0.0, -INFINITY, INFINITY},
+    {Q_SECTION_LENGTH, EACH_SECTION, offsetof(System, section_length), 0, 0.0, -INFINITY, INFINITY},
+    {Q_SECTION_DISTRIBUTED_WEIGHT, EACH_SECTION, offsetof(System, section_distributed_weight), 0, -INFINITY, 0.0, INFINITY},
+    {Q_SECTION_FLEXURAL_STIFFNESS, EACH_SECTION, offsetof(System, section_flexural_stiffness), 0, 0.0, -INFINITY, INFINITY},
+    {Q_BODY_POINT_POSITION, EACH_POINT, offsetof(System, body_point_position), 0, 0.0, -INFINITY, INFINITY},
+    {Q_BODY_POINT_CLEARANCE, EACH_POINT, offsetof(System, body_point_clearance), 0, 0.0, -INFINITY, INFINITY},
+    {Q_END_DEFLECTION, IF_STEPPED, offsetof(System, end_deflection), 0, -INFINITY, -INFINITY, INFINITY},
+    {Q_SENSOR_POSITION, EACH_SENSOR, offsetof(System, sensor_position), 0, -INFINITY, 0.0, INFINITY},
+    {Q_SENSOR_INTERVAL, EACH_SENSOR, offsetof(System, sensor_interval), 0, -INFINITY, 0.0, INFINITY},
+    {Q_SENSOR_BIAS, EACH_SENSOR, offsetof(System, sensor_bias), 0, -INFINITY, -INFINITY, INFINITY},
+    {Q_SENSOR_NOISE, EACH_SENSOR, offsetof(System, sensor_noise), 0, -INFINITY, 0.0, INFINITY},
+    {Q_SENSOR_SEED, EACH_SENSOR, offsetof(System, sensor_seed), 1, -INFINITY, 0.0, 2147483647.0},
+    {Q_SENSOR_BODY_CLEARANCE, EACH_SENSOR, offsetof(System, sensor_body_clearance), 0, -INFINITY, 0.0, INFINITY},
+    {Q_RELATIVE_TOLERANCE, ONE, offsetof(System, relative_tolerance), 0, -INFINITY, 1e-12, 0.01},
 };
 
 typedef enum { IN_RSS_FORCE, IN_ACTIVE_WEIGHT_ON_BIT, IN_RATE_OF_PENETRATION, IN_LATERAL_STEERING_RESISTANCE, IN_ANGULAR_STEERING_RESISTANCE, IN_BIT_TILT_LIMIT, IN_WEIGHT_ON_BIT } Input;
 static const Quantity INPUT_TABLE[INPUT_COUNT] = {
-    {Q_RSS_FORCE, ONE, 0, -INFINITY, -INFINITY, INFINITY},
-    {Q_ACTIVE_WEIGHT_ON_BIT, ONE, 0, 0.0, -INFINITY, INFINITY},
-    {Q_RATE_OF_PENETRATION, ONE, 0, -INFINITY, 0.0, INFINITY},
-    {Q_LATERAL_STEERING_RESISTANCE, ONE, 0, 0.0, -INFINITY, INFINITY},
-    {Q_ANGULAR_STEERING_RESISTANCE, ONE, 0, 0.0, -INFINITY, INFINITY},
-    {Q_BIT_TILT_LIMIT, ONE, 0, 0.0, -INFINITY, 1.5707963267948966},
-    {Q_WEIGHT_ON_BIT, IF_AXIAL, 0, -INFINITY, 0.0, INFINITY},
+    {Q_RSS_FORCE, ONE, 0, 0, -INFINITY, -INFINITY, INFINITY},
+    {Q_ACTIVE_WEIGHT_ON_BIT, ONE, 0, 0, 0.0, -INFINITY, INFINITY},
+    {Q_RATE_OF_PENETRATION, ONE, 0, 0, -INFINITY, 0.0, INFINITY},
+    {Q_LATERAL_STEERING_RESISTANCE, ONE, 0, 0, 0.0, -INFINITY, INFINITY},
+    {Q_ANGULAR_STEERING_RESISTANCE, ONE, 0, 0, 0.0, -INFINITY, INFINITY},
+    {Q_BIT_TILT_LIMIT, ONE, 0, 0, 0.0, -INFINITY, 1.5707963267948966},
+    {Q_WEIGHT_ON_BIT, IF_AXIAL, 0, 0, -INFINITY, 0.0, INFINITY},
 };
 
 /* The outputs, in their order. */
@@ -108,6 +123,9 @@ typedef enum {
     OUT_BODY_CONTACT_FORCE, /* N: largest force of the wall on the body between the stabilizers, positive from the lower wall */
     OUT_BODY_CONTACT_POSITION, /* m: where that force acts, from the bit; 0 if the body touches no wall */
     OUT_WALL_DISTANCE, /* m: least distance of the body from the wall */
+    OUT_SENSOR_INCLINATION, /* rad: inclination of the BHA at the sensor; with an interval its last reading, with bias and noise */
+    OUT_SENSOR_BENDING_MOMENT, /* N.m: bending moment of the BHA at the sensor, positive as in a hole that builds; at the bit the moment on the bit */
+    OUT_SENSOR_CLEARANCE, /* m: distance of the body at the sensor from the wall; negative beyond it */
     OUT_DISPLACEMENT, /* m: horizontal position of the bit from the start of the run */
     OUT_TRUE_VERTICAL_DEPTH, /* m: depth of the bit below the start of the run */
     OUT_ETA_PI, /* lateral penetration stiffness of the rock over the BHA's bending stiffness */
@@ -129,6 +147,9 @@ static const Size OUTPUT_SIZE[OUTPUT_COUNT] = {
     IF_POINTS, /* body_contact_force */
     IF_POINTS, /* body_contact_position */
     IF_POINTS, /* wall_distance */
+    EACH_SENSOR, /* sensor_inclination */
+    EACH_SENSOR, /* sensor_bending_moment */
+    EACH_SENSOR, /* sensor_clearance */
     ONE, /* displacement */
     ONE, /* true_vertical_depth */
     ONE, /* eta_pi */
@@ -150,13 +171,16 @@ static const Name OUTPUT_NAME[OUTPUT_COUNT] = {
     Q_BODY_CONTACT_FORCE,
     Q_BODY_CONTACT_POSITION,
     Q_WALL_DISTANCE,
+    Q_SENSOR_INCLINATION,
+    Q_SENSOR_BENDING_MOMENT,
+    Q_SENSOR_CLEARANCE,
     Q_DISPLACEMENT,
     Q_TRUE_VERTICAL_DEPTH,
     Q_ETA_PI,
     Q_FORMATION,
 };
-static const int OUTPUT_IS_WHOLE[OUTPUT_COUNT] = { 0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1 };
-enum { MOST_PARAMETERS = 344, MOST_OUTPUTS = 36 }; /* values, of the largest assembly */
+static const int OUTPUT_IS_WHOLE[OUTPUT_COUNT] = { 0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1 };
+enum { MOST_PARAMETERS = 392, MOST_OUTPUTS = 60 }; /* values, of the largest assembly */
 
 /* How the integrator takes its steps: core/options.py says what each is. */
 typedef struct {

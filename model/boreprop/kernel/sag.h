@@ -18,9 +18,7 @@ static inline void present_shape(const Drilling *d, const Present *at, const dou
     int n = p->scaled.n;
     double e_n = at->loads.e[n - 1], lambda_ = p->scaled.s[n - 1];
     if (beam->stepped) {
-        Bending bending = {.F_rss = at->loads.F_rss, .g = at->loads.g, .F_0 = at->F_0};
-        bending.M = row_value(&at->mode->M, &at->loads);
-        for (int i = 0; i < at->loads.count; i++) bending.F[support_at(&at->mode->contact, n, i)] = at->F[i];
+        Bending bending = bending_of(at->mode, &at->loads, n);
         beam_shape(beam, &bending, n + p->scaled.points, 1.0, POINTS_ALONG_BHA, s, v);
         return;
     }

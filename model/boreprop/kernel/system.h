@@ -17,6 +17,11 @@ typedef struct {
     double s[MAX_PLACES], nearest;
 } Places;
 
+/* Where a sensor is, how it reads the inclination, and the clearance of a centred body there. */
+typedef struct {
+    double s, interval, bias, noise, seed, clearance;
+} Sensor;
+
 /* The drilling system in the paper's numbers: lengths over ℓ₁, forces over F*, moments over F*ℓ₁. */
 typedef struct {
     int n;
@@ -32,6 +37,8 @@ typedef struct {
     double section_w[MAX_SECTIONS];    /* its w̃ */
     double end_deflection;             /* δ_n */
     int stepped, axial;                /* whether the beam has sections or bears an axial load; whether it bears one */
+    int sensors;
+    Sensor sensor[MAX_SENSORS];
 } Scaled;
 
 /* How many values a quantity has. */
@@ -47,13 +54,15 @@ static inline int value_count(Size size, Structure structure) {
         case EACH_POINT: return structure.points;
         case IF_POINTS: return structure.points > 0;
         case IF_LAYERED: return structure.layered;
+        case EACH_SENSOR: return structure.sensors;
     }
     return 0;
 }
 
 /* Whether the values of a quantity are numbered. */
 static inline int is_list(Size size) {
-    return size == EACH_STABILIZER || size == EACH_NON_IDEAL || size == EACH_SECTION || size == EACH_POINT;
+    return size == EACH_STABILIZER || size == EACH_NON_IDEAL || size == EACH_SECTION || size == EACH_POINT ||
+           size == EACH_SENSOR;
 }
 
 /* Whether a structure is one that there is room for. */
@@ -64,6 +73,8 @@ static inline int check_structure(Structure structure, Problem *problem) {
         return wrong(problem, WRONG_COUNT, Q_SECTION_LENGTH, 0, structure.sections, MAX_SECTIONS);
     if (structure.points < 0 || structure.points > MAX_POINTS)
         return wrong(problem, WRONG_COUNT, Q_BODY_POINT_POSITION, 0, structure.points, MAX_POINTS);
+    if (structure.sensors < 0 || structure.sensors > MAX_SENSORS)
+        return wrong(problem, WRONG_COUNT, Q_SENSOR_POSITION, 0, structure.sensors, MAX_SENSORS);
     return 1;
 }
 
@@ -121,6 +132,19 @@ static inline int check_body(const System *system, Problem *problem) {
     return !points || check_at_most(Q_BODY_POINT_POSITION, system->body_point_position[points - 1], last, problem);
 }
 
+/* Whether the sensors are between the bit and the last stabilizer, and those with noise have an interval. */
+static inline int check_sensors(const System *system, Problem *problem) {
+    double last = system->stabilizer_position[system->structure.n - 1];
+    for (int i = 0; i < system->structure.sensors; i++) {
+        double position = system->sensor_position[i], interval = system->sensor_interval[i];
+        double least = system->sensor_noise[i] > 0 ? 0.0 : -INFINITY;
+        if (!check_number(Q_SENSOR_POSITION, i + 1, position, -INFINITY, -INFINITY, last, problem) ||
+            !check_number(Q_SENSOR_INTERVAL, i + 1, interval, least, -INFINITY, INFINITY, problem))
+            return 0;
+    }
+    return 1;
+}
+
 static inline int check_system(const System *system, Problem *problem) {
     const double *positions = system->stabilizer_position;
     int n = system->structure.n;
@@ -134,7 +158,8 @@ static inline int check_system(const System *system, Problem *problem) {
     return check_increasing(Q_STABILIZER_POSITION, n, positions, problem) &&
            check_spans(Q_STABILIZER_POSITION, n, positions, problem) && check_reach(system, problem) &&
            check_increasing(Q_BODY_POINT_POSITION, system->structure.points, system->body_point_position, problem) &&
-           check_body(system, problem) && check_at_most(Q_RSS_POSITION, system->rss_position, positions[0], problem);
+           check_at_most(Q_RSS_POSITION, system->rss_position, positions[0], problem) && check_body(system, problem) &&
+           check_sensors(system, problem);
 }
 
 /* ℓ₁, m: the distance from the bit to the first stabilizer. */
@@ -210,6 +235,13 @@ static inline Scaled scale(const System *system) {
     scaled.Delta = system->rss_position / l1;
     scaled.w = system->distributed_weight * l1 / force_scale(system);
     scale_sections(system, &scaled);
+    scaled.sensors = system->structure.sensors;
+    for (int i = 0; i < scaled.sensors; i++) {
+        Sensor sensor = {system->sensor_position[i] / l1, system->sensor_interval[i] / l1,
+                         system->sensor_bias[i],          system->sensor_noise[i],
+                         system->sensor_seed[i],          system->sensor_body_clearance[i] / l1};
+        scaled.sensor[i] = sensor;
+    }
     return scaled;
 }
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..arrays import Floats
 from ..case.case import Case
-from ..core.quantities import BY_NAME
+from ..core.quantities import BY_NAME, Structure
 from ..errors import BorepropError, MissingColumn
 
 
@@ -73,15 +73,20 @@ class Trajectory(Mapping[str, Floats]):
             return len(self.case.bha.stabilizer_positions)
         return sum(plain_name(name) == "average_inclination" for name in self)
 
+    @property
+    def structure(self) -> int | Structure:
+        """How the BHA of the case is made up; without a case, the number of its stabilizers."""
+        return self.n if self.case is None else self.case.structure
+
     def stack(self, name: str) -> Floats:
-        """The columns ``name[1]``, ``name[2]``, … side by side, shape (rows, n) or (rows, n − 1).
+        """The columns ``name[1]``, ``name[2]``, … side by side, shape (rows, n), (rows, n − 1) or (rows, sensors).
 
         Raises
         ------
         MissingColumn
             If the run lacks one of them.
         """
-        names = BY_NAME[name].names(self.n) if name in BY_NAME else [name]
+        names = BY_NAME[name].names(self.structure) if name in BY_NAME else [name]
         columns = [self[scalar] for scalar in names]
         return np.column_stack(columns) if columns else np.empty((self.row_count, 0))
 
