@@ -161,13 +161,13 @@ class BottomHoleAssembly:
 
     @property
     def structure(self) -> Structure:
-        """Numbers of stabilizers and sections, and whether the axial load counts."""
+        """How it is made up; what a case adds to that, layers of rock, it does not know."""
         return Structure(
             len(self.stabilizer_positions),
             len(self.section_lengths),
             int(self.axial_load),
             len(self.body_point_positions),
-            len(self.sensor_positions),
+            sensors=len(self.sensor_positions),
         )
 
     @property
