@@ -167,7 +167,7 @@ class BottomHoleAssembly:
             len(self.section_lengths),
             int(self.axial_load),
             len(self.body_point_positions),
-            len(self.sensor_positions),
+            sensors=len(self.sensor_positions),
         )
 
     @property
