@@ -68,7 +68,7 @@ def chart() -> Chart:
 
 def eigenvalues(made: Chart, panel: Panel, point: Point, nodes: int) -> np.ndarray:
     """Of the matrix at a point of a panel."""
-    moved = respaced(scale(CASE.bha, CASE.bit), float(made.lambda2[point[0]]))
+    moved = scale(respaced(CASE.bha, float(made.lambda2[point[0]])), CASE.bit)
     mode = LinearMode.of(moved, (len(panel.contact),), panel.saturated, made.inclination)
     return mode.roots(float(made.eta_pi[point[1]]), nodes)
 

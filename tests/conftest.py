@@ -43,7 +43,7 @@ os.environ.pop("SOURCE_DATE_EPOCH", None)  # and what an FMU says of its date
 
 
 # what commands are slow to import
-OF_COMMANDS = ("boreprop.case.file", "boreprop_fmu.cli", "fmpy.simulation", "scipy.optimize", "scipy.spatial")
+OF_COMMANDS = ("boreprop_fmu.cli", "boreprop_viz.view", "fmpy.simulation", "scipy.optimize", "scipy.spatial")
 
 
 Command = Callable[..., subprocess.CompletedProcess[str]]

@@ -43,14 +43,27 @@ def test_commands_that_take_any_bha(case_file: Path, command_here: Command) -> N
 
 @pytest.mark.parametrize("case_file", WITHOUT, indirect=True)
 def test_commands_that_take_the_papers_beam_refuse_others_in_one_line(case_file: Path, command_here: Command) -> None:
-    for arguments in (("roots",), ("roots", "--contact", "1"), ("stability", "--output", "chart.png")):
-        name, *options = arguments
-        assert_refused(command_here("boreprop", name, case_file, *options), "uniform beam", "steering", "section")
     python = command_here("boreprop", "simulate", case_file, "--output", "run.csv", "--engine", "python")
     assert_refused(python, "uniform beam", "native engine")
     fmu = command_here("boreprop-fmu", "build", case_file, "--output", "case.fmu", "--runtime", "python")
     assert fmu.returncode == 2
     assert "must be native for a BHA with section" in fmu.stderr
+
+
+@pytest.mark.parametrize("case_file", ["sections and axial load"], indirect=True)
+def test_roots_and_stability_take_sections_and_axial_load(case_file: Path, command_here: Command) -> None:
+    roots = command_here("boreprop", "roots", case_file, "--all", "--json")
+    assert [mode["verdict"] for mode in json.loads(roots.stdout)] == ["stable", "drift"]
+    stability = command_here(
+        "boreprop", "stability", case_file, "--eta-pi", "0.01:0.3:4", "--lambda2", "0.5:1.5:3", "--output", "chart.png"
+    )
+    assert stability.returncode == 0, stability.stderr
+
+
+@pytest.mark.parametrize("case_file", ["all"], indirect=True)
+def test_roots_and_stability_refuse_body_contact_in_one_line(case_file: Path, command_here: Command) -> None:
+    for name, *options in (("roots",), ("roots", "--contact", "1"), ("stability", "--output", "chart.png")):
+        assert_refused(command_here("boreprop", name, case_file, *options), "bha.body_contact", "simulate")
 
 
 @pytest.mark.parametrize("case_file", ["all"], indirect=True)

@@ -7,14 +7,17 @@ from zipfile import ZipFile
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from beams_as_built import CASES, reference_bha
+from beams_as_built import CASES, built, reference_bha
 from boreprop.case.case import Case, InputSchedule
 from boreprop.case.file import dump_case
 from boreprop.case.packed import read_packed_case
-from boreprop.core.quantities import OUTPUTS, scalar_names
+from boreprop.core.quantities import OUTPUTS, followed, quantity_of, scalar_names
 from boreprop.core.survey import Survey
-from boreprop.core.system import BitRock
+from boreprop.core.system import BitRock, BottomHoleAssembly
+from boreprop.kernel.binding import NativeDrilling
 from boreprop.run.results import read_trajectory
 from boreprop.run.simulate import simulate
 from conftest import Command, Pack, assert_refused
@@ -91,3 +94,51 @@ def test_the_python_flavour_is_refused_with_the_one_that_has_it(
     refused = command("boreprop-fmu", "build", "case.toml", "--runtime", "python", "--output", "a.fmu")
     assert_refused(refused, "runtime", "native", "section")
     assert not (tmp_path / "a.fmu").exists()
+
+
+ROCK = ("lateral_steering_resistance", "angular_steering_resistance", "bit_tilt_limit")
+
+
+@given(bha=built(axial=True, points=4), weight=st.sampled_from([0.0, 2e4]), force=st.floats(-3e4, 3e4))
+def test_what_changes_at_once_with_an_input_is_said_to_depend_on_it(
+    bha: BottomHoleAssembly, weight: float, force: float
+) -> None:
+    """Among others on the active weight, which loads the BHA along its axis where weight_on_bit is 0."""
+    reach = bha.stabilizer_positions[-1]
+    survey = Survey((0.0, reach, reach + 5.0), (0.5, 0.5, 0.51))
+    acting = {
+        "rss_force": force,
+        "active_weight_on_bit": 1e4,
+        "weight_on_bit": weight,
+        **dict(zip(ROCK, (10.0, 1.0, 0.02), strict=True)),
+    }
+
+    def outputs(values: dict[str, float]) -> dict[str, float | int]:
+        run = NativeDrilling(
+            bha,
+            BitRock(*(values[name] for name in ROCK)),
+            survey,
+            active_weight_on_bit=values["active_weight_on_bit"],
+            weight_on_bit=values["weight_on_bit"],
+            rss_force=values["rss_force"],
+        )
+        return run.outputs()
+
+    before = outputs(acting)
+    for name, value in acting.items():
+        for output, after in outputs(acting | {name: 1.1 * value + (name == "weight_on_bit") * 3e4}).items():
+            if after != before[output]:
+                assert name in followed(quantity_of(output), bha.structure), (output, name)
+
+
+def test_its_forces_are_said_to_depend_on_the_active_weight(fulcrum: Case, pack: Pack) -> None:
+    with ZipFile(pack(fulcrum, NATIVE)) as archive:
+        description = fromstring(archive.read("modelDescription.xml"))
+    names = [scalar.attrib["name"] for scalar in description.findall("ModelVariables/ScalarVariable")]
+    [unknown] = [
+        one
+        for one in description.findall("ModelStructure/Outputs/Unknown")
+        if names[int(one.attrib["index"]) - 1] == "bit_lateral_force"
+    ]
+    sources = {names[int(index) - 1] for index in unknown.attrib["dependencies"].split()}
+    assert sources == {"rss_force", "active_weight_on_bit", "weight_on_bit"}

@@ -1,8 +1,6 @@
 """FMUs in layers of rock, with a bit that becomes blunt and clearances that open: exactly what `simulate` drills."""
 
 import json
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,7 +18,7 @@ from boreprop.run.trajectory import Trajectory
 from conftest import Command, Pack
 from flavours import NATIVE, Flavour, both_flavours
 from fmu_host import instance
-from places import HOSTS
+from scenarios import report
 
 LENGTH = 21.0
 CLEARANCE = "stabilizer_clearance[1]"
@@ -54,10 +52,7 @@ def opening(layered: Case) -> Case:
 
 def act(fmu: Path, *actions: list[object]) -> list[Any]:
     """What the actions of fmu_host.py give."""
-    command = [sys.executable, str(HOSTS / "fmu_host.py"), "act", str(fmu), json.dumps(actions)]
-    done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", timeout=300)
-    assert done.returncode == 0, done.stderr
-    answers: list[Any] = json.loads(done.stdout)
+    answers: list[Any] = report("fmu_host", "act", fmu, json.dumps(actions))
     return answers
 
 

@@ -4,8 +4,13 @@ import os
 import signal
 import subprocess
 import sys
+import zipfile
+from pathlib import Path
 
 import pytest
+
+from boreprop.case.case import Case
+from boreprop_fmu.pack.build import build_fmu
 
 SCRIPT = """
 import os, signal, sys
@@ -38,3 +43,34 @@ def test_a_signal_that_is_handled_comes_after_the_call(name: str) -> None:
 def test_a_signal_that_nobody_handles_ends_the_process_at_once() -> None:
     done = subprocess.run([sys.executable, "-c", SCRIPT, "SIGTERM", "not"], capture_output=True, text=True, timeout=60)
     assert (done.stdout, done.returncode) == ("", -signal.SIGTERM)
+
+
+SIGNALLING = """
+def signalling(*arguments, call=Slave.{method}, **values):
+    import os, signal
+    os.kill(os.getpid(), signal.SIGTERM)
+    return call(*arguments, **values)
+
+Slave.{method} = signalling
+"""
+RUN = "import sys; from boreprop_fmu.cli import main; sys.argv[0] = 'boreprop-fmu'; main()"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="no such signals")
+@pytest.mark.parametrize("method", ["__init__", "setup_experiment", "exit_initialization_mode", "terminate"])
+def test_a_signal_while_an_fmu_begins_or_ends_is_no_error_of_the_fmu(case: Case, tmp_path: Path, method: str) -> None:
+    """The FMU, which is Python, sends the signal itself, from the call."""
+    fmu, signalling = build_fmu(case, tmp_path / "Borehole.fmu", runtime="python"), tmp_path / "Signalling.fmu"
+    with zipfile.ZipFile(fmu) as archive, zipfile.ZipFile(signalling, "w") as changed:
+        slave = archive.read("resources/slavemodule.txt").decode().strip()
+        for name in archive.namelist():
+            text = archive.read(name)
+            if name == f"resources/{slave}.py":
+                text += SIGNALLING.format(method=method).encode()
+            changed.writestr(name, text)
+    arguments = ["run", str(signalling), "--output", "run.csv", "--stop", "1"]
+    done = subprocess.run(
+        [sys.executable, "-c", RUN, *arguments], cwd=tmp_path, capture_output=True, text=True, timeout=60
+    )
+    assert (done.returncode, done.stderr) == (-signal.SIGTERM, "")
+    assert not (tmp_path / "run.csv").exists()

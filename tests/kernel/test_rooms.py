@@ -28,7 +28,7 @@ int extremes_of(int count, const double *xi, const double *values, double *found
 
 void inverse_of(int size, const double matrix[SIZE][SIZE], double result[SIZE][SIZE]) { inverse(size, matrix, result); }
 
-void turned_by(double turn, double angle, double *sine_cosine) {
+void turned_from(double turn, double angle, double *sine_cosine) {
     turn_by(turn, sin(angle), cos(angle), &sine_cosine[0], &sine_cosine[1]);
 }
 
@@ -101,7 +101,7 @@ def test_an_inverse_pivots_on_the_largest_number_of_either_sign(rooms: ctypes.CD
 @given(st.floats(-0.05, 0.05), st.floats(-3.0, 3.0))
 def test_the_series_for_a_small_turn_are_exact_to_rounding(rooms: ctypes.CDLL, turn: float, angle: float) -> None:
     found = doubles([0.0, 0.0])
-    rooms.turned_by(ctypes.c_double(turn), ctypes.c_double(angle), found)
+    rooms.turned_from(ctypes.c_double(turn), ctypes.c_double(angle), found)
     assert list(found) == pytest.approx([sin(angle + turn), cos(angle + turn)], abs=1.5e-15)
 
 

@@ -113,15 +113,15 @@ def table(names: Sequence[str], facts: Sequence[dict[str, str]]) -> str:
 def case_facts(case: Case) -> dict[str, str]:
     """The facts about a case: name → value in the units people use."""
     bha, bit = case.bha, case.bit
-    paper = bha.structure.is_of_the_paper
+    modal = not bha.body_point_positions  # else it has no modes whose roots could be found
     straight = straight_drilling(case)
     return {
         "active weight on bit": UNITS["N"].text(case.active_weight_on_bit),
         "**ηΠ**": f"**{eta_pi(bha, bit, case.active_weight_on_bit):.4g}**",
         "drilling straight, contact": touching(straight.response) + ", tilt at its limit" * straight.saturated,
         "drilling straight, roots": BY_THE_ROOTS[straight.verdict],
-        "its critical ηΠ": _limit(straight.critical) if paper else BY_THE_ROOTS[None],
-        "critical ηΠ, all touching": _limit_of_all(case) if paper else BY_THE_ROOTS[None],
+        "its critical ηΠ": _limit(straight.critical) if modal else BY_THE_ROOTS[None],
+        "critical ηΠ, all touching": _limit_of_all(case) if modal else BY_THE_ROOTS[None],
         "stabilizers": f"{', '.join(f'{s:.4g}' for s in bha.stabilizer_positions)} m",
         "clearances": f"{', '.join(map(SMALL_LENGTH.number, bha.stabilizer_clearances)) or '–'} {SMALL_LENGTH.shown}",
         "beam": _beam(case),

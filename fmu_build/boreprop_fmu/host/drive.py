@@ -110,12 +110,13 @@ class FmuRun:
             with open_instance(
                 self.fmu, self._description, messages, start=self.start, stop=self.stop, warn=self._heed
             ) as slave:
-                if self._tolerance is not None:
-                    slave.setReal([self._variables["relative_tolerance"].valueReference], [self._tolerance])
-                inputs = GivenInputs(slave, self._variables, self._course, self.start)
-                read = self._reader(slave)
-                self._advance(time, time, inputs)
-                slave.exitInitializationMode()
+                with uninterrupted(handlers):
+                    if self._tolerance is not None:
+                        slave.setReal([self._variables["relative_tolerance"].valueReference], [self._tolerance])
+                    inputs = GivenInputs(slave, self._variables, self._course, self.start)
+                    read = self._reader(slave)
+                    self._advance(time, time, inputs)
+                    slave.exitInitializationMode()
                 for k in range(len(self)):
                     point = self.start + k * self.step
                     with uninterrupted(handlers):

@@ -76,28 +76,33 @@ def open_instance(
             archive.extractall(directory)
         if Path(directory, "resources", "slavemodule.txt").exists():
             _check_readable(directory)
+        slave: Any = None
+        dead, handlers = False, interruptions()
         try:
-            slave = FMU2Slave(
-                instanceName=fmu.stem,
-                guid=description.guid,
-                modelIdentifier=identifier,
-                unzipDirectory=directory,
-                libraryPath=_library(directory, identifier, platform or host_platform()),
-            )
-            slave.instantiate(callbacks=callbacks, loggingOn=True)
-        except Exception as error:  # fmpy raises a plain Exception if, say, there is no binary for this platform
-            raise InputError(f"{fmu}: must load on this machine, got: {' '.join(messages) or error}") from error
-        dead = False
-        try:
-            slave.setupExperiment(startTime=start, stopTime=stop)
-            slave.enterInitializationMode()
+            with uninterrupted(handlers):
+                try:
+                    made = FMU2Slave(
+                        instanceName=fmu.stem,
+                        guid=description.guid,
+                        modelIdentifier=identifier,
+                        unzipDirectory=directory,
+                        libraryPath=_library(directory, identifier, platform or host_platform()),
+                    )
+                    made.instantiate(callbacks=callbacks, loggingOn=True)
+                except Exception as error:  # a plain one if, say, there is no binary for this platform
+                    reason = " ".join(messages) or error
+                    raise InputError(f"{fmu}: must load on this machine, got: {reason}") from error
+                slave = made
+                slave.setupExperiment(startTime=start, stopTime=stop)
+                slave.enterInitializationMode()
             yield slave
-            slave.terminate()
+            with uninterrupted(handlers):
+                slave.terminate()
         except FMICallException as error:
             dead = error.status == fmi2Fatal  # FMI then forbids all further calls
             raise
         finally:
-            if not dead:
+            if slave and not dead:
                 slave.fmi2FreeInstance(slave.component)
                 _release_runtime(slave.dll)
                 slave.freeLibrary()

@@ -212,8 +212,11 @@ static int advance(Component *c, double to, Inputs inputs, char why[LINE]) {
     const double *clearances = c->value + c->packed.variables.first_clearance;
     double *before = NULL;
     Problem problem;
-    if (has_other_clearances(drilling, clearances) && !(before = kept_state(drilling, why))) return 0;
-    Status status = run_change_clearances(c->run, clearances, &problem);
+    Status status = DONE;
+    if (!c->run_has_inputs && has_other_clearances(drilling, clearances)) {
+        if (!(before = kept_state(drilling, why))) return 0;
+        status = run_change_clearances(c->run, clearances, &problem);
+    }
     if (status == DONE) status = run_advance(c->run, to, inputs, &problem);
     if (status != DONE && before) drilling_return(drilling, before);
     free(before);

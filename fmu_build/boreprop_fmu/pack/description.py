@@ -7,7 +7,7 @@ from importlib.metadata import metadata
 from math import isfinite
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from boreprop.core.quantities import VARIABLES, Quantity, Structure
+from boreprop.core.quantities import VARIABLES, Quantity, Structure, followed
 from boreprop.core.system import LEAST_SPAN
 from boreprop.errors import InputError
 from boreprop.units import UNITS
@@ -84,7 +84,7 @@ def model_description(
     variables = SubElement(root, "ModelVariables")
     for reference, (name, quantity) in enumerate(scalars):
         _add_variable(variables, name, reference, quantity, start)
-    _add_structure(SubElement(root, "ModelStructure"), scalars)
+    _add_structure(SubElement(root, "ModelStructure"), scalars, structure)
     indent(root)
     document: bytes = tostring(root, encoding="utf-8", xml_declaration=True)
     return document + b"\n"
@@ -155,14 +155,15 @@ def _add_variable(
         typed.set("start", value if isinstance(value, str) else number(value))
 
 
-def _add_structure(structure: Element, scalars: list[tuple[str, Quantity]]) -> None:
+def _add_structure(element: Element, scalars: list[tuple[str, Quantity]], structure: int | Structure) -> None:
     """What outputs depend on: while stepping inputs only, at the start parameters too."""
     index = {name: str(i) for i, (name, _) in enumerate(scalars, start=1)}
     for part, roles in (("Outputs", ("input",)), ("InitialUnknowns", ("input", "parameter"))):
-        unknowns = SubElement(structure, part)
+        unknowns = SubElement(element, part)
         for name, quantity in scalars:
             if quantity.role == "output":
-                sources = [one for one, of in scalars if of.role in roles and of.name in quantity.follows]
+                follows = followed(quantity, structure)
+                sources = [one for one, of in scalars if of.role in roles and of.name in follows]
                 kinds = " ".join(["dependent"] * len(sources))
                 depends_on = " ".join(index[one] for one in sources)
                 SubElement(unknowns, "Unknown", index=index[name], dependencies=depends_on, dependenciesKind=kinds)

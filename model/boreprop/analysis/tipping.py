@@ -291,8 +291,8 @@ def usual_map(case: Case) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     own = case.eta_pi
     inclination = case.survey.inclination[-1]
     contact = can_touch(case.bha, case.bit, inclination, case.schedule.rss_force)
-    paper = case.bha.structure.is_of_the_paper  # of no other beam the critical ηΠ is computed
-    critical = critical_eta_pi(case, contact=contact, inclination=inclination) if paper else None
+    modal = not case.bha.body_point_positions  # else there is no critical ηΠ
+    critical = critical_eta_pi(case, contact=contact, inclination=inclination) if modal else None
     highest = max(1.1 * critical.eta_pi if critical else 0.0, 1.5 * own)
     clearance = (*case.bha.stabilizer_clearances, 0.0)[first_that_touches(case) - 1]
     smallest, largest = CLEARANCES

@@ -1,6 +1,7 @@
 """Where the body of a BHA may touch the wall: from the keys body_contact and body_contact_spacing of a case file."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import accumulate, pairwise
 from math import inf, radians
 from pathlib import Path
@@ -10,11 +11,13 @@ import numpy as np
 
 from ..core.quantities import MAX_POINTS
 from ..errors import InputError, shown
+from .case import Case
 
 PARTS_OF_FIRST_SPAN = 50  # of the span above the bit or above a near-bit stabilizer: side force and curvature to 1 %
 LONG_SPAN = 5.0  # m: a shorter span above the bit ends at a near-bit stabilizer
 FURTHER_UP = 1.5  # m between points there: to 0.1 %
 NEAREST = 1.0  # m from the bit, where the body does not touch before the tilt of the bit is at its limit
+SAME = 1e-12  # m: clearances that differ by less differ by rounding
 KEYS = ("body_contact", "body_contact_spacing", "body_point_positions")  # of [bha], one of which asks for contact
 
 
@@ -65,6 +68,44 @@ def place_points(document: dict[str, Any], source: Path) -> None:
         raise InputError(f"{source}: bha.section: outer_diameter must be < bit.diameter = {hole:g}, got {widest:g}")
 
 
+def keep_clearances(before: Case, after: Case) -> Case:
+    """`after` with the clearances of its body that followed from the diameters of `before` following from its own.
+
+    Parameters
+    ----------
+    before
+        A case.
+    after
+        The same case with other parameters.
+
+    Returns
+    -------
+    Case
+        `after`, in which clearances that are given by hand stay: those that are not half of hole less body in
+        `before`, and those that differ between the two.
+    """
+    followed, follow = _clearances(before), _clearances(after)
+    kept = zip(before.bha.body_point_clearances, after.bha.body_point_clearances, followed, follow, strict=True)
+    clearances = tuple(new if own == old and abs(old - was) <= SAME else own for old, own, was, new in kept)
+    if clearances == after.bha.body_point_clearances:
+        return after
+    return replace(after, bha=replace(after.bha, body_point_clearances=clearances))
+
+
+def _clearances(case: Case) -> list[float]:
+    """Half of hole less body at the points of the body, m."""
+    bha, ends = case.bha, list(accumulate(case.bha.section_lengths))
+    diameters = bha.section_outer_diameters
+    return [_clearance(ends, diameters, s, case.bit_diameter) if ends else 0.0 for s in bha.body_point_positions]
+
+
+def _clearance(ends: Sequence[float], diameters: Sequence[float], s: float, hole: float) -> float:
+    """Between body and wall on each side; at a step of the diameter that of the larger side."""
+    k = min(int(np.searchsorted(ends, s - 1e-9)), len(ends) - 1)
+    both = diameters[k : k + 2] if abs(ends[k] - s) <= 1e-9 else diameters[k : k + 1]
+    return (hole - max(both)) / 2
+
+
 def _spacing(bha: dict[str, Any], source: Path) -> float | None:
     spacing = bha.get("body_contact_spacing")
     if spacing is None or (type(spacing) in (int, float) and 0 < spacing < inf):
@@ -88,10 +129,8 @@ class _Body:
                 )
 
     def clearance(self, s: float, hole: float) -> float:
-        """Between body and wall on each side; at a step of the diameter that of the larger side."""
-        k = min(int(np.searchsorted(self.ends, s - 1e-9)), len(self.ends) - 1)
-        both = self.diameters[k : k + 2] if abs(self.ends[k] - s) <= 1e-9 else self.diameters[k : k + 1]
-        return (hole - max(both)) / 2
+        """Between body and wall on each side."""
+        return _clearance(self.ends, self.diameters, s, hole)
 
     def points(self, stabilizers: Sequence[float], nearest: float, spacing: float | None) -> list[float]:
         """Where the body may touch: in each span at equal distances, and at each step of the diameter."""

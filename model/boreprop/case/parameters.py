@@ -6,8 +6,10 @@ from typing import Any
 
 from ..core.quantities import INPUTS, PARAMETERS, fields_of, quantity_of, scalar_names, values_of
 from ..errors import InputError
+from .body import keep_clearances
 from .case import Case, Schedule
 
+HOLE = "bit_diameter"
 PARTS = ("bha", "bit")  # the fields of a case that are dataclasses of parameters
 
 
@@ -24,6 +26,14 @@ def parameters(case: Case) -> dict[str, float]:
     return {name: values[name] for name in names if name in values}
 
 
+def diameters(case: Case) -> dict[str, float]:
+    """The diameters of hole and sections by scalar name, m, where clearances of the body follow from them."""
+    if not case.bha.body_point_positions:
+        return {}
+    body = {f"section_outer_diameter[{i}]": value for i, value in enumerate(case.bha.section_outer_diameters, 1)}
+    return {HOLE: case.bit_diameter} | body
+
+
 def with_parameters(case: Case, values: Mapping[str, float]) -> Case:
     """`case` with other values of some inputs and parameters.
 
@@ -32,16 +42,18 @@ def with_parameters(case: Case, values: Mapping[str, float]) -> Case:
     case
         The case to start from.
     values
-        Scalar name, see `parameters` → value in SI units. An input replaces its schedule by a constant value.
+        Scalar name, see `parameters` and `diameters` → value in SI units. An input replaces its schedule by a constant
+        value. Other diameters give the body other clearances, unless these are given by hand; its stiffness and weight
+        are parameters of their own.
 
     Raises
     ------
     InputError
-        If a name is not among those of `parameters`.
+        If a name is not among those of `parameters` and `diameters`.
     ParameterError
         If a value is out of range.
     """
-    own = parameters(case)
+    own = parameters(case) | diameters(case)
     for name in values:
         if name not in own:
             raise InputError(f"a parameter must be one of {', '.join(own)}, got {name!r}")
@@ -56,4 +68,8 @@ def with_parameters(case: Case, values: Mapping[str, float]) -> Case:
     for name in values:
         inputs = inputs and inputs.without(name)
         formations = tuple(left for formation in formations if (left := formation.without(name)))
-    return replace(case, **parts, inputs=inputs, formations=formations, **fields_of("", wanted, structure))
+    made = replace(case, **parts, inputs=inputs, formations=formations, **fields_of("", wanted, structure))
+    if structure.body_points:
+        body = tuple(wanted[name] for name in diameters(case) if name != HOLE)
+        made = replace(made, bit_diameter=wanted[HOLE], bha=replace(made.bha, section_outer_diameters=body))
+    return keep_clearances(case, made) if structure.body_points else made

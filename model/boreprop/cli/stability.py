@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from ..analysis.lying import pressing_weight
 from ..analysis.stability.chart import stability_chart, usual_grid
 from ..analysis.stability.contacts import all_contacts, charted, contacts_met, steady_mode
 from ..analysis.stability.roots import Roots, critical_eta_pi, find_roots, parse_contact
@@ -121,7 +122,7 @@ def stability_command(
     case = open_case(case_file)
     bha, bit, inclination, forces = case.bha, case.bit, case.survey.inclination[-1], case.schedule.rss_force
     here, _ = steady_mode(case, forces[0], inclination)
-    contacts = charted(bha, bit, inclination, forces, here)
+    contacts = charted(bha, bit, inclination, forces, here, pressing_weight(case))
     limits = {contact: critical_eta_pi(case, contact=contact) for contact in contacts}
     largest = max(limit.eta_pi if limit else 0.0 for limit in limits.values())
     usual_across, usual_up = usual_grid(bha, case.eta_pi, largest)

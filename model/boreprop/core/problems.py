@@ -49,6 +49,10 @@ OBSTACLES = {
         "raise relative_tolerance (--tolerance), now {limit}",
     ),
     "no mode": ("no contacts are found that hold at {place} m", "change relative_tolerance (--tolerance), now {limit}"),
+    "snaps": (
+        "at {place} m the BHA comes free of the wall at a stabilizer without which it buckles: it would bear {limit} N",
+        "use a smaller weight_on_bit",
+    ),
     "too crowded": (
         "more than {limit} supports touch the wall, or are near it, at {place} m",
         "put fewer points on the body (bha.body_contact_spacing)",

@@ -263,6 +263,17 @@ def quantity_of(scalar_name: str) -> Quantity:
     return BY_NAME[scalar_name.partition("[")[0]]
 
 
+def followed(quantity: Quantity, structure: int | Structure) -> frozenset[str]:
+    """The inputs and parameters that an output follows at once in a BHA of this structure.
+
+    A weight on bit of 0 stands for the active weight, which then loads the BHA along its axis.
+    """
+    names = frozenset(quantity.follows)
+    if isinstance(structure, Structure) and structure.axial_load and "weight_on_bit" in names:
+        names |= {"active_weight_on_bit"}
+    return names
+
+
 def columns_of(table: str) -> tuple[str, ...]:
     """The columns, as people name them, of "hole" or "rss": tables of a case file that may be CSV files of their own."""
     keys = (quantity.key.split(".") for quantity in QUANTITIES if quantity.key and quantity.part)

@@ -161,7 +161,7 @@ class BottomHoleAssembly:
 
     @property
     def structure(self) -> Structure:
-        """Numbers of stabilizers and sections, and whether the axial load counts."""
+        """How it is made up; what a case adds to that, layers of rock, it does not know."""
         return Structure(
             len(self.stabilizer_positions),
             len(self.section_lengths),
@@ -250,7 +250,7 @@ def scale(bha: BottomHoleAssembly, bit: BitRock) -> Scaled:
         raise ParameterError(
             "bha",
             "must be the paper's uniform beam here; for others there are simulate with the native engine, summary, "
-            "steering, dogleg, hysteresis, study and boreprop-view",
+            "steering, dogleg, hysteresis, study, boreprop-view and, without body contact, roots and stability",
             bha.structure.beyond_the_paper,
         )
     l1 = bha.length_scale

@@ -10,6 +10,19 @@ typedef struct {
     double count, inclination;
 } Reading;
 
+/* A range of inclinations. */
+typedef struct {
+    double low, high;
+} Range;
+
+#define BLIND 1.0 /* ℓ₁: for how long the hole at a point of the body is not looked at, at most */
+
+/* The inclinations of the hole behind the bit, over its reach and BLIND and somewhat beyond. */
+typedef struct {
+    Range before, latest;
+    double since; /* where the latest begin */
+} Inclinations;
+
 /* Everything that evolves, but for what the rings of the hole and its kinks hold. A copy of it is a way back. */
 typedef struct {
     double xi;
@@ -27,32 +40,42 @@ typedef struct {
     Step step;
     Hole hole;
     Kinks kinks;
+    Inclinations inclinations;
     double accepted, rejected, events; /* counts of steps, of rejected trials and of bounds met */
     Reading reading[MAX_SENSORS];
 } State;
 
-/* How far the points of the body are from the wall, at the end of the last step, and how much that changed along it. */
+/* The points of the body at the end of the last step: where they are, from the origin of the lateral coordinates, how far
+   from the wall, and how much that changed along the step. Of points that are far from it, the last two are the
+   clearance and −1. */
 typedef struct {
-    int near; /* whether any is so near that it may have to be watched */
-    double gap[MAX_POINTS], change[MAX_POINTS];
+    int near;  /* whether any is so near that it may have to be watched */
+    int known; /* whether the distance of any is known */
+    double body[MAX_POINTS], gap[MAX_POINTS], change[MAX_POINTS];
 } Surroundings;
 
 /* Copy what is known of the first `points` of them. */
 static inline void copy_around(Surroundings *to, const Surroundings *from, int points) {
     size_t size = (size_t)points * sizeof(double);
-    memcpy(to->gap, from->gap, size), memcpy(to->change, from->change, size);
-    to->near = from->near;
+    memcpy(to->body, from->body, size), memcpy(to->gap, from->gap, size), memcpy(to->change, from->change, size);
+    to->near = from->near, to->known = from->known;
 }
+
+/* Where the hole was at the points of the body, and where the bit, when it was looked at. Nothing but the time that a run
+   takes depends on it. */
+typedef struct {
+    double Y[MAX_POINTS], at[MAX_POINTS];
+} Seen;
 
 /* The bit at the front of its hole, dimensionless. */
 typedef struct {
     Scaled scaled;
     Modes modes;
-    double length_scale;
+    double length_scale, force_scale;
     Options options;
     State now;
     Surroundings around;
-    Count cursor[MAX_POINTS];  /* where the look-up of the hole at a point begins, as that at a place does */
+    Seen seen;
     Law law;                   /* of the present regime and inputs, */
     int law_known;             /* if it is made already */
     double exit;               /* where the bit leaves its layer of the ground in the present step, … */

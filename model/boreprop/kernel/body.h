@@ -60,112 +60,122 @@ static inline void unwatch(Contact *contact, int n, int place) {
     contact->point[last] = 0, contact->of[n + last] = 0;
 }
 
-/* Contacts as they are followed while deflections without contact and clearances change: those are q + t q_rate and
-   y + t y_rate, and force or deflection of each support, as it touches or not, is start + t rate. */
+/* What bends a beam with its supports: offsets of the bit's axis from the hole, F_RSS, g, and δ_n; and the clearances. */
 typedef struct {
-    int n, supports, touching, C[MAX_PLACES];
+    double e[MAX_SUPPORTS], F_rss, g, end, y[MAX_SUPPORTS];
+} Bent;
+
+/* How it lies then: the force of each support that touches, the deflection of any other, and what the bit bears. */
+typedef struct {
+    double of[MAX_SUPPORTS], M, F_0;
+} Lain;
+
+/* Contacts as they are followed while loads and clearances change as `bent` + t `bending`: forces and deflections are then
+   `start` + t `rate`. */
+typedef struct {
+    int n, supports, touching;
     signed char of[MAX_SUPPORTS];
-    double q[MAX_SUPPORTS], q_rate[MAX_SUPPORTS], y[MAX_SUPPORTS], y_rate[MAX_SUPPORTS];
-    double start[MAX_SUPPORTS], rate[MAX_SUPPORTS];
+    Bent bent, bending;
+    Lain start, rate;
 } Path;
 
-/* Find start and rate for the contacts as they are. */
-static inline void look_ahead(const Beam *beam, Path *path) {
-    double K_inv_CC[SIZE][SIZE] = {{0}}, K_C[SIZE][SIZE] = {{0}};
-    const int *C = path->C, touching = path->touching;
-    for (int k = 0; k < touching; k++)
-        for (int l = 0; l < touching; l++) K_inv_CC[k][l] = compliance(beam, C[k], C[l]);
-    inverse(touching, (const double (*)[SIZE])K_inv_CC, K_C);
-    for (int k = 0; k < touching; k++) {
-        double start = 0.0, rate = 0.0;
-        for (int l = 0; l < touching; l++) {
-            int i = C[l];
-            start -= K_C[k][l] * (path->q[i] + path->of[i] * path->y[i]);
-            rate -= K_C[k][l] * (path->q_rate[i] + path->of[i] * path->y_rate[i]);
-        }
-        path->start[C[k]] = start, path->rate[C[k]] = rate;
+/* How a chain lies under loads. */
+static inline void lay_chain(const Chain *chain, const Path *path, const Bent *bent, Lain *lain) {
+    Acting acting = {bent->g, bent->F_rss};
+    Held held;
+    for (int k = 0; k < chain->spans; k++) {
+        int i = chain->held[k];
+        held.v[k + 1] = i == path->n - 1 ? bent->end - bent->e[i] : -(bent->e[i] + path->of[i] * bent->y[i]);
     }
-    for (int i = 0; i < path->supports; i++) {
-        if (path->of[i]) continue;
-        path->start[i] = path->q[i], path->rate[i] = path->q_rate[i];
-        for (int k = 0; k < touching; k++) {
-            path->start[i] += compliance(beam, i, C[k]) * path->start[C[k]];
-            path->rate[i] += compliance(beam, i, C[k]) * path->rate[C[k]];
-        }
-    }
+    hold(chain, acting, &held);
+    for (int i = 0; i < path->supports; i++)
+        if (i != path->n - 1 && !path->of[i]) lain->of[i] = bent->e[i] + place_between(chain, &held, acting, i);
+    for (int k = 0; k < chain->spans - 1; k++) lain->of[chain->held[k]] = held.F[k];
+    lain->M = held.M, lain->F_0 = held.F_0;
+}
+
+/* Find start and rate for the contacts as they are; 0 if the beam buckles between them. */
+static inline int look_ahead(const Beam *beam, Path *path) {
+    Chain chain;
+    if (!make_chain(&chain, beam, path->supports, path->of)) return 0;
+    lay_chain(&chain, path, &path->bent, &path->start);
+    lay_chain(&chain, path, &path->bending, &path->rate);
+    return 1;
 }
 
 /* Where, from t on, a support meets a bound of its contact; infinity if it does not. */
 static inline double leaves_at(const Path *path, int i, double t) {
-    double start = path->start[i], rate = path->rate[i];
-    if (i == path->n - 1 || (path->y[i] == 0.0 && path->y_rate[i] == 0.0)) return INFINITY; /* held on both sides */
+    double start = path->start.of[i], rate = path->rate.of[i], y = path->bent.y[i], y_rate = path->bending.y[i];
+    if (i == path->n - 1 || (y == 0.0 && y_rate == 0.0)) return INFINITY; /* held on both sides */
     if (path->of[i]) return path->of[i] * rate < 0 ? larger(-start / rate, t) : INFINITY;
-    int side = rate > path->y_rate[i] ? 1 : rate < -path->y_rate[i] ? -1 : 0;
+    int side = rate > y_rate ? 1 : rate < -y_rate ? -1 : 0;
     if (!side) return INFINITY;
-    return larger((side * path->y[i] - start) / (rate - side * path->y_rate[i]), t);
+    return larger((side * y - start) / (rate - side * y_rate), t);
 }
 
 /* A support comes free, or touches the wall that it moves to; 0 if there is no room for it. */
 static inline int switch_contact(Path *path, int i) {
-    if (!path->of[i]) {
-        if (path->touching == MAX_WATCHED) return 0;
-        path->of[i] = path->rate[i] > 0 ? -1 : 1;
-        path->C[path->touching++] = i;
-        return 1;
-    }
-    int k = 0;
-    while (path->C[k] != i) k++;
-    path->C[k] = path->C[--path->touching];
-    path->of[i] = 0;
+    if (path->of[i]) path->of[i] = 0, path->touching--;
+    else if (path->touching == MAX_WATCHED) return 0;
+    else path->of[i] = path->rate.of[i] > 0 ? -1 : 1, path->touching++;
     return 1;
 }
 
 enum { MOST_SWITCHES = 1000 }; /* of a path: it takes three as a rule, and under a hundred where nearly all touch */
 
 /* Follow the contacts from t = 0 to 1, one switch after the other; 0 if more touch than there is room for, or there is no
-   end. */
+   end. A stabilizer that comes free, so that the beam buckles, goes to the other wall. */
 static inline int follow(const Beam *beam, Path *path) {
     double t = 0.0;
+    int first = -1, wall = 0;
     for (int switches = 0; switches < MOST_SWITCHES; switches++) {
-        int first = -1;
         double next = 1.0;
-        look_ahead(beam, path);
+        if (!look_ahead(beam, path)) {
+            if (!wall) return 0;
+            path->of[first] = (signed char)-wall, path->touching++, wall = 0;
+            continue;
+        }
+        first = -1;
         for (int i = 0; i < path->supports; i++) {
             double at = leaves_at(path, i, t);
             if (at < next) next = at, first = i;
         }
         if (first < 0) return 1;
+        wall = path->of[first];
         if (!switch_contact(path, first)) return 0;
         t = next;
     }
     return 0;
 }
 
-/* The contacts of all supports under the deflections q̃ that the beam would have without any; 0 if more touch than there
-   is room for, or none are found.
+/* The contacts of all supports under loads, whose clearances are those of the modes; 0 if more touch than there is room
+   for, or none are found.
 
    First every stabilizer is held without clearance, so that the beam stands, and the load grows from nothing to its whole;
    then the clearances of the stabilizers open. */
-static inline int follow_load(const Modes *modes, const double q[MAX_SUPPORTS], int points, Path *path) {
+static inline int follow_load(const Modes *modes, const Bent *loads, int points, Path *path) {
     int n = modes->beam.n;
     memset(path, 0, sizeof *path);
-    path->n = n, path->supports = n + points;
-    for (int i = 0; i < n - 1; i++) path->of[i] = 1, path->C[path->touching++] = i;
-    for (int i = 0; i < path->supports; i++) path->q_rate[i] = q[i], path->y[i] = i < n ? 0.0 : modes->y_star[i];
+    path->n = n, path->supports = n + points, path->bending = *loads;
+    memset(path->bending.y, 0, sizeof path->bending.y);
+    for (int i = 0; i < n - 1; i++) path->of[i] = 1, path->touching++;
+    for (int i = n; i < path->supports; i++) path->bent.y[i] = modes->y_star[i];
     if (!follow(&modes->beam, path)) return 0;
-    for (int i = 0; i < path->supports; i++) path->q[i] = q[i], path->q_rate[i] = 0.0;
+    memcpy(path->bent.e, loads->e, sizeof loads->e);
+    path->bent.F_rss = loads->F_rss, path->bent.g = loads->g, path->bent.end = loads->end;
+    memset(&path->bending, 0, sizeof path->bending);
     for (int i = 0; i < n - 1; i++) {
-        path->y_rate[i] = modes->y_star[i];
-        if (path->y_rate[i] > 0) path->of[i] = path->start[i] + path->rate[i] < 0 ? -1 : 1;
+        path->bending.y[i] = modes->y_star[i];
+        if (modes->y_star[i] > 0) path->of[i] = path->start.of[i] + path->rate.of[i] < 0 ? -1 : 1;
     }
     return follow(&modes->beam, path);
 }
 
 /* The same, as the contacts of a regime. */
-static inline int search(const Modes *modes, const double q[MAX_SUPPORTS], int points, Contact *found) {
+static inline int search(const Modes *modes, const Bent *loads, int points, Contact *found) {
     int n = modes->beam.n;
     Path path;
-    if (!follow_load(modes, q, points, &path)) return 0;
+    if (!follow_load(modes, loads, points, &path)) return 0;
     memset(found, 0, sizeof *found);
     for (int i = 0; i < n - 1; i++) found->of[i] = path.of[i];
     for (int k = 0; k < points; k++)

@@ -113,7 +113,7 @@ static inline Status drilling_prepare(
     d->drilled_length = 0.0;
     d->given.rss_force = (double)NAN;
     options.relative_tolerance = system->relative_tolerance;
-    prepare(&d->integrator, &scaled, length_scale(system), options);
+    prepare(&d->integrator, &scaled, length_scale(system), force_scale(system), options);
     take_cosine(d, 0.0);
     drilling_move(d, memory, capacity);
     return DONE;
@@ -213,12 +213,12 @@ typedef struct {
 static inline void find_body(Drilling *d, Present *at) {
     Integrator *p = &d->integrator;
     int n = p->scaled.n, points = p->scaled.points;
-    double gap[MAX_POINTS];
+    double gap[MAX_POINTS] = {0};
     at->body_force = at->body_place = 0.0, at->wall_distance = INFINITY;
     if (!points) return;
     for (int i = n; i < at->loads.count; i++)
         if (fabs(at->F[i]) > fabs(at->body_force)) at->body_force = at->F[i], at->body_place = p->now.places.s[i];
-    find_gaps(p, &p->now.step, p->now.xi, points, gap);
+    find_gaps(p, gap);
     for (int k = 0; k < points; k++) at->wall_distance = smaller(at->wall_distance, larger(gap[k], 0.0));
 }
 

@@ -51,7 +51,9 @@ static inline int leave(Integrator *p, const Step *last, double x[COMPONENTS]) {
     double xi = last->end;
     move_path(now, xi);
     step_state(last, xi, x);
+    double Y = x[LATERAL];
     keep_origin_near(now, x);
+    if (x[LATERAL] != Y) move_seen(p, x[LATERAL] - Y);
     forget(&now->hole, xi - LOOK_BACK - p->scaled.s[p->scaled.n - 1]);
     move_cursors(&now->hole, &now->places, xi);
     /* a step may have to stop half way to a kink: a kink too near for that counts as met here */
@@ -124,6 +126,37 @@ static inline int is_finite(const Trial *trial) {
 /* How much longer than a trial with this error the next one may be: the error grows as h^(S+1). */
 static inline double growth(double error) { return SAFETY * pow(larger(error, LEAST_ERROR), -1.0 / (S + 1)); }
 
+/* The weight on the bit that a BHA bears while it is held at the contacts of a regime alone, over F*; it bears none of
+   `most`. */
+APART static double borne(const Integrator *p, double most) {
+    const Contact *contact = &p->now.regime.contact;
+    signed char holds[MAX_SUPPORTS] = {0};
+    double low = 0.0;
+    int n = p->scaled.n;
+    Beam beam;
+    Chain chain;
+    for (int i = 0; i < place_count(*contact, n); i++) holds[support_at(contact, n, i)] = contact->of[i];
+    while (most - low > 1e-6 * most) {
+        Axial axial = {(low + most) / 2, p->now.cosine};
+        make_stepped_beam(&beam, &p->scaled, axial);
+        if (make_chain(&chain, &beam, n + p->scaled.points, holds)) low = axial.W;
+        else most = axial.W;
+    }
+    return low;
+}
+
+/* Find contacts between which the BHA stands, where it has come free at a stabilizer without which it does not. It may be
+   free there if other supports hold it; if it would have to jump to the other wall, it is at its end. */
+static inline Status stand(Integrator *p, double xi, const double x[COMPONENTS], Plan *plan, Problem *problem) {
+    Contact before = p->now.regime.contact;
+    int jumps = plan->searched;
+    double bears = borne(p, p->now.inputs.W);
+    plan->searched = 1;
+    if (touch_down(p, xi, x, problem) != DONE) return FAILED;
+    for (int i = 0; i < p->scaled.n - 1; i++) jumps |= !before.of[i] && p->now.regime.contact.of[i];
+    return jumps ? met(problem, SNAPS, bears * p->force_scale, xi * p->length_scale) : DONE;
+}
+
 /* Find the first trial of a step whose error is tolerable and whose regime holds beyond its start at `xi`, and its event.
 
    A bound that is met where the step starts switches the regime there. By the rates exactly one regime holds, but
@@ -138,6 +171,10 @@ static inline Status find_step(
     double shortest = shortest_step(p, xi);
     for (;;) {
         const Law *law = present_law(p);
+        if (!law->stands) {
+            if (stand(p, xi, x, plan, problem) != DONE) return FAILED;
+            continue;
+        }
         choose_length(p, law, xi, plan);
         if (plan->h < shortest) return failed(p, TOO_SHORT, xi, problem);
         try_step(p, law, xi, plan->h, x, trial);
@@ -155,7 +192,7 @@ static inline Status find_step(
             plan->switches++;
             continue;
         }
-        if (p->scaled.points && !plan->searched) {
+        if (p->scaled.stepped && !plan->searched) {
             plan->searched = 1, plan->switches = 0;
             if (touch_down(p, xi, x, problem) == DONE) continue;
         }
@@ -170,18 +207,21 @@ static inline Status find_step(
 static inline Status keep_clear(
     Integrator *p, const Step *last, int kink, const double x[COMPONENTS], Plan *plan, Trial *trial, Problem *problem
 ) {
-    Surroundings around;
+    double body[MAX_POINTS];
     for (;;) {
-        look_around(p, &trial->step, &around);
-        int beyond = around.near ? watch_beyond(p, around.gap, last->end) : 0; /* those beyond are near */
+        find_body_after(p, trial, body);
+        look_around(p, &trial->step, body);
+        int beyond = p->around.near ? watch_beyond(p, last->end) : 0; /* those beyond are near */
         if (beyond < 0) return met(problem, TOO_CROWDED, MAX_WATCHED, last->end * p->length_scale);
         if (!beyond) break;
         p->now.rejected++;
+        forget_seen(p);
         *plan = first_plan(last, kink, present_law(p), p->options.layers);
         Status status = find_step(p, last->end, x, plan, trial, problem);
         if (status != DONE) return status;
     }
-    copy_around(&p->around, &around, p->scaled.points);
+    memcpy(p->around.body, body, (size_t)p->scaled.points * sizeof *body);
+    note_inclinations(&p->now.inclinations, &trial->step, p->scaled.s[p->scaled.n - 1]);
     return DONE;
 }
 
@@ -222,6 +262,7 @@ static inline void go_back(Integrator *p) {
     *kink(&p->now.kinks, p->now.kinks.end - 1) = p->last_kink;
     p->law_known = p->exit_known = p->under_way = 0;
     bear(p, p->now.inputs.W);
+    forget_seen(p);
     clear(p);
 }
 

@@ -50,6 +50,7 @@ typedef struct {
 typedef struct {
     int count, last; /* of places, and that of the last stabilizer, which is the tilt's */
     int saturated;
+    int stands;       /* the BHA does not buckle between its contacts */
     int axial;        /* whether the sine is that of θ */
     double inputs_xi; /* where the inputs are those that it was made under */
     double growth;    /* of ηΠ per ξ, over ηΠ there */
@@ -94,7 +95,7 @@ static inline void make_law(
     int n = scaled->n, count = places->count;
     Bound *of_tilt = &law->bounds[0];
     law->count = count, law->last = n - 1, law->axial = scaled->axial, law->inputs_xi = inputs_xi, law->bound_count = 1;
-    law->saturated = regime.saturation != 0;
+    law->saturated = regime.saturation != 0, law->stands = mode->stands;
     law->growth = inputs.eta_pi_slope / inputs.eta_pi;
     law->longest = law->growth == 0 ? INFINITY : LONGEST_RAMP / fabs(law->growth);
     make_linear(&law->theta_rate, &mode->M, places, inputs, 1 / (inputs.epsilon * inputs.eta_pi));

@@ -36,19 +36,16 @@ static inline int lie(
     const Lying *bha, const double *loads, double *answers, Count count, const double *s, double *shape
 ) {
     const Beam *beam = &bha->modes.beam;
-    double l1 = bha->l1, q[MAX_SUPPORTS] = {0};
+    double l1 = bha->l1;
     int supports = support_count(bha);
     Bending bending = {.F_rss = loads[supports] / bha->F_star, .g = loads[supports + 1]};
-    double e_n = loads[beam->n - 1] / l1;
+    Bent bent = {.F_rss = bending.F_rss, .g = bending.g, .end = beam->end};
     Path path;
-    free_deflections(beam, e_n, bending.F_rss, bending.g, 0, supports, q);
-    for (int i = 0; i < supports; i++) q[i] += loads[i] / l1;
-    if (!follow_load(&bha->modes, q, bha->scaled.points, &path)) return 0;
-    bending.M = beam->M_e * (e_n - beam->end) + beam->M_rss * bending.F_rss + beam->M_g * bending.g;
-    bending.F_0 = beam->F0_e * (e_n - beam->end) + beam->F0_rss * bending.F_rss + beam->F0_g * bending.g;
+    for (int i = 0; i < supports; i++) bent.e[i] = loads[i] / l1;
+    if (!follow_load(&bha->modes, &bent, bha->scaled.points, &path)) return 0;
+    bending.M = path.start.M + path.rate.M, bending.F_0 = path.start.F_0 + path.rate.F_0;
     for (int i = 0; i < supports; i++) {
-        bending.F[i] = path.of[i] ? path.start[i] + path.rate[i] : 0.0;
-        bending.M += beam->M_F[i] * bending.F[i], bending.F_0 += beam->F0_F[i] * bending.F[i];
+        bending.F[i] = path.of[i] ? path.start.of[i] + path.rate.of[i] : 0.0;
         answers[i] = bending.F[i] * bha->F_star;
     }
     answers[supports] = bending.F_0 * bha->F_star, answers[supports + 1] = bending.M * bha->F_star * l1;

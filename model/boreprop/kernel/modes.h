@@ -5,7 +5,9 @@
 #ifndef BOREPROP_MODES_H
 #define BOREPROP_MODES_H
 
-#include "beam.h"
+#include "chain.h"
+
+#include <stddef.h>
 
 #define ROUNDING 1e-13 /* how far a force or deflection of order one may lie beyond its bound by rounding alone */
 
@@ -63,6 +65,7 @@ static inline void add_rows(Row *row, int places, int count, const double *facto
    In contact δ_i = −contact_i y*_i, so F_C = −K_C (q̃_C + contact_C y*_C), K_C = (K⁻¹_CC)⁻¹, and F = 0 elsewhere. */
 typedef struct {
     Contact contact;
+    int stands; /* it does not buckle between its contacts */
     Row F[MAX_PLACES], delta[MAX_PLACES], M, F_0;
 } Mode;
 
@@ -73,12 +76,84 @@ static inline Row free_deflection(const Beam *beam, int i, int place) {
     return q;
 }
 
+/* What a beam in sections answers to one of the loads: where that stands in each row. */
+typedef struct {
+    double F[MAX_PLACES], delta[MAX_PLACES], M, F_0;
+} Column;
+
+/* How a chain lies with `v` at the end of one of its spans, or none, and what acts. `places` are those of the supports where
+   it is held. */
+static inline Column column_of(
+    const Chain *chain, const Contact *contact, int n, const int *places, int moved, double v, Acting acting
+) {
+    Column column = {{0}, {0}, 0.0, 0.0};
+    Held held;
+    memset(held.v, 0, sizeof held.v);
+    if (moved >= 0) held.v[moved + 1] = v;
+    hold(chain, acting, &held);
+    for (int k = 0; k < chain->spans - 1; k++) column.F[places[k]] = held.F[k];
+    for (int i = 0; i < place_count(*contact, n); i++)
+        if (!contact->of[i] && i != n - 1)
+            column.delta[i] = place_between(chain, &held, acting, support_at(contact, n, i));
+    column.M = held.M, column.F_0 = held.F_0;
+    return column;
+}
+
+/* Put a column into the rows of a mode: as the factor of what `which` points to, in the row it belongs to. */
+static inline void put_column(Mode *mode, const Column *column, int places, size_t which, double factor) {
+    for (int i = 0; i < places; i++) {
+        *(double *)(void *)((char *)&mode->F[i] + which) += factor * column->F[i];
+        *(double *)(void *)((char *)&mode->delta[i] + which) += factor * column->delta[i];
+    }
+    *(double *)(void *)((char *)&mode->M + which) += factor * column->M;
+    *(double *)(void *)((char *)&mode->F_0 + which) += factor * column->F_0;
+}
+
+/* The mode of a beam in sections: what each load alone does to it, held where it touches. */
+static inline void make_chained_mode(Mode *mode, const Beam *beam, const double *y_star, Contact contact) {
+    int n = beam->n, places = place_count(contact, n), supports = n, at[MAX_SUPPORTS], ends[MAX_PLACES + 1];
+    signed char holds[MAX_SUPPORTS] = {0};
+    Acting nothing = {0.0, 0.0}, weight = {1.0, 0.0}, pads = {0.0, 1.0};
+    Row zero = {{0}, 0, 0, 0};
+    Chain chain;
+    mode->contact = contact, mode->M = mode->F_0 = zero;
+    for (int i = 0; i < places; i++) {
+        int support = support_at(&contact, n, i);
+        if (support >= supports) supports = support + 1;
+        holds[support] = contact.of[i], at[support] = i;
+        mode->F[i] = mode->delta[i] = zero;
+    }
+    mode->stands = make_chain(&chain, beam, supports, holds);
+    if (!mode->stands) return;
+    for (int k = 0; k < chain.spans; k++) ends[k] = at[chain.held[k]];
+    for (int k = 0; k < chain.spans; k++) {
+        int i = ends[k];
+        Column column = column_of(&chain, &contact, n, ends, k, -1.0, nothing); /* v = −(e + contact y*), and δ_n */
+        put_column(mode, &column, places, offsetof(Row, e) + (size_t)i * sizeof(double), 1.0);
+        double given = i == n - 1 ? -beam->end : contact.of[i] * y_star[chain.held[k]];
+        put_column(mode, &column, places, offsetof(Row, constant), given);
+    }
+    Column column = column_of(&chain, &contact, n, ends, -1, 0.0, weight);
+    put_column(mode, &column, places, offsetof(Row, g), 1.0);
+    column = column_of(&chain, &contact, n, ends, -1, 0.0, pads);
+    put_column(mode, &column, places, offsetof(Row, rss), 1.0);
+    for (int i = 0; i < places; i++) {
+        if (i == n - 1) continue;
+        if (contact.of[i]) mode->delta[i].constant = -contact.of[i] * y_star[support_at(&contact, n, i)];
+        else mode->delta[i].e[i] += 1.0;
+    }
+}
+
 static inline void make_mode(Mode *mode, const Beam *beam, const double *y_star, Contact contact) {
     int n = beam->n, places = place_count(contact, n), C[MAX_PLACES], support[MAX_PLACES], touching = 0;
     double K_inv_CC[SIZE][SIZE], K_C[SIZE][SIZE], factors[MAX_PLACES];
     Row to_wall[MAX_PLACES], zero = {{0}, 0, 0, 0};
     const Row *rows[MAX_PLACES], *F[MAX_PLACES];
-    mode->contact = contact;
+    if (beam->stepped) {
+        make_chained_mode(mode, beam, y_star, contact);
+        return;
+    }
+    mode->contact = contact, mode->stands = 1;
     for (int i = 0; i < places; i++) {
         support[i] = support_at(&contact, n, i);
         mode->F[i] = zero;

@@ -56,7 +56,7 @@ static inline Status restart(
     now->step = standstill(now->xi, x);
     p->exit_known = 0;
     bear(p, inputs.W);
-    if (p->scaled.points && touch_down(p, now->xi, x, problem) != DONE) return FAILED;
+    if (p->scaled.stepped && touch_down(p, now->xi, x, problem) != DONE) return FAILED;
     Loads loads = loads_at(p, now->xi, x, inputs.F_rss);
     const Mode *mode = settle(&p->modes, &loads, now->regime.contact);
     double F_0 = row_value(&mode->F_0, &loads), psi_star = inputs.psi_star;
@@ -66,8 +66,9 @@ static inline Status restart(
     change_regime(p, regime);
     add_kink(&now->kinks, p->scaled.n, now->xi, 1, jump);
     if (p->scaled.points) {
-        memset(p->around.change, 0, sizeof p->around.change);
-        find_gaps(p, &now->step, now->xi, p->scaled.points, p->around.gap);
+        clear_around(p);
+        forget_seen(p);
+        find_body_at(p, &now->step, now->xi, p->around.body);
     }
     return DONE;
 }
@@ -188,7 +189,9 @@ static inline Status drill_step(Integrator *p, Problem *problem) {
 }
 
 /* Set what does not evolve, to be followed by `begin` or by a state that is restored. */
-static inline void prepare(Integrator *p, const Scaled *scaled, double length_scale, Options options) {
+static inline void prepare(
+    Integrator *p, const Scaled *scaled, double length_scale, double force_scale, Options options
+) {
     Axial unloaded = {0.0, 0.0};
     memset(&p->now, 0, sizeof p->now);
     p->law_known = p->exit_known = p->under_way = 0;
@@ -196,7 +199,7 @@ static inline void prepare(Integrator *p, const Scaled *scaled, double length_sc
     load_beam(&p->modes, scaled, unloaded);
     memcpy(p->modes.y_star, scaled->y_star, sizeof p->modes.y_star);
     memcpy(p->now.y_star, scaled->y_star, sizeof p->now.y_star);
-    p->length_scale = length_scale, p->options = options;
+    p->length_scale = length_scale, p->force_scale = force_scale, p->options = options;
 }
 
 /* Start at the end of a survey; the rings must have room for it. */
@@ -208,6 +211,7 @@ static inline Status begin(Integrator *p, const Survey *survey, ScaledInputs inp
     for (Count k = 0; k < now->hole.end; k++)
         if (!check_finite(Q_STATION_RATE, 0, piece(&now->hole, k)->rate, problem)) return FAILED;
     find_places(now, &p->scaled, now->xi);
+    if (p->scaled.points) start_noting(now);
     if (restart(p, inputs, x, x[ANGLE], problem) != DONE) {
         wrong(problem, NO_START, Q_PARAMETERS, 0, NAN, NAN);
         return FAILED;

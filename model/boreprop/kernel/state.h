@@ -18,6 +18,7 @@ typedef struct {
 } Tape;
 
 enum { NUMBERS_OF_PIECE = sizeof(Piece) / sizeof(double), NUMBERS_OF_KINK = sizeof(Kink) / sizeof(double) };
+enum { NUMBERS_OF_INCLINATIONS = sizeof(Inclinations) / sizeof(double) };
 
 /* Everything that evolves, with counts in place of the rings. */
 typedef struct {
@@ -109,6 +110,9 @@ static inline void pass_snapshot(Tape *tape, const Scaled *scaled, Snapshot *sna
         reading->count = (double)pass_whole(tape, (Count)reading->count, 0, (Count)MOST_READINGS + 1);
         pass(tape, 1, &reading->inclination);
     }
+    if (!scaled->points) return;
+    pass(tape, NUMBERS_OF_INCLINATIONS, &now->inclinations.before.low);
+    pass(tape, scaled->points, snapshot->around.body);
     pass(tape, scaled->points, snapshot->around.gap);
     pass(tape, scaled->points, snapshot->around.change);
 }
@@ -228,11 +232,13 @@ static inline void become(Drilling *d, const Snapshot *snapshot, Tape tape) {
     d->drilled_length = snapshot->drilled_length;
     double cosine = p->now.cosine;
     p->now = snapshot->now, p->now.hole = hole, p->now.kinks = kinks, p->around = snapshot->around;
+    p->around.near = p->around.known = 1; /* for all that is said */
     find_places(&p->now, &p->scaled, p->now.step.xi);
     memcpy(p->now.kinks.ahead, snapshot->passed, sizeof p->now.kinks.ahead);
     p->law_known = p->exit_known = p->under_way = 0;
     if (p->now.cosine != cosine) take_cosine(d, p->now.cosine);
     bear(p, p->now.inputs.W);
+    forget_seen(p);
     clear(p);
 }
 

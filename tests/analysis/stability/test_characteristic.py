@@ -133,10 +133,9 @@ def test_zeros_are_found_to_rounding_where_secants_alone_creep() -> None:
 
 def test_two_crossings_that_are_about_to_vanish_are_both_found() -> None:
     """Where an edge of the chart turns back two crossings meet; they are found until they are next to each other."""
-    scaled = scale(PAPER.bha, PAPER.bit)
 
     def crossings(lambda2: float) -> Crossings:
-        found = Characteristic.of(respaced(scaled, lambda2), (1,), False).crossings(0.03)
+        found = Characteristic.of(scale(respaced(PAPER.bha, lambda2), PAPER.bit), (1,), False).crossings(0.03)
         return Crossings(*(column[found.omega < 5.8] for column in found))
 
     both, neither = 2.165, 2.175

@@ -28,7 +28,7 @@ from boreprop.analysis.steering import offsets
 from boreprop.case.case import Case
 from boreprop.core.errors import ParameterError
 from boreprop.core.modes import Loads, Mode, Modes
-from boreprop.core.system import BitRock, BottomHoleAssembly, Scaled, scale
+from boreprop.core.system import BitRock, BottomHoleAssembly, scale
 from boreprop.report.figures.stability import SHADES, boundaries, draw
 from stability import BIT, PAPER, VERTICAL, drilling
 
@@ -63,8 +63,16 @@ def test_every_verdict_is_in_the_chart_of_the_paper_s_case(chart: Chart) -> None
 
 
 def test_stabilizers_beyond_the_second_keep_their_distance_from_it() -> None:
-    scaled = Scaled((1.0, 1.8, 3.0), (0.0, 0.0), 0.2, 0.0, 0.1, 0.03)
-    assert respaced(scaled, 0.5).s == pytest.approx((1.0, 1.5, 2.7))
+    bha = BottomHoleAssembly((2.0, 3.6, 6.0), (1e-3, 1e-3), 0.4, 1e3, 1e7)
+    assert respaced(bha, 0.5).stabilizer_positions == pytest.approx((2.0, 3.0, 5.4))
+    built = replace(
+        bha,
+        section_lengths=(1.0, 5.0),
+        section_distributed_weights=(1e3, 2e3),
+        section_flexural_stiffnesses=(1e7, 2e7),
+        section_outer_diameters=(0.0, 0.0),
+    )
+    assert respaced(built, 2.0).section_lengths == pytest.approx((1.0, 7.4))
 
 
 def test_on_the_boundaries_of_the_chart_a_root_is_on_the_imaginary_axis(chart: Chart) -> None:
@@ -74,7 +82,7 @@ def test_on_the_boundaries_of_the_chart_a_root_is_on_the_imaginary_axis(chart: C
         assert len(points) >= least
         points = points[np.isin(points[:, 1], chart.lambda2)]  # between those the lines are straight
         for at, lambda2 in points[:: len(points) // 20 + 1]:
-            scaled = respaced(scale(PAPER.bha, PAPER.bit), lambda2)
+            scaled = scale(respaced(PAPER.bha, lambda2), PAPER.bit)
             contact = (int(bool(panel.contact)),)
             roots = rightmost_roots(Characteristic.of(scaled, contact, panel.saturated), float(at))
             assert min(abs(root.real) for root in roots) < 1e-3

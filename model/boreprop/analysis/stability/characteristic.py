@@ -2,7 +2,7 @@
 
 In a mode (which stabilizers touch, tilt saturated or not) a small disturbance of a straight hole of inclination Θ₀
 is a sum of terms e^{νξ}. With Θ ~ e^{νξ} the lateral coordinate gives Y(ξ) − Y(ξ−s_i) = B_i(ν) Θ with
-B_i = (1 − e^{−ν s_i})/ν, and sin⟨Θ⟩_1 becomes cos Θ₀ B_1 Θ, so
+B_i = (1 − e^{−ν s_i})/ν, and sin⟨Θ⟩_1 becomes cos Θ₀ B_1 Θ (where the axial load counts, sin θ becomes cos Θ₀ θ), so
 
     M = m_θ θ + m(ν) Θ ,   F_0 = f_θ θ + f(ν) Θ ,   m = Σ m_i B_i ,   f = Σ f_i B_i ,
 
@@ -55,9 +55,9 @@ class Characteristic:
     """The characteristic function P of one mode, over arrays of ν of any shape."""
 
     s: Floats  # s_1 … s_n
-    m: Floats  # m_1 … m_n; m_1 includes m_g
-    f: Floats  # f_1 … f_n; f_1 includes f_g
-    m_g: float  # the terms of the weight
+    m: Floats  # m_1 … m_n
+    f: Floats  # f_1 … f_n
+    m_g: float  # the terms of the weight, which m_1 and f_1 include, or m_theta and f_theta
     f_g: float
     m_theta: float
     f_theta: float
@@ -69,19 +69,33 @@ class Characteristic:
         cls, scaled: Scaled, contact: tuple[int, ...], saturated: bool, inclination: float = 0.0
     ) -> "Characteristic":
         """That of the mode with `contact` (0 where a stabilizer is free) in a straight hole of `inclination`, rad."""
-        mode = Mode(Beam(scaled), scaled.y_star, contact)
-        s = list(scaled.s)
-        weight = round(cos(inclination), 15)  # exactly zero in a horizontal hole
-        m_g, f_g = mode.M.g * weight, mode.F_0.g * weight
+        mode, weight = Mode(Beam(scaled), scaled.y_star, contact), upright(inclination)
+        M, F_0 = ((list(row.e), row.g * weight) for row in (mode.M, mode.F_0))
+        return cls.made_of(list(scaled.s), M, F_0, scaled.epsilon, saturated)
+
+    @classmethod
+    def made_of(
+        cls,
+        s: list[float],
+        M: tuple[list[float], float],
+        F_0: tuple[list[float], float],
+        epsilon: float,
+        saturated: bool,
+        *,
+        axial: bool = False,
+    ) -> "Characteristic":
+        """That of M and F_0 as Σ m_i e_i + m_g times the angle of the weight: ⟨Θ⟩_1, or θ under an axial load."""
+        (m, m_g), (f, f_g) = M, F_0
+        along_hole, along_bit = (0.0, 1.0) if axial else (1.0, 0.0)
         return cls(
             s=np.array(s),
-            m=np.array([mode.M.e[0] + m_g, *mode.M.e[1:]]),
-            f=np.array([mode.F_0.e[0] + f_g, *mode.F_0.e[1:]]),
+            m=np.array([m[0] + along_hole * m_g, *m[1:]]),
+            f=np.array([f[0] + along_hole * f_g, *f[1:]]),
             m_g=m_g,
             f_g=f_g,
-            m_theta=-dot(mode.M.e, s),
-            f_theta=-dot(mode.F_0.e, s),
-            epsilon=scaled.epsilon,
+            m_theta=along_bit * m_g - dot(m, s),
+            f_theta=along_bit * f_g - dot(f, s),
+            epsilon=epsilon,
             saturated=saturated,
         )
 
@@ -270,6 +284,11 @@ class Characteristic:
         with np.errstate(divide="ignore"):  # at a zero of Q_0
             share: Floats = delayed / abs((a * nu + b) * nu + c)
         return share
+
+
+def upright(inclination: float) -> float:
+    """The cosine of an inclination, exactly zero in a horizontal hole."""
+    return round(cos(inclination), 15)
 
 
 def even_waves(turn: Floats, number: int) -> tuple[Floats, Floats]:

@@ -16,7 +16,9 @@ from ...arrays import Floats
 from ...case.case import Case
 from ...core.checks import check_increasing, check_number
 from ...core.errors import ParameterError
-from ...core.system import BottomHoleAssembly, Scaled, scale
+from ...core.system import BottomHoleAssembly
+from ..lying import pressing_weight
+from .any_beam import characteristic_of
 from .characteristic import Characteristic
 from .contacts import Contact, charted
 from .roots import SMALLEST_ETA_PI, Verdict, touching_stabilizers
@@ -177,10 +179,10 @@ def stability_chart(
     lambda_2(bha)
     eta_pi, lambda2 = _axis("eta_pi", eta_pi, SMALLEST_ETA_PI), _axis("lambda2", lambda2, SMALLEST_LAMBDA2)
     check_number("inclination", inclination)
-    scaled = scale(bha, bit)
+    weight = pressing_weight(case)
     modes = [
         (numbers, saturated)
-        for numbers in (charted(bha, bit, inclination) if contacts is None else contacts)
+        for numbers in (charted(bha, bit, inclination, weight_on_bit=weight) if contacts is None else contacts)
         for saturated in (False, True)
     ]
     panels = []
@@ -188,7 +190,8 @@ def stability_chart(
         touching = touching_stabilizers(bha, numbers)
         characteristics, found = [], []
         for distance in lambda2.tolist():
-            characteristics.append(Characteristic.of(respaced(scaled, distance), touching, saturated, inclination))
+            moved = respaced(bha, distance)
+            characteristics.append(characteristic_of(moved, bit, touching, saturated, inclination, weight))
             found.append(verdicts_along(characteristics[-1], eta_pi))
             progress((done + len(found) / len(lambda2)) / len(modes))
         codes, bands, growth = zip(*found, strict=True)
@@ -198,10 +201,19 @@ def stability_chart(
     return Chart(eta_pi, lambda2, inclination, tuple(panels))
 
 
-def respaced(scaled: Scaled, lambda2: float) -> Scaled:
-    """`scaled` with the second stabilizer, and all beyond it, moved so that it is λ₂ from the first."""
-    shift = 1.0 + lambda2 - scaled.s[1]
-    return replace(scaled, s=(1.0, *(s_i + shift for s_i in scaled.s[1:])))
+def respaced(bha: BottomHoleAssembly, lambda2: float) -> BottomHoleAssembly:
+    """`bha` with the second stabilizer, and all beyond it, moved so that it is λ₂ from the first.
+
+    The last of its sections is made as long as that needs.
+    """
+    first, second, *_ = bha.stabilizer_positions
+    shift = first * (1.0 + lambda2) - second
+    positions = (first, *(position + shift for position in bha.stabilizer_positions[1:]))
+    if not bha.section_lengths:
+        return replace(bha, stabilizer_positions=positions)
+    missing = max(positions[-1] - sum(bha.section_lengths), 0.0)
+    lengths = (*bha.section_lengths[:-1], bha.section_lengths[-1] + missing)
+    return replace(bha, stabilizer_positions=positions, section_lengths=lengths)
 
 
 def all_crossings(characteristic: Characteristic, smallest: float) -> tuple[Floats, Floats]:

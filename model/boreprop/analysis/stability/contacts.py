@@ -56,8 +56,11 @@ def contacts_met(
     Returns
     -------
     frozenset of Contact
-        The contacts that occur in any of these holes at any of these tilts under any of the forces tried.
+        The contacts that occur in any of these holes at any of these tilts under any of the forces tried. Of a beam
+        that is not the paper's that is not computed: there it is all sets.
     """
+    if not bha.structure.is_of_the_paper:
+        return frozenset(all_contacts(bha))
     scaled = scale(bha, bit)
     modes, sine = Modes(scaled), sin(inclination)
     turn, tilt = SHARPEST_TURN * bha.length_scale, bit.tilt_limit
@@ -97,12 +100,7 @@ def _clipped(corners: list[complex], value: Callable[[complex], float], bound: B
 
 
 def can_touch(bha: BottomHoleAssembly, bit: BitRock, inclination: float, rss_forces: Iterable[float] = ()) -> Contact:
-    """The stabilizers that touch in any of `contacts_met`: all whose clearance some hole uses up.
-
-    Of a beam that is not the paper's that is not computed: there it is every stabilizer.
-    """
-    if not bha.structure.is_of_the_paper:
-        return tuple(numbers(bha))
+    """The stabilizers that touch in any of `contacts_met`: all whose clearance some hole uses up."""
     return tuple(sorted(set().union(*contacts_met(bha, bit, inclination, rss_forces))))
 
 
@@ -131,13 +129,18 @@ def steady_mode(case: Case, rss_force: float, inclination: float) -> tuple[Conta
 
 
 def charted(
-    bha: BottomHoleAssembly, bit: BitRock, inclination: float, rss_forces: Iterable[float] = (), first: Contact = ()
+    bha: BottomHoleAssembly,
+    bit: BitRock,
+    inclination: float,
+    rss_forces: Iterable[float] = (),
+    first: Contact = (),
+    weight_on_bit: float = 0.0,
 ) -> tuple[Contact, ...]:
     """The sets of contacts that a chart shows, at most four, the largest sets first.
 
     These are all sets of the stabilizers that `can_touch`, if there are no more than four. Otherwise they are the set
     of all of them, the set `first` (that of the steady mode) and, of `contacts_met`, those that oscillate up to the
-    largest ηΠ.
+    largest ηΠ, under an axial load that of the weight on bit.
     """
     met = contacts_met(bha, bit, inclination, rss_forces)
     touching = set(first).union(*met)
@@ -146,7 +149,7 @@ def charted(
         return possible
 
     def rank(contact: Contact) -> tuple[bool, float]:
-        critical = critical_of(bha, bit, contact, False, inclination)
+        critical = critical_of(bha, bit, contact, False, inclination, weight_on_bit)
         return contact in (first, possible[0]), critical.eta_pi if critical else 0.0
 
     chosen = sorted({*met, first, possible[0]}, key=rank, reverse=True)[:MOST_SETS]

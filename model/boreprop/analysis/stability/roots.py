@@ -14,8 +14,10 @@ import numpy as np
 from ...case.case import Case
 from ...core.checks import check_number
 from ...core.errors import ParameterError
-from ...core.system import BitRock, BottomHoleAssembly, scale
+from ...core.system import BitRock, BottomHoleAssembly
 from ...errors import InputError, RootsNotFound
+from ..lying import pressing_weight
+from .any_beam import characteristic_of
 from .characteristic import Characteristic
 from .zeros import Strip, find_zeros
 
@@ -105,7 +107,7 @@ def find_roots(
     case
         The drilling system.
     eta_pi
-        ηΠ, at least 1e-4; without it, that of the case.
+        ηΠ, at least 1e-4; without it, that of the case. An axial load stays the case's.
     contact
         Numbers of the stabilizers that touch, from 1; those without clearance always touch.
     saturated
@@ -142,7 +144,8 @@ def find_roots(
     check_number("inclination", inclination)
     check_number("abscissa", abscissa or 0.0, at_most=0.0)
     touching = touching_stabilizers(case.bha, contact)
-    characteristic = Characteristic.of(scale(case.bha, case.bit), touching, saturated, inclination)
+    weight = pressing_weight(case)
+    characteristic = characteristic_of(case.bha, case.bit, touching, saturated, inclination, weight)
     roots = rightmost_roots(characteristic, eta_pi, abscissa)
     return Roots(eta_pi, stabilizer_numbers(touching), saturated, roots)
 
@@ -161,7 +164,7 @@ def critical_eta_pi(
     Parameters
     ----------
     case
-        The drilling system. Its active weight on bit has no influence.
+        The drilling system. Its active weight on bit has no influence but by the axial load, which stays the case's.
     contact
         Numbers of the stabilizers that touch; without it all non-ideal ones, the mode that makes a hole ripple.
     saturated
@@ -187,16 +190,21 @@ def critical_eta_pi(
     """
     if inclination is None:
         inclination = case.survey.inclination[-1]
-    return critical_of(case.bha, case.bit, contact, saturated, inclination)
+    return critical_of(case.bha, case.bit, contact, saturated, inclination, pressing_weight(case))
 
 
 def critical_of(
-    bha: BottomHoleAssembly, bit: BitRock, contact: Iterable[int] | None, saturated: bool, inclination: float
+    bha: BottomHoleAssembly,
+    bit: BitRock,
+    contact: Iterable[int] | None,
+    saturated: bool,
+    inclination: float,
+    weight_on_bit: float = 0.0,
 ) -> CriticalEtaPi | None:
-    """`critical_eta_pi` of a drilling system."""
+    """`critical_eta_pi` of a drilling system, with the weight on bit that loads it along its axis."""
     check_number("inclination", inclination)
     touching = touching_stabilizers(bha, range(1, len(bha.stabilizer_positions)) if contact is None else contact)
-    characteristic = Characteristic.of(scale(bha, bit), touching, saturated, inclination)
+    characteristic = characteristic_of(bha, bit, touching, saturated, inclination, weight_on_bit)
     for smallest in (0.1, 0.01, 0.001, SMALLEST_ETA_PI):  # from above, since there are ever more crossings below
         crossings = characteristic.crossings(smallest)
         if len(crossings.eta_pi):

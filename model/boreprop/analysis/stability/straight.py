@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...case.case import Case
-from ...core.system import scale
+from ..lying import pressing_weight
 from ..steering import SteadyResponse, steady_response
+from .any_beam import characteristic_of
 from .characteristic import Characteristic
 from .chart import unstable_roots
 from .contacts import Contact, steady_mode
@@ -25,9 +26,9 @@ class StraightDrilling:
         Its mode: the stabilizers that touch, and whether the bit tilt is saturated.
     verdict
         What becomes of a small disturbance in this mode; None where ηΠ is below 1e-4, with too many roots to tell, and
-        for a beam that is not the paper's.
+        where the body may touch the wall.
     critical
-        The largest ηΠ at which this mode oscillates; None if there is none, or the beam is not the paper's.
+        The largest ηΠ at which this mode oscillates; None if there is none, or the body may touch.
     """
 
     response: SteadyResponse
@@ -41,7 +42,7 @@ def straight_drilling(case: Case) -> StraightDrilling:
     """How a case drills on in a straight hole. Roots are counted, not found, so it takes milliseconds."""
     force, inclination = case.schedule.rss_force[0], case.survey.inclination[-1]
     contact, saturated = steady_mode(case, force, inclination)
-    if not case.bha.structure.is_of_the_paper:
+    if case.bha.body_point_positions:
         return StraightDrilling(steady_response(case, force, inclination), contact, saturated, None, None)
     verdict = mode_verdict(case, contact, saturated, inclination)
     critical = critical_eta_pi(case, contact=contact, saturated=saturated)
@@ -53,7 +54,8 @@ def mode_verdict(case: Case, contact: Contact, saturated: bool, inclination: flo
     if case.eta_pi < SMALLEST_ETA_PI:
         return None
     touching = touching_stabilizers(case.bha, contact)
-    return verdict_at(Characteristic.of(scale(case.bha, case.bit), touching, saturated, inclination), case.eta_pi)
+    weight = pressing_weight(case)
+    return verdict_at(characteristic_of(case.bha, case.bit, touching, saturated, inclination, weight), case.eta_pi)
 
 
 def verdict_at(characteristic: Characteristic, eta_pi: float) -> Verdict:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...case.case import Case
-from ...case.parameters import parameters, with_parameters
+from ...case.parameters import diameters, parameters, with_parameters
 from ...core.quantities import BY_NAME, quantity_of
 from ...errors import InputError, shown
 
@@ -82,7 +82,7 @@ def parameter_of(name: str) -> str:
 
 def check_names(case: Case, names: tuple[str, ...]) -> None:
     """Raise `InputError` unless each of `names` can be varied, and no two stand for the same parameter."""
-    own = parameters(case)
+    own = parameters(case) | diameters(case)
     besides = ["eta_pi", *(f"{name}_deg" for name in own if quantity_of(name).unit == "rad")]
     meant = [parameter_of(name) for name in names]
     for name, parameter in zip(names, meant, strict=True):
