@@ -201,7 +201,7 @@ class Case:
 
 
 def check_plane(case: Case) -> None:
-    """Raise `ParameterError` if a case leaves its vertical plane: an azimuth that stays the same only says where that is."""
+    """Raise `ParameterError` if a case leaves its vertical plane; a constant azimuth only says where that is."""
     if case.survey.turns:
         constraint = "must be the same at all stations for what drills in a plane; boreprop simulate takes others"
         raise ParameterError("azimuth", constraint, case.survey.azimuth)

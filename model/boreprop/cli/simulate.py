@@ -46,8 +46,8 @@ def simulate_command(
             min=2,
             max=3,
             metavar="2|3",
-            help="3: drill in space, which a case does anyway that has an azimuth, a walk angle or a toolface other than "
-            "0 or 180.",
+            help="3: drill in space, which a case does anyway that has an azimuth, a walk angle or a toolface other "
+            "than 0 or 180.",
         ),
     ] = None,
 ) -> None:

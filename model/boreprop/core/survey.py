@@ -104,9 +104,9 @@ class Survey:
         last = len(self.azimuth) - 1
         a, b = max(before - 1, 0), min(before, last)
         at_bit = between((self.inclination[a], self.azimuth[a]), (self.inclination[b], self.azimuth[b]), share)
-        inclination, azimuth = ((*column[:before], at) for column, at in zip(
-            (self.inclination, self.azimuth), at_bit, strict=True
-        ))
+        inclination, azimuth = (
+            (*column[:before], at) for column, at in zip((self.inclination, self.azimuth), at_bit, strict=True)
+        )
         return Survey((*self.measured_depth[:before], bit), inclination, azimuth)
 
 

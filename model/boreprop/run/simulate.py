@@ -37,7 +37,7 @@ def simulate(
     engine: str = "auto",
     dimensions: int | None = None,
 ) -> Trajectory:
-    """Drill a case under its inputs: solve the paper's equations (5) to (18) over the drilled length, or those in space.
+    """Drill a case under its inputs: solve the paper's equations (5) to (18), or those in space, over the length.
 
     Parameters
     ----------
