@@ -30,8 +30,9 @@ from ..errors import InputError
 from ..run.ground import STEADY
 from ..run.trajectory import Trajectory
 from .ellipse import Ellipse, ellipse_of, sideways
+from .hole_in_space import is_in_space, positions_in_space
 from .search import AT_THE_END, Found, State, search
-from .space import direction_of, is_in_space, position_of, sides_of
+from .space import direction_of, sides_of
 from .waves import FEWEST_ROWS, FEWEST_WAVES, LastWaves, large_since, mean_over, slope
 
 LONGEST = 6.0  # half lengths of the BHA: the longest wave that is searched for
@@ -225,7 +226,7 @@ def _with_ellipse(run: Trajectory, found: Found) -> Rippling:
     length = run["drilled_length"]
     moved = np.append(np.diff(length) > 0, True)
     starts = found.waves.along(found.waves.axis).starts()
-    hole = sideways(length[moved], position_of(run)[moved], found.wavelength)
+    hole = sideways(length[moved], positions_in_space(run)[moved], found.wavelength)
     inside, inclination = mean_over(length[moved], run["borehole_inclination"][moved], found.wavelength)
     late = length[moved][inside] >= found.waves.x[0]
     return replace(

@@ -7,21 +7,12 @@ from numpy.typing import NDArray
 
 from ..arrays import Complexes, Floats
 from ..run.trajectory import Trajectory
-
-
-def is_in_space(run: Trajectory) -> bool:
-    """Whether a run may leave its vertical plane."""
-    return "borehole_azimuth" in run
+from .hole_in_space import directions
 
 
 def direction_of(run: Trajectory) -> Complexes:
     """The direction of the hole of a run in space, rad, see `developed`, shape (rows,)."""
     return developed(directions(run["borehole_inclination"], run["borehole_azimuth"]))
-
-
-def position_of(run: Trajectory) -> Floats:
-    """The position of the bit in space, to north, east and down, m, shape (rows, 3)."""
-    return np.column_stack((run["north"], run["east"], run["true_vertical_depth"]))
 
 
 def sides_of(run: Trajectory) -> NDArray[np.int_]:
@@ -36,12 +27,6 @@ def sides_of(run: Trajectory) -> NDArray[np.int_]:
         side = np.arctan2(run[f"{vector}_right{i}"], run[f"{vector}_high{i}"]) / (pi / 2)
         quarters.append(np.where(run[there + i] != 0, np.round(side) % 4 + 1, 0))
     return np.column_stack(quarters).astype(int)
-
-
-def directions(inclination: Floats, azimuth: Floats) -> Floats:
-    """Unit vectors to north, east and down, shape (rows, 3), of inclinations and azimuths, rad, shape (rows,)."""
-    across = np.sin(inclination)
-    return np.column_stack((across * np.cos(azimuth), across * np.sin(azimuth), np.cos(inclination)))
 
 
 def untwisted(tangent: Floats) -> Complexes:
