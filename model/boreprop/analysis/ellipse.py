@@ -15,12 +15,13 @@ import numpy as np
 from ..arrays import Complexes, Floats
 from .search import AT_THE_END
 from .space import untwisted
-from .waves import mean_over
+from .waves import mean_over, slope
 
 NARROW = 0.1  # minor over major axis: a narrower ellipse counts as a line
 HARMONICS = 5  # of a wave that are looked at: chaotic ones may be patterns of several that are alike
 CERTAIN = 3.0  # standard errors by which the hole must wind to one side
 FOLLOWED = 20  # waves at the end: in none may it wind to the other side, and from their differences comes the error
+SLOW = 0.02  # of a turn in a wave: a phase that drifts faster than this comes from irregular waves
 HALF = 0.5  # of their size at the end: smaller waves count as something else
 NEARLY_VERTICAL = radians(3.0)  # up to here the high side says little, and directions count from north
 
@@ -52,6 +53,8 @@ class Ellipse:
     since
         The drilled length from which on it has wound to this side in an ellipse that is not a line, m; nan if it does
         not wind to one side.
+    pitch
+        Drilled length of a turn about the trend, m; nan likewise.
     """
 
     shape: Shape
@@ -60,6 +63,7 @@ class Ellipse:
     direction: float
     from_north: bool
     since: float
+    pitch: float
 
 
 class Sideways(NamedTuple):
@@ -98,9 +102,11 @@ def ellipse_of(hole: Sideways, wavelength: float) -> Ellipse | None:
     if not len(x):
         return None
     right, left, line = np.zeros(len(x)), np.zeros(len(x)), np.zeros(len(x), complex)
+    circles: list[tuple[Complexes, Complexes]] = []
     for k in range(1, min(HARMONICS, int(wavelength / spacing / 2)) + 1):
         turn = np.exp(2j * pi * k / wavelength * hole.length)
         clockwise, other = (mean_over(hole.length, hole.away * way, wavelength)[1] for way in (turn.conj(), turn))
+        circles.append((clockwise, other))
         right, left, line = right + abs(clockwise) ** 2, left + abs(other) ** 2, line + clockwise * other
     waves = x[-1] - wavelength * np.arange(FOLLOWED)[::-1]
     waves = waves[waves >= x[0]]
@@ -112,14 +118,24 @@ def ellipse_of(hole: Sideways, wavelength: float) -> Ellipse | None:
     first = min(int(small[-1]) + 1 if len(small) else 0, max(len(waves) - AT_THE_END, 0))
     last = np.interp(waves[first:], x, winding)
     shape, winds = _shape(axes[1] / axes[0], last), float(last[-AT_THE_END:].mean())
-    since = nan
+    since, pitch = nan, nan
     if shape in (Shape.RIGHT, Shape.LEFT):
+        circle, both = (circles[0][0], right) if shape is Shape.RIGHT else (circles[0][1].conj(), left)
+        pitch = _pitch(x[x >= waves[first]], circle[x >= waves[first]], both[x >= waves[first]], wavelength)
         less = np.flatnonzero(winding * np.sign(winds) < min(NARROW, abs(winds) / 2))
         since = float(x[less[-1]] if len(less) else x[0])
     mean_line = np.sum(line[np.searchsorted(x, waves[-AT_THE_END:][0]) :])
     direction, end = np.exp(0.5j * np.angle(mean_line)), within.stop - 1
     side, from_north = _side((np.conj(direction) * hole.frame[end]).real, hole.forward[end])
-    return Ellipse(shape, float(axes[0]), float(axes[1]), side, from_north, since)
+    return Ellipse(shape, float(axes[0]), float(axes[1]), side, from_north, since, pitch)
+
+
+def _pitch(x: Floats, circle: Complexes, size: Floats, wavelength: float) -> float:
+    """The drilled length of a turn, m, by how the phase of the circle drifts, of which all that winds has the size."""
+    if len(x) < 2 or np.mean(abs(circle) ** 2) < np.mean(size**2) / 2:
+        return wavelength  # most of it is a pattern of several turns
+    drift = slope(x, np.unwrap(np.angle(circle))) * wavelength / (2 * pi)
+    return wavelength / (1 + drift) if abs(drift) < SLOW else wavelength
 
 
 def _shape(narrow: float, winding: Floats) -> Shape:

@@ -198,7 +198,8 @@ def _wave_of(run: Trajectory, longest: float | None) -> Found:
         longest = longest_wave(run.case.bha) if run.case else inf
     inputs = [run[name] for name in (*STEADY, "rss_toolface") if name in run.columns]
     if is_in_space(run):
-        return search(run["drilled_length"], direction_of(run), longest, sides_of(run), inputs)
+        sides = sides_of(run) if "bit_tilt_saturation" in run else None  # a measured hole has none
+        return search(run["drilled_length"], direction_of(run), longest, sides, inputs)
     return search(run["drilled_length"], run["borehole_inclination"], longest, modes_of(run), inputs)
 
 
@@ -229,12 +230,14 @@ def _with_ellipse(run: Trajectory, found: Found) -> Rippling:
     hole = sideways(length[moved], positions_in_space(run)[moved], found.wavelength)
     inside, inclination = mean_over(length[moved], run["borehole_inclination"][moved], found.wavelength)
     late = length[moved][inside] >= found.waves.x[0]
+    ellipse = ellipse_of(hole, found.wavelength) if hole else None
     return replace(
         _with_course(found),
+        wavelength=ellipse.pitch if ellipse and ellipse.pitch > 0 else found.wavelength,
         spread=float(np.std(np.diff(starts))) if len(starts) > 1 else nan,
         inclination_drift=slope(length[moved][inside][late], inclination[late]),
         axis_amplitude=_height(found.waves, hole.length, hole.away) / 2 if hole else nan,
-        ellipse=ellipse_of(hole, found.wavelength) if hole else None,
+        ellipse=ellipse,
     )
 
 
