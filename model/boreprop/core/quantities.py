@@ -14,8 +14,20 @@ from typing import Any, Literal, NamedTuple
 Role = Literal["input", "output", "parameter", "case"]  # "case": only a case has it, an FMU has not
 Kind = Literal["Real", "Integer", "Boolean", "String"]
 Size = Literal[
-    "1", "n", "n-1", "uniform", "sections", "stepped", "axial", "points", "body", "layered", "sensors", "space",
-    "space n-1", "column"
+    "1",
+    "n",
+    "n-1",
+    "uniform",
+    "sections",
+    "stepped",
+    "axial",
+    "points",
+    "body",
+    "layered",
+    "sensors",
+    "space",
+    "space n-1",
+    "column",
 ]  # "column": as long as its table
 
 MAX_STABILIZERS = 6
