@@ -87,7 +87,9 @@ class Ground:
     def numbers(self) -> list[float]:
         """All of it, in the order in which the kernel takes it."""
         wear = (self.wear.weight_per_metre, self.wear.largest_weight) if self.wear else (0.0, 0.0)
-        return [*values_of("bit", self.bit).values(), *wear, *self.tops, *(value for row in self.rock for value in row)]
+        own = values_of("bit", self.bit)
+        rock = [value for row in self.rock for value in row]
+        return [*(own[name] for name in ROCK), *wear, *self.tops, *rock]
 
     @property
     def first_layer(self) -> int:
