@@ -1,6 +1,6 @@
 """The axis of a hole in space: of a survey, and of a run.
 
-Positions are north, east and down of the bit at the start of the run, and lengths are measured from there along the hole.
+Positions are north, east and down of the bit at the start of the run; lengths are measured from there along the hole.
 """
 
 from dataclasses import dataclass

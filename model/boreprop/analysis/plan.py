@@ -99,7 +99,7 @@ def deviation_from(plan: SurveyedHole, hole: HoleAxis, length: Floats, over: flo
 
 
 def check_in_plane_of_plan(run: Trajectory) -> None:
-    """Raise `InputError` if a run is in space: a plan lies in a plane, and nothing is said of how far a hole leaves that."""
+    """Raise `InputError` if a run is in space, for a plan lies in a plane."""
     if is_in_space(run):
         raise InputError(
             "plan: must be left out for a run in space, got one (--stations lists the run with its azimuth)"
@@ -107,6 +107,12 @@ def check_in_plane_of_plan(run: Trajectory) -> None:
 
 
 def deviation_of(run: Trajectory, plan: SurveyedHole, over: float) -> Deviation:
-    """How far each row of a run is off its plan, see `deviation_from`; `InputError` if it lacks its case, or is in space."""
+    """How far each row of a run is off its plan, see `deviation_from`.
+
+    Raises
+    ------
+    InputError
+        If the run lacks its case, or is in space.
+    """
     check_in_plane_of_plan(run)
     return deviation_from(plan, hole_of(run, case_of(run).survey, over), run["drilled_length"], over)

@@ -76,7 +76,7 @@ class Case:
     active_weight_on_bit: float
     length: float
     survey: Survey
-    schedule: Schedule = Schedule()
+    schedule: Schedule = Schedule()  # noqa: RUF009 - frozen
     inputs: InputSchedule | None = None
     weight_on_bit: float = 0.0
     formations: tuple[Formation, ...] = ()
