@@ -37,7 +37,7 @@ class Listing:
         try:
             yield lambda rows: drilled.append([rows[name] for name in AXIS])
         finally:
-            if drilled:
+            if drilled and not source.spatial:
                 columns = dict(zip(AXIS, map(np.concatenate, zip(*drilled, strict=True)), strict=True))
                 self._log(source, Trajectory(columns, source.case), verdict)
 

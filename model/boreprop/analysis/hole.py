@@ -104,14 +104,14 @@ class SurveyedHole:
 
 @dataclass(frozen=True)
 class HoleAxis:
-    """The axis of a hole, straight between points."""
+    """The axis of a hole, straight between points; in space they are north, east and down."""
 
     length: Floats  # of each point, increasing, m, (N,)
-    position: Floats  # x and z, m, (N, 2)
+    position: Floats  # x and z, m, (N, 2); in space (N, 3)
 
     def at(self, length: Floats) -> Floats:
-        """Positions (x, z) at the given lengths, m, shape (..., 2)."""
-        return np.stack([np.interp(length, self.length, self.position[:, axis]) for axis in (0, 1)], axis=-1)
+        """Positions at the given lengths, m, shape (..., 2), in space (..., 3)."""
+        return np.stack([np.interp(length, self.length, along) for along in self.position.T], axis=-1)
 
     def followed_by(self, length: Floats, position: Floats) -> "HoleAxis":
         """The hole extended through further points, without those that are not ahead of its end."""
