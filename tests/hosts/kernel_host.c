@@ -40,8 +40,7 @@ static double number(void) {
 static int lead(char **arguments) {
     void *(*start)(
         const int *, const double *, const double *, long long, const double *, const double *, const double *, int,
-        const double *,
-        const double *, void *
+        const double *, const double *, void *
     );
     long long (*follow)(void *, long long, const double *, const double *, const int *, double *, void *);
     int (*outputs)(void *, double *);
@@ -64,8 +63,8 @@ static int lead(char **arguments) {
     }
     for (int i = 0; i < count[STRUCTURE]; i++) structure[i] = (int)list[STRUCTURE][i];
     void *run = start(
-        structure, list[PARAMETERS], list[OPTIONS], count[DEPTHS], list[DEPTHS], list[INCLINATIONS], list[AZIMUTHS], 0, NULL,
-        list[INPUTS], problem
+        structure, list[PARAMETERS], list[OPTIONS], count[DEPTHS], list[DEPTHS], list[INCLINATIONS], list[AZIMUTHS], 0,
+        NULL, list[INPUTS], problem
     );
     must(run != NULL, "the run must start");
     must(follow(run, 1, &length, list[INPUTS], (const int[]){-1}, NULL, problem) == 1, "the leg must be drilled");

@@ -53,7 +53,7 @@ void gains_of(int n, const double *s, const double *y_star, double w, double eps
     Scaled scaled = {.n = n, .w = w};
     ScaledInputs inputs = {.eta_pi = eta_pi, .epsilon = epsilon, .psi_star = 0.03};
     memcpy(scaled.s, s, (size_t)n * sizeof *s), memcpy(scaled.y_star, y_star, (size_t)(n - 1) * sizeof *s);
-    prepare(&p, &scaled, 1.0, USUAL_OPTIONS);
+    prepare(&p, &scaled, 1.0, 1.0, USUAL_OPTIONS);
     find_places(&p.now, &p.scaled, 0.0);
     p.now.inputs = inputs;
     memcpy(gains, present_law(&p)->gains, (size_t)n * sizeof *gains);
