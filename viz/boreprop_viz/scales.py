@@ -9,8 +9,8 @@ import numpy as np
 
 from boreprop.analysis.axis import axis_away
 from boreprop.analysis.hole import bit_positions
+from boreprop.analysis.hole_in_space import positions_in_space
 from boreprop.analysis.rippling import find_rippling
-from boreprop.analysis.space import positions_in_space
 from boreprop.case.case import Case
 from boreprop.core.quantities import BY_NAME
 from boreprop.run.completion import case_of

@@ -10,15 +10,9 @@ import numpy as np
 
 from boreprop.analysis.axis import AXIS_REACH
 from boreprop.analysis.hole import HoleAxis, SurveyedHole, bit_positions, existing_hole, turning
+from boreprop.analysis.hole_in_space import directions, is_in_space, positions_in_space
 from boreprop.analysis.plan import deviation_from
-from boreprop.analysis.space import (
-    direction,
-    dogleg_severity,
-    existing_in_space,
-    is_spatial,
-    positions_in_space,
-    turning_in_space,
-)
+from boreprop.analysis.turning import dogleg_severity, existing_in_space, turning_in_space
 from boreprop.case.case import Case
 from boreprop.core.survey import Survey
 from boreprop.errors import BorepropError, InputError
@@ -100,14 +94,14 @@ class Source:
     @property
     def spatial(self) -> bool:
         """Whether it may leave its vertical plane."""
-        return is_spatial(self.beginning)
+        return is_in_space(self.beginning)
 
     def likely_positions_in_space(self) -> Array:
         """Positions of the bit of a run in space, (N, 3), as `likely_positions` gives them in the plane."""
         rows = self.beginning
         if not self.live:
             return positions_in_space(rows)
-        return np.outer([0.0, self.case.length], direction(rows["bit_inclination"][:1], rows["bit_azimuth"][:1]))
+        return np.outer([0.0, self.case.length], directions(rows["bit_inclination"][:1], rows["bit_azimuth"][:1]))
 
 
 def stored(name: str, run: Trajectory, plan: Survey | None = None, *, batch: int = BATCH) -> Source:
@@ -135,7 +129,7 @@ def stored(name: str, run: Trajectory, plan: Survey | None = None, *, batch: int
         raise InputError(f"drilled_length: row {back[0] + 2}: must not decrease, got {length[back[0] + 1]:g}")
     run = complete(run)
     case = case_of(run)
-    [whole] = stretches_in_space([run], case) if is_spatial(run) else stretches([run], case, plan)
+    [whole] = stretches_in_space([run], case) if is_in_space(run) else stretches([run], case, plan)
     return Source(name, case, run.row_count, whole.rows, live=False, stretches=pieces(whole, batch))
 
 
@@ -249,8 +243,7 @@ def stretches_in_space(runs: Iterable[Trajectory], case: Case) -> Iterator[Stret
     hole: HoleAxis | None = None
     for rows in runs:
         if hole is None:
-            azimuth = getattr(case.survey, "azimuth", ()) or (0.0,) * len(case.survey.measured_depth)
-            hole = existing_in_space(case.survey, azimuth, reach_behind(half), half / POINTS_IN_HALF)
+            hole = existing_in_space(case.survey, reach_behind(half), half / POINTS_IN_HALF)
         length = rows["drilled_length"]
         hole = hole.followed_by(length, positions_in_space(rows))
         build, walk = turning_in_space(hole, length, over=BUILD_LENGTH, chord=half)

@@ -11,7 +11,7 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from boreprop.analysis.axis import AXIS_POINTS, AXIS_REACH, axis_away
-from boreprop.analysis.space import beside_trend
+from boreprop.analysis.turning import beside_trend
 from boreprop.core.system import BottomHoleAssembly
 from boreprop.run.trajectory import Trajectory
 from boreprop.units import SMALL_LENGTH, UNITS
@@ -122,7 +122,7 @@ def log_ripple_in_space(
         down = (track.scales.start or 0.0) + length
         path = np.column_stack((space.lateral * beside, down))[through]
         send_tube(track, "enlarged/tube", recent, length[through], tube(path, space.thickness))
-    return max([rippled, *length[-1:].tolist()])
+    return float(np.max(length, initial=rippled))
 
 
 # Across the hole

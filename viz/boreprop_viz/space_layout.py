@@ -7,7 +7,7 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from .key import KEY, LINE, Entry, line_count
-from .layout import HERE, TAB, TimePanel, card, key_bounds, plot, so_far, tab, vertical_section, visual, waves
+from .layout import HERE, TAB, TimePanel, card, key_bounds, plot, so_far, stations, tab, vertical_section, visual, waves
 from .scales import WAVES, Scales
 from .space_scales import SpaceScales
 from .space_scene import disc_bounds
@@ -38,7 +38,7 @@ def blueprint_in_space(
             across(scales, space, tracks),
             rrb.Vertical(
                 rrb.Spatial2DView(origin=KEY, titlebar=False, background=GROUND, visual_bounds=key_bounds(high)),
-                rrb.Tabs(*(one for one in tabs if one), card(), active_tab=0),
+                rrb.Tabs(*(one for one in tabs if one), card(), stations(), active_tab=0),
                 row_shares=[high, TAB],
             ),
             column_shares=[0.19, 0.21, 0.17, 0.43],

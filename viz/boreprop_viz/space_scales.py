@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from boreprop.analysis.space import positions_in_space
+from boreprop.analysis.hole_in_space import positions_in_space
 from boreprop.run.trajectory import Trajectory
 
 from .scene import Array, Bounds

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from boreprop.analysis.space import NEARLY_VERTICAL
+from boreprop.analysis.turning import NEARLY_VERTICAL
 from boreprop.case.case import Case
 from boreprop.core.quantities import CLEARANCES
 from boreprop.run.ground import on_rows
@@ -121,7 +121,8 @@ class Discs:
     def tilt(self) -> Array:
         """The tilt of the bit over its limit, (m, 2)."""
         limit: Array = on_rows(self.case, self.rows, "bit_tilt_limit")
-        return self._parts("bit_tilt") / limit[:, None]
+        tilt: Array = self._parts("bit_tilt") / limit[:, None]
+        return tilt
 
     @property
     def bit_force(self) -> Array:
@@ -138,4 +139,4 @@ class Discs:
     def upright(self) -> list[str]:
         """What is up the screen at each row."""
         vertical = self.rows["bit_inclination"] < NEARLY_VERTICAL
-        return [("high side", "north")[int(row)] for row in vertical]
+        return [("high side", "north")[int(row)] for row in vertical.tolist()]

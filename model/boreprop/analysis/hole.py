@@ -26,7 +26,7 @@ class Hole(Protocol):
     """Anything that has a position at each length along it."""
 
     def at(self, length: Floats) -> Floats:
-        """Positions (x, z) at the given lengths, m, shape (..., 2)."""
+        """Positions (x, z) at the given lengths, m, shape (..., 2); in space north, east and down, shape (..., 3)."""
 
 
 @dataclass(frozen=True)
@@ -104,13 +104,13 @@ class SurveyedHole:
 
 @dataclass(frozen=True)
 class HoleAxis:
-    """The axis of a hole, straight between points; in space they are north, east and down."""
+    """The axis of a hole, straight between points."""
 
     length: Floats  # of each point, increasing, m, (N,)
-    position: Floats  # x and z, m, (N, 2); in space (N, 3)
+    position: Floats  # x and z, m, (N, 2); in space north, east and down, (N, 3)
 
     def at(self, length: Floats) -> Floats:
-        """Positions at the given lengths, m, shape (..., 2), in space (..., 3)."""
+        """Positions at the given lengths, m, shape (..., 2) or, in space, (..., 3)."""
         return np.stack([np.interp(length, self.length, along) for along in self.position.T], axis=-1)
 
     def followed_by(self, length: Floats, position: Floats) -> "HoleAxis":

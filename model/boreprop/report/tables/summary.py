@@ -17,6 +17,11 @@ def lines(summary: Summary) -> list[tuple[str, str]]:
         ("stopped", summary.stopped),
         (f"inclination at the start, {mean}", UNITS["rad"].text(summary.start_inclination)),
         (f"inclination at the end, {mean}", UNITS["rad"].text(summary.end_inclination)),
+        *(
+            (f"azimuth at the {where}", azimuth_text(azimuth))
+            for where, azimuth in (("start", summary.start_azimuth), ("end", summary.end_azimuth))
+            if azimuth is not None
+        ),
         ("build rate, mean", UNITS["rad/m"].text(summary.build_rate)),
         (
             f"build rate, largest over {length_text(BUILD_LENGTH, '.3g')}",
@@ -76,6 +81,11 @@ def whether_it_ripples(wave: Rippling) -> str:
         State.GROWING: f"yes, growing: {length}",
         State.STEERED: f"no, but force or weight change too often to tell: waves {length}",
     }[wave.state]
+
+
+def azimuth_text(azimuth: float) -> str:
+    """An azimuth, rad, as text."""
+    return "none, it is nearly vertical" if isnan(azimuth) else UNITS["rad"].text(azimuth, ".1f")
 
 
 def length_text(length: float, digits: str) -> str:
