@@ -124,11 +124,12 @@ def log_depths(rec: rr.RecordingStream, scales: Scales, space: SpaceScales) -> N
             origins=np.tile([0.0, 0.0, top], (2, 1)),
             colors=GREY,
             radii=rr.Radius.ui_points(1.5),
-            labels=[f"north {size}", f"east {size}"],
-            show_labels=True,
         ),
         static=True,
     )
+    names = np.array([[far, 0.0, top - 0.05 * scales.length], [0.0, 2.5 * far, top]])  # apart, as the eye sees them
+    text = rr.Points3D(names, labels=["north", f"east {size}"], colors=WHITE, radii=0.0, show_labels=True)
+    rec.log("enlarged/names", text, static=True)
     line = np.array([[0.0, 0.0, begin], [0.0, 0.0, begin + scales.length]])
     rec.log("enlarged/trend", rr.LineStrips3D([line], colors=FAINT, radii=rr.Radius.ui_points(1.0)), static=True)
 

@@ -38,7 +38,7 @@ def blueprint_in_space(
             across(scales, space, tracks),
             rrb.Vertical(
                 rrb.Spatial2DView(origin=KEY, titlebar=False, background=GROUND, visual_bounds=key_bounds(high)),
-                rrb.Tabs(*(one for one in tabs if one), card(), stations(), active_tab=0),
+                rrb.Tabs(*(one for one in tabs if one), card(), stations(), active_tab=1 if scales.rippling else 0),
                 row_shares=[high, TAB],
             ),
             column_shares=[0.19, 0.21, 0.17, 0.43],
