@@ -157,7 +157,7 @@ def log_tilt_across(track: Track, space: SpaceScales, discs: Discs) -> None:
         degrees = np.round(UNITS["rad"].factor * discs.rows["bit_tilt"], 2)
         label_under(track, "across/bit_lateral_force/label", at, place)
         send_numbers(
-            track, "across/bit_lateral_force/label", at, degrees, lambda size: f"{size:.2f}{UNITS['rad'].shown}"
+            track, "across/bit_lateral_force/label", at, degrees, lambda size: f"ψ {size:.2f} {UNITS['rad'].shown}"
         )
 
 
@@ -175,7 +175,7 @@ def log_upright(track: Track, space: SpaceScales, discs: Discs) -> None:
     words = np.array(discs.upright)
     changes = np.flatnonzero(np.append(True, words[1:] != words[:-1]))
     at = moments(discs.rows).where(changes)
-    place = space.discs[0] + np.array([0.0, -1.55])
+    place = space.discs[0] + np.array([-1.2, -1.45])
     send(
         track,
         "across/upright",

@@ -133,7 +133,8 @@ class Discs:
     def toolface(self) -> Array:
         """The force of the pads in the dial, N, (m, 2): up the screen is that from where the toolface counts."""
         toolface = self.rows.columns.get("rss_toolface", np.zeros(self.rows.row_count))
-        return self.rows["rss_force"][:, None] * np.column_stack((np.sin(toolface), -np.cos(toolface)))
+        force: Array = self.rows["rss_force"][:, None] * np.column_stack((np.sin(toolface), -np.cos(toolface)))
+        return force
 
     @property
     def upright(self) -> list[str]:
