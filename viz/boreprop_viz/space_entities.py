@@ -140,7 +140,7 @@ def log_stabilizers_across(track: Track, space: SpaceScales, discs: Discs) -> No
         there = np.isfinite(contacts[:, i, 0])
         touched = (place + contacts[:, i])[there]
         send(track, f"across/contact_point/{i + 1}", at, rr.Points2D.columns(positions=touched).partition(there))
-        send_force(track, f"across/contact_force/{i + 1}", at, space, discs.force[:, i], ends=place + contacts[:, i])
+        send_force(track, f"across/contact_force/{i + 1}", at, space, discs.force[:, i], place + contacts[:, i])
         log_size(track, f"across/contact_force/{i + 1}/label", at, place, discs.force[:, i])
 
 
@@ -152,7 +152,7 @@ def log_tilt_across(track: Track, space: SpaceScales, discs: Discs) -> None:
     for dot in ("middle", "trail"):
         send(track, f"across/{dot}/tilt", at, rr.Points2D.columns(positions=tip))
     force = discs.bit_force
-    send_force(track, "across/bit_lateral_force", at, space, force, starts=np.broadcast_to(place, force.shape))
+    send_force(track, "across/bit_lateral_force", at, space, force, np.broadcast_to(place, force.shape))
     if track.numbered:
         degrees = np.round(UNITS["rad"].factor * discs.rows["bit_tilt"], 2)
         label_under(track, "across/bit_lateral_force/label", at, place)
@@ -164,8 +164,13 @@ def log_tilt_across(track: Track, space: SpaceScales, discs: Discs) -> None:
 def log_toolface(track: Track, space: SpaceScales, discs: Discs) -> None:
     """The force of the pads in the dial of the toolface."""
     at, place, force = moments(discs.rows), space.discs[TOOLFACE], discs.toolface
-    send_force(track, "across/rss_force", at, space, force, starts=np.broadcast_to(place, force.shape))
+    send_force(track, "across/rss_force", at, space, force, np.broadcast_to(place, force.shape))
     log_size(track, "across/rss_force/label", at, place, force)
+    if track.numbered and "rss_toolface" in discs.rows:
+        inside = place + np.array([0.0, 0.45 + 0.25 * track.place])
+        send(track, "across/toolface/label", at, rr.Points2D.columns(positions=np.tile(inside, (len(force), 1))))
+        degrees = np.round(UNITS["rad"].factor * discs.rows["rss_toolface"], 1) + 0.0  # without a zero below zero
+        send_numbers(track, "across/toolface/label", at, degrees, lambda angle: f"{angle:.15g} {UNITS['rad'].shown}")
 
 
 def log_upright(track: Track, space: SpaceScales, discs: Discs) -> None:
@@ -184,21 +189,11 @@ def log_upright(track: Track, space: SpaceScales, discs: Discs) -> None:
     )
 
 
-def send_force(
-    track: Track,
-    thing: str,
-    at: Moments,
-    space: SpaceScales,
-    force: Array,
-    *,
-    starts: Array | None = None,
-    ends: Array | None = None,
-) -> None:
-    """Send forces, N, (rows, 2), as arrows from `starts` or to `ends`; none where zero."""
+def send_force(track: Track, thing: str, at: Moments, space: SpaceScales, force: Array, origin: Array) -> None:
+    """Send forces, N, (rows, 2), as arrows from `origin`, (rows, 2); none where zero."""
     there = np.any(force != 0.0, axis=1)
     vectors = force[there] / space.newtons
-    origins = starts[there] if ends is None else ends[there] - vectors  # type: ignore[index]
-    send(track, thing, at, rr.Arrows2D.columns(vectors=vectors, origins=origins).partition(there))
+    send(track, thing, at, rr.Arrows2D.columns(vectors=vectors, origins=origin[there]).partition(there))
 
 
 def log_size(track: Track, thing: str, at: Moments, place: Array, force: Array) -> None:

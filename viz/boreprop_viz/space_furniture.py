@@ -175,6 +175,7 @@ def log_styles_across(track: Track, n: int) -> None:
     for thing in [*map(str, range(1, n)), "tilt"]:
         rec.log(track.entity(f"across/middle/{thing}"), dots(WHITE, 4.0), static=True)
         rec.log(track.entity(f"across/trail/{thing}"), dots(track.colour or BIT, 1.0), static=True)
+    rec.log(track.entity("across/toolface/label"), text, static=True)
     for force, colour in forces.items():
         rec.log(track.entity(f"across/{force}"), arrows(colour), static=True)
         rec.log(track.entity(f"across/{force}/label"), text, static=True)
