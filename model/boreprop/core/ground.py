@@ -86,8 +86,9 @@ class Ground:
     @property
     def numbers(self) -> list[float]:
         """All of it, in the order in which the kernel takes it."""
+        given = values_of("bit", self.bit)
         wear = (self.wear.weight_per_metre, self.wear.largest_weight) if self.wear else (0.0, 0.0)
-        return [*values_of("bit", self.bit).values(), *wear, *self.tops, *(value for row in self.rock for value in row)]
+        return [*(given[name] for name in ROCK), *wear, *self.tops, *(value for row in self.rock for value in row)]
 
     @property
     def first_layer(self) -> int:
