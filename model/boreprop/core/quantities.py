@@ -349,8 +349,10 @@ def values_of(part: str, fields: Any) -> dict[str, float]:
             value = getattr(fields, quantity.attribute)
             if quantity.is_list:
                 values |= {f"{quantity.name}[{i}]": element for i, element in enumerate(value, 1)}
-            elif value != ():
-                values[quantity.name] = value[0] if isinstance(value, tuple) else value
+            elif not isinstance(value, tuple):
+                values[quantity.name] = value
+            elif value:
+                values[quantity.name] = value[0]
     return values
 
 
