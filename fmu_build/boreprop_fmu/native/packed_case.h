@@ -146,7 +146,7 @@ static int read_structure(CaseFile *file, Structure *structure, char why[LINE]) 
 static int read_lines(CaseFile *file, PackedCase *packed, char why[LINE]) {
     Variables *all = &packed->variables;
     char shown[SHOWN];
-    Structure structure;
+    Structure structure = {0};
     if (!read_identity(file, packed, why) || !read_structure(file, &structure, why)) return 0;
     list_variables(all, structure);
     for (int i = 0; i < all->count; i++) {

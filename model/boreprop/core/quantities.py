@@ -192,7 +192,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("weight_on_bit", "input", "N", "W", "(3)", "all of the weight on bit, which presses the BHA along its axis; 0: the active weight", size="axial", at_least=0.0, nominal=1e5, key="drilling.weight_on_bit", field="weight_on_bit"),
     Quantity("bit_walk_angle", "input", "rad", "ϖ", "", "walk angle: from the lateral penetration of the bit to the lateral force, positive from the high side to the right looking down the hole", at_least=-MOST_WALK, at_most=MOST_WALK, nominal=0.1, start=0.0, size="space", key="bit.walk_angle_deg", field="bit.walk_angle"),
     Quantity("rss_toolface", "input", "rad", "γ", "", "side to which the pads push, looking down the hole: 0 up or north, π/2 to the right", size="space", start=0.0),
-    Quantity("toolface_reference", "input", "", "", "", "from where the toolface counts: 0 from the high side, 1 from north, 2 from the frame of the bit", kind="Integer", size="space", at_least=0, at_most=2, start=0.0),
+    Quantity("toolface_reference", "input", "", "", "", "from where the toolface counts: 0 from the high side, 1 from north, 2 from the frame of the bit", size="space", at_least=0, at_most=2, start=0.0),
 
     Quantity("bit_inclination", "output", "rad", "θ", "(17)", "inclination of the bit axis from the downward vertical", follows=("survey_file",)),
     Quantity("borehole_inclination", "output", "rad", "Θ", "(16)", "inclination of the borehole at the bit", follows=FORCE_AND_WEIGHT),
