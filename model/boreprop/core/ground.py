@@ -86,10 +86,9 @@ class Ground:
     @property
     def numbers(self) -> list[float]:
         """All of it, in the order in which the kernel takes it."""
+        given = values_of("bit", self.bit)
         wear = (self.wear.weight_per_metre, self.wear.largest_weight) if self.wear else (0.0, 0.0)
-        own = values_of("bit", self.bit)
-        rock = [value for row in self.rock for value in row]
-        return [*(own[name] for name in ROCK), *wear, *self.tops, *rock]
+        return [*(given[name] for name in ROCK), *wear, *self.tops, *(value for row in self.rock for value in row)]
 
     @property
     def first_layer(self) -> int:

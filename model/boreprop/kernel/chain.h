@@ -120,7 +120,7 @@ typedef struct {
     double M, F_0;
 } Held;
 
-static inline double turned_by(const Turned *f, double way, double start, double end, Acting acting) {
+static inline double turn_of(const Turned *f, double way, double start, double end, Acting acting) {
     return f->way * way + f->start * start + f->end * end + f->g * acting.g + f->F_rss * acting.F_rss;
 }
 
@@ -132,8 +132,8 @@ static inline void hold(const Chain *chain, Acting acting, Held *held) {
     for (int k = 0; k < spans; k++) {
         const Span *span = &chain->span[k], *next = span + 1;
         double way = held->v[k + 1] - held->v[k];
-        rest[k] = -turned_by(&span->m_end, way, 0.0, 0.0, acting);
-        if (k + 1 < spans) rest[k] += turned_by(&next->m_start, held->v[k + 2] - held->v[k + 1], 0.0, 0.0, acting);
+        rest[k] = -turn_of(&span->m_end, way, 0.0, 0.0, acting);
+        if (k + 1 < spans) rest[k] += turn_of(&next->m_start, held->v[k + 2] - held->v[k + 1], 0.0, 0.0, acting);
         if (k > 0) rest[k] -= span->m_end.start * rest[k - 1] / chain->pivot[k - 1];
     }
     for (int k = spans - 1; k >= 0; k--) {
@@ -144,10 +144,10 @@ static inline void hold(const Chain *chain, Acting acting, Held *held) {
     for (int k = 0; k < spans; k++) {
         const Span *span = &chain->span[k];
         double way = held->v[k + 1] - held->v[k];
-        held->m[k] = turned_by(&span->m_start, way, slope[k], slope[k + 1], acting);
-        held->q[k] = turned_by(&span->q_start, way, slope[k], slope[k + 1], acting);
+        held->m[k] = turn_of(&span->m_start, way, slope[k], slope[k + 1], acting);
+        held->q[k] = turn_of(&span->q_start, way, slope[k], slope[k + 1], acting);
         if (k > 0) held->F[k - 1] = held->q[k] - q_end;
-        q_end = turned_by(&span->q_end, way, slope[k], slope[k + 1], acting);
+        q_end = turn_of(&span->q_end, way, slope[k], slope[k + 1], acting);
     }
     held->M = -held->m[0], held->F_0 = held->q[0];
 }

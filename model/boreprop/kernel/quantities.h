@@ -8,7 +8,7 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "055596286695f1ae" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "d48a3ab0fd45d78f" /* of this file, but for this line, and of problems.h */
 #define MOST_DRILLED 100000.0 /* m in a communication step */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: forces between closer ones are rounding errors */
 #define POINTS_ALONG_BHA 36 /* at which its distance from the hole is looked at */
@@ -110,7 +110,7 @@ static const Quantity INPUT_TABLE[INPUT_COUNT] = {
     {Q_WEIGHT_ON_BIT, IF_AXIAL, 0, 0, -INFINITY, 0.0, INFINITY},
     {Q_BIT_WALK_ANGLE, IF_SPACE, 0, 0, -INFINITY, -1.5533430342749532, 1.5533430342749532},
     {Q_RSS_TOOLFACE, IF_SPACE, 0, 0, -INFINITY, -INFINITY, INFINITY},
-    {Q_TOOLFACE_REFERENCE, IF_SPACE, 0, 0, -INFINITY, 0.0, 2.0},
+    {Q_TOOLFACE_REFERENCE, IF_SPACE, 0, 1, -INFINITY, 0.0, 2.0},
 };
 
 /* The outputs, in their order. */
