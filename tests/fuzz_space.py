@@ -23,8 +23,9 @@ import numpy as np
 from boreprop.case.case import Case
 from boreprop.core.errors import CannotContinue
 from boreprop.core.options import Options
+from boreprop.core.quantities import TOOLFACE_REFERENCES
 from boreprop.core.survey import Survey
-from boreprop.kernel.space import TOOLFACE_REFERENCES, SpaceDrilling
+from boreprop.kernel.space import SpaceDrilling
 from fuzz_engines import any_tolerance, near_bit, wide
 from space_runs import Outputs, pair
 

@@ -9,10 +9,12 @@ import pytest
 
 from boreprop.analysis.comparison import compare
 from boreprop.analysis.hole_in_space import SurveyInSpace
+from boreprop.analysis.plan import deviation_of, planned_hole
 from boreprop.analysis.stations import list_stations
 from boreprop.analysis.summary import summarize
 from boreprop.case.case import Case, InputSchedule, Schedule
 from boreprop.core.survey import Survey
+from boreprop.core.system import BottomHoleAssembly
 from boreprop.errors import InputError, ParameterError
 from boreprop.run.completion import complete
 from boreprop.run.results import read_trajectory, write_trajectory
@@ -66,7 +68,7 @@ def test_simulate_is_the_engine_driven_by_hand() -> None:
         rows.append(run.outputs())
     started = by_hand.begin()
     case = Case(
-        bha=replace_beam(by_hand),
+        bha=BottomHoleAssembly(by_hand.s, by_hand.y_star, by_hand.Delta, by_hand.w, 1 / 3),
         bit=started.bit,
         bit_diameter=0.2,
         active_weight_on_bit=by_hand.eta_pi,
@@ -78,13 +80,6 @@ def test_simulate_is_the_engine_driven_by_hand() -> None:
     for name in ("bit_azimuth", "north", "stabilizer_force_right[1]", "bit_tilt_high"):
         expected = np.array([row[name] for row in rows])
         np.testing.assert_allclose(found[name][1:], expected, atol=1e-9)
-
-
-def replace_beam(of: SpatialCase) -> object:
-    """The BHA of a case of the kernel's tests."""
-    from boreprop.core.system import BottomHoleAssembly
-
-    return BottomHoleAssembly(of.s, of.y_star, of.Delta, of.w, 1 / 3)
 
 
 def test_sides_and_magnitudes_agree(turning: Trajectory) -> None:
@@ -200,8 +195,6 @@ def test_a_survey_of_the_run_compares_by_its_inclination(turning: Trajectory) ->
 
 
 def test_a_plan_is_refused_for_a_run_in_space(turning: Trajectory) -> None:
-    from boreprop.analysis.plan import deviation_of, planned_hole
-
     plan = planned_hole(Survey((0.0, 100.0), (0.7, 0.7)), 30.0)
     with pytest.raises(InputError, match="plan: must be left out for a run in space"):
         deviation_of(turning, plan, 5.0)

@@ -6,6 +6,7 @@ Positions are north, east and down of the bit at the start of the run; lengths a
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Floats
 from ..core.survey import Survey
@@ -58,9 +59,10 @@ class SurveyInSpace:
     def at(self, length: Floats) -> Floats:
         """Positions at lengths, m, shape (..., 3)."""
         station = np.clip(np.searchsorted(self.length, length, side="right") - 1, 0, None)
-        return self.position[station] + self._from_station(station, length - self.length[station])
+        position: Floats = self.position[station] + self._from_station(station, length - self.length[station])
+        return position
 
-    def _from_station(self, station: Floats, along: Floats) -> Floats:
+    def _from_station(self, station: NDArray[np.intp], along: Floats) -> Floats:
         """From stations to the places this far along, m, which the next station is not before."""
         following = np.minimum(station + 1, self.length.size - 1)
         start, end = self.direction[station], self.direction[following]
@@ -72,13 +74,15 @@ class SurveyInSpace:
         done = own * along / apart
         of_start = np.where(straight, along, apart * (np.cos(own - done) - np.cos(own)) / (own * np.sin(own)))
         of_end = np.where(straight, 0.0, apart * (1.0 - np.cos(done)) / (own * np.sin(own)))
-        return of_start[..., None] * start + of_end[..., None] * end
+        way: Floats = of_start[..., None] * start + of_end[..., None] * end
+        return way
 
 
 def angle_between(start: Floats, end: Floats) -> Floats:
     """The angles between directions, rad: the dogleg of the method of minimum curvature."""
     across = np.linalg.norm(np.cross(start, end), axis=-1)
-    return np.arctan2(across, (start * end).sum(axis=-1))
+    angle: Floats = np.arctan2(across, (start * end).sum(axis=-1))
+    return angle
 
 
 def positions_in_space(run: Trajectory) -> Floats:

@@ -150,6 +150,7 @@ def sum_up(trajectory: Trajectory, rippling: Rippling) -> Summary:
     drilled_by_then = slice(int(np.searchsorted(later, length[-1], side="right")))
     rates = (np.interp(later[drilled_by_then], length, inclination) - inclination[drilled_by_then]) / BUILD_LENGTH
     drilled = float(length[-1] - length[0])
+    start_azimuth, end_azimuth = _azimuths(trajectory, over)
     return Summary(
         drilled_length=drilled,
         averaging_length=over,
@@ -163,18 +164,19 @@ def sum_up(trajectory: Trajectory, rippling: Rippling) -> Summary:
         rippling=rippling,
         stopped=trajectory.stopped,
         body_contact=_body_contact(trajectory, share),
-        **_azimuths(trajectory, over),
+        start_azimuth=start_azimuth,
+        end_azimuth=end_azimuth,
     )
 
 
-def _azimuths(run: Trajectory, over: float) -> dict[str, float]:
-    """The mean azimuths at the first and the last row of a run in space; nothing in the plane."""
+def _azimuths(run: Trajectory, over: float) -> tuple[float | None, float | None]:
+    """The mean azimuths at the first and the last row of a run in space; None in the plane."""
     if not is_in_space(run):
-        return {}
+        return None, None
     hole, ends = hole_in_space(run, case_of(run).survey, over), run["drilled_length"][[0, -1]]
     direction = chord_direction(hole, ends, over)
     azimuth = np.where(np.sin(inclination_of(direction)) > np.sin(NO_AZIMUTH), azimuth_of(direction), np.nan)
-    return {"start_azimuth": float(azimuth[0]), "end_azimuth": float(azimuth[1])}
+    return float(azimuth[0]), float(azimuth[1])
 
 
 def _body_contact(run: Trajectory, share: Callable[[NDArray[np.bool_]], float]) -> BodyContact | None:

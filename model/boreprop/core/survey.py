@@ -81,9 +81,9 @@ class Survey:
         >>> from boreprop import Survey
         >>> survey = Survey((100.0, 200.0), (0.0, 0.1))
         >>> survey.with_bit_at(150.0)
-        Survey(measured_depth=(100.0, 150.0), inclination=(0.0, 0.05))
+        Survey(measured_depth=(100.0, 150.0), inclination=(0.0, 0.05), azimuth=())
         >>> survey.with_bit_at(230.0)
-        Survey(measured_depth=(100.0, 200.0, 230.0), inclination=(0.0, 0.1, 0.1))
+        Survey(measured_depth=(100.0, 200.0, 230.0), inclination=(0.0, 0.1, 0.1), azimuth=())
         """
         bit, depths, inclinations = checked_float("bit_depth", bit_depth), self.measured_depth, self.inclination
         if bit < depths[0] - ROUNDING:
