@@ -17,8 +17,9 @@ from ..run.trajectory import Trajectory
 from ..units import BUILD_LENGTH
 from .hole import bit_positions, hole_of
 from .hole_in_space import azimuth_of, chord_direction, hole_in_space, inclination_of, is_in_space
-from .rippling import Rippling, State, find_rippling, visible_waves
+from .rippling import Rippling, find_rippling, visible_waves
 from .sag import Sag, largest_sag
+from .search import State
 
 SHORT_WAVE, LONG_WAVE = 0.25, 1.8  # half lengths of the BHA: the usual wavelengths of ripples lie in between
 NO_AZIMUTH = 0.0174533  # rad, a degree: the mean azimuth of a hole closer to the vertical says little
