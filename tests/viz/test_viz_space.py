@@ -10,15 +10,18 @@ import pytest
 from numpy.typing import NDArray
 
 from boreprop.case.case import Case, Schedule
+from boreprop.case.file import dump_case
 from boreprop.core.survey import Survey
 from boreprop.errors import InputError
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
+from boreprop_fmu.pack.build import build_fmu
 from boreprop_viz import live
 from boreprop_viz.picture import SOFTWARE_DRIVERS, viewer
 from boreprop_viz.record import record
 from boreprop_viz.space_scene import PLAY, Discs, disc_places, tube
 from boreprop_viz.style import BY_SEVERITY
+from conftest import Command
 from rrd import read, stacked, static
 
 Array = NDArray[np.float64]
@@ -218,6 +221,25 @@ def test_live_a_run_in_space_is_drawn_as_it_is_when_it_is_stored(
         ("across/trail/tilt", "Points2D:positions"),
     ):
         assert read(saved, entity, component) == read(recorded_turning, entity, component)
+
+
+def test_the_command_simulates_a_case_in_space(command: Command, case: Case, tmp_path: Path) -> None:
+    (tmp_path / "spiral.toml").write_text(dump_case(replace(spiral_case(case), length=12.0)), encoding="utf-8")
+    done = command("boreprop-view", "spiral.toml", "--save", "spiral.rrd")
+    assert done.returncode == 0, done.stderr
+    expected = simulate(replace(spiral_case(case), length=12.0))["bit_azimuth"][-1]
+    azimuth = read(tmp_path / "spiral.rrd", "plots/azimuth/bit_azimuth", "Scalars:scalars")
+    assert azimuth[12_000][0] == pytest.approx(math.degrees(expected), abs=1e-3)
+
+
+def test_an_fmu_in_space_is_drawn_while_it_drills(command: Command, turning: Trajectory, tmp_path: Path) -> None:
+    assert turning.case is not None
+    fmu = build_fmu(replace(turning.case, length=12.0), tmp_path / "turning.fmu", runtime="native")
+    done = command("boreprop-view", fmu, "--step", "0.5", "--save", "live.rrd")
+    assert done.returncode == 0, done.stderr
+    plan = read(tmp_path / "live.rrd", "plan_view/bit", "Points2D:positions")
+    own = places(turning, np.array([12.0]))[0]
+    np.testing.assert_allclose(plan[12_000][0], (own[1], -own[0]), atol=1e-4)
 
 
 def test_several_runs_in_space_have_their_own_colours(spiral: Trajectory, turning: Trajectory, tmp_path: Path) -> None:
