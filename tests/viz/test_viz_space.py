@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from boreprop.analysis.spiral.closed_form import spiral as closed_form
 from boreprop.case.case import Case, Schedule
 from boreprop.case.file import dump_case
 from boreprop.core.survey import Survey
@@ -135,6 +136,18 @@ def test_dogleg_severity_is_that_of_minimum_curvature(turning: Trajectory, recor
     late = {tick: value[0] for tick, value in curve.items() if tick > 8000}
     expected = severities(turning, np.array(list(late)) / 1000, 3.66)
     np.testing.assert_allclose(list(late.values()), math.degrees(30.0) * expected, atol=2e-3)
+
+
+def test_the_curves_of_the_ripple_are_as_large_as_the_spiral_in_closed_form(spiral: Trajectory, recorded: Path) -> None:
+    assert spiral.case is not None
+    found = closed_form(spiral.case, "right")
+    north, east = (read(recorded, f"plots/ripple/{name}", "Scalars:scalars") for name in ("ripple", "ripple_east"))
+    late = [tick for tick in north if tick > max(north) - 1000 * found.pitch]
+    assert len(late) > 50
+    away = np.array([(north[tick][0], east[tick][0]) for tick in late])
+    assert np.hypot(*away.T).mean() == pytest.approx(1000 * found.radius, rel=0.02)
+    turn = np.unwrap(np.arctan2(away[:, 1], away[:, 0]))
+    assert turn[-1] - turn[0] == pytest.approx(2 * math.pi * (late[-1] - late[0]) / 1000 / found.pitch, rel=0.03)
 
 
 def test_plan_view_and_vertical_section_show_the_places_of_the_bit(turning: Trajectory, recorded_turning: Path) -> None:
