@@ -6,7 +6,6 @@ mesa-vulkan-drivers and libvulkan1).
 
 from contextlib import suppress
 from dataclasses import replace
-from math import radians
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -31,7 +30,6 @@ COLOURS = 256  # of a palette: half the size of a picture, and nobody sees it
 def main() -> None:
     """Draw them all."""
     paper = load_case(EXAMPLES / "paper_case.toml")
-    walking = replace(paper, bit=replace(paper.bit, walk_angle=radians(0.3)))
     ripples = simulate(paper)
     heavier = simulate(replace(paper, active_weight_on_bit=16 * paper.active_weight_on_bit))
     with TemporaryDirectory() as name:
@@ -43,7 +41,7 @@ def main() -> None:
         record({"paper_case": ripples, "more_weight": heavier}, save=recording)
         with viewer(recording) as shown:
             keep(whole(shown, 150.0), "overlaid")
-        record({"spiral": simulate(walking)}, save=recording)
+        record({"spiral": simulate(load_case(EXAMPLES / "spiral.toml"))}, save=recording)
         with viewer(recording) as shown:
             keep(whole(shown, 212.5), "spiral")
         drill_for_a_while(Path(name, "build_section.fmu"), recording, rows=5000)

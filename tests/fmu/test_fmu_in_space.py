@@ -164,5 +164,5 @@ def test_a_binary_for_the_plane_refuses_a_case_in_space(borehole: Path, case: Ca
     with ZipFile(borehole) as space, ZipFile(pack(case, NATIVE)) as plane, ZipFile(mixed, "w") as made:
         for name in space.namelist():
             made.writestr(name, (plane if name.startswith("binaries/") else space).read(name))
-    with pytest.raises(Exception, match="[Ii]nstantiate"), instance(str(mixed)):
+    with pytest.raises(Exception, match=r"[Ii]nstantiate"), instance(str(mixed)):
         pass

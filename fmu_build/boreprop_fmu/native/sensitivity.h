@@ -81,12 +81,14 @@ static void add_changes(
 ) {
     double there[2][MOST_OUTPUTS], own = c->value[given], scale = 1.0;
     int number = variable_at(c, given)->quantity, first = c->packed.variables.first_output, sides[2];
-    if (number == IN_RATE_OF_PENETRATION || (c->value[IN_ACTIVE_WEIGHT_ON_BIT] == 0.0 && given == IN_ACTIVE_WEIGHT_ON_BIT))
+    if (number == IN_RATE_OF_PENETRATION ||
+        (c->value[IN_ACTIVE_WEIGHT_ON_BIT] == 0.0 && given == IN_ACTIVE_WEIGHT_ON_BIT))
         return;
     if (number == IN_RSS_FORCE) scale = at->F_star;
     else if (number != IN_BIT_WALK_ANGLE && number != IN_RSS_TOOLFACE) scale = fabs(own);
     double way = SMALL_CHANGE * scale;
-    for (int side = 0; side < 2; side++) sides[side] = outputs_with(c, (int)given, side ? own + way : own - way, there[side]);
+    for (int side = 0; side < 2; side++)
+        sides[side] = outputs_with(c, (int)given, side ? own + way : own - way, there[side]);
     for (int side = 0; side < 2; side++)
         if (!sides[side] && !outputs_with(c, (int)given, own, there[side])) return;
     double apart = way * (sides[0] + sides[1]);
@@ -109,7 +111,6 @@ static double change_with(
     double eta = drilling->given.lateral_steering_resistance; /* in the layer where the bit is */
     return output_gain(drilling, at, (Output)output->quantity, output->index, (Input)given, eta);
 }
-
 
 static void add_changes(
     Component *c, const Present *at, const fmi2ValueReference unknown[], size_t unknowns, fmi2ValueReference given,

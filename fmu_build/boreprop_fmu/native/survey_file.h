@@ -10,7 +10,7 @@ enum { REQUIRED = 2, COLUMNS = 3 }; /* the third column may be missing, and is n
 
 static const char *const COLUMN[COLUMNS] = {"measured_depth", "inclination_deg", "azimuth_deg"};
 static const char PLAIN[] = "plain CSV: UTF-8, commas, decimal points, depths in m, inclinations in degrees";
-static const double LARGEST_VALUE[COLUMNS] = {INFINITY, 180.0, 360.0}; /* of either sign */
+static const double LARGEST_VALUE[COLUMNS] = {INFINITY, 180.0, 360.0};                           /* of either sign */
 static const double UNIT[COLUMNS] = {1.0, 3.141592653589793 / 180.0, 3.141592653589793 / 180.0}; /* m, rad */
 
 /* Take one field of a row: `*from` moves behind it, `*field` is its text. Gives the character that ended it. */

@@ -46,7 +46,9 @@ static void list_variables(Variables *all, Structure structure) {
     all->structure = structure, all->count = 0;
     for (int k = 0; k < INPUT_COUNT; k++) {
         all->input[k] = all->count;
-        add_variables(all, k, INPUT_TABLE[k].name, INPUT_TABLE[k].size, INPUT, INPUT_TABLE[k].is_whole ? INTEGER : REAL);
+        add_variables(
+            all, k, INPUT_TABLE[k].name, INPUT_TABLE[k].size, INPUT, INPUT_TABLE[k].is_whole ? INTEGER : REAL
+        );
     }
     all->first_output = all->count;
     for (int k = 0; k < OUTPUT_COUNT; k++) {
