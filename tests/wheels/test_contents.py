@@ -81,7 +81,7 @@ def test_it_holds_the_packages_and_the_libraries_and_nothing_else(contents: dict
         if path.is_file() and not {"__pycache__", "binaries"} & set(path.parts) and path.stem != library_path().stem
     }
     packed = {path for path in contents if ".dist-info/" not in path}
-    assert packed == set(sources) | {kernel(target)} | {fmu(name) for name in PLATFORMS}
+    assert packed == set(sources) | {kernel(target)} | {fmu(name, law) for name in PLATFORMS for law in LAWS}
     assert [name for name, path in sources.items() if contents[name] != path.read_bytes()] == []
 
 
