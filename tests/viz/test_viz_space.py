@@ -9,16 +9,20 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from boreprop.analysis.spiral.closed_form import spiral as closed_form
 from boreprop.case.case import Case, Schedule
+from boreprop.case.file import dump_case
 from boreprop.core.survey import Survey
 from boreprop.errors import InputError
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
+from boreprop_fmu.pack.build import build_fmu
 from boreprop_viz import live
 from boreprop_viz.picture import SOFTWARE_DRIVERS, viewer
 from boreprop_viz.record import record
 from boreprop_viz.space_scene import PLAY, Discs, disc_places, tube
 from boreprop_viz.style import BY_SEVERITY
+from conftest import Command
 from rrd import read, stacked, static
 
 Array = NDArray[np.float64]
@@ -134,6 +138,18 @@ def test_dogleg_severity_is_that_of_minimum_curvature(turning: Trajectory, recor
     np.testing.assert_allclose(list(late.values()), math.degrees(30.0) * expected, atol=2e-3)
 
 
+def test_the_curves_of_the_ripple_are_as_large_as_the_spiral_in_closed_form(spiral: Trajectory, recorded: Path) -> None:
+    assert spiral.case is not None
+    found = closed_form(spiral.case, "right")
+    north, east = (read(recorded, f"plots/ripple/{name}", "Scalars:scalars") for name in ("ripple", "ripple_east"))
+    late = [tick for tick in north if tick > max(north) - 1000 * found.pitch]
+    assert len(late) > 50
+    away = np.array([(north[tick][0], east[tick][0]) for tick in late])
+    assert np.hypot(*away.T).mean() == pytest.approx(1000 * found.radius, rel=0.02)
+    turn = np.unwrap(np.arctan2(away[:, 1], away[:, 0]))
+    assert turn[-1] - turn[0] == pytest.approx(2 * math.pi * (late[-1] - late[0]) / 1000 / found.pitch, rel=0.03)
+
+
 def test_plan_view_and_vertical_section_show_the_places_of_the_bit(turning: Trajectory, recorded_turning: Path) -> None:
     north, east, down = (turning[name] for name in ("north", "east", "true_vertical_depth"))
     plan = stacked(recorded_turning, "plan_view/bit", "Points2D:positions").reshape(-1, 2)
@@ -218,6 +234,25 @@ def test_live_a_run_in_space_is_drawn_as_it_is_when_it_is_stored(
         ("across/trail/tilt", "Points2D:positions"),
     ):
         assert read(saved, entity, component) == read(recorded_turning, entity, component)
+
+
+def test_the_command_simulates_a_case_in_space(command: Command, case: Case, tmp_path: Path) -> None:
+    (tmp_path / "spiral.toml").write_text(dump_case(replace(spiral_case(case), length=12.0)), encoding="utf-8")
+    done = command("boreprop-view", "spiral.toml", "--save", "spiral.rrd")
+    assert done.returncode == 0, done.stderr
+    expected = simulate(replace(spiral_case(case), length=12.0))["bit_azimuth"][-1]
+    azimuth = read(tmp_path / "spiral.rrd", "plots/azimuth/bit_azimuth", "Scalars:scalars")
+    assert azimuth[12_000][0] == pytest.approx(math.degrees(expected), abs=1e-3)
+
+
+def test_an_fmu_in_space_is_drawn_while_it_drills(command: Command, turning: Trajectory, tmp_path: Path) -> None:
+    assert turning.case is not None
+    fmu = build_fmu(replace(turning.case, length=12.0), tmp_path / "turning.fmu", runtime="native")
+    done = command("boreprop-view", fmu, "--step", "0.5", "--save", "live.rrd")
+    assert done.returncode == 0, done.stderr
+    plan = read(tmp_path / "live.rrd", "plan_view/bit", "Points2D:positions")
+    own = places(turning, np.array([12.0]))[0]
+    np.testing.assert_allclose(plan[12_000][0], (own[1], -own[0]), atol=1e-4)
 
 
 def test_several_runs_in_space_have_their_own_colours(spiral: Trajectory, turning: Trajectory, tmp_path: Path) -> None:

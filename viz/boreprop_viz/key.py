@@ -36,7 +36,8 @@ def entries(tracks: Sequence[Track], planned: bool) -> list[Entry]:
         return [("hole", HOLE), ("BHA, bit", BIT), *plan, *own]
     runs = [(shortened(track.name), track.colour or GREY) for track in tracks]
     numbers = [f"stabilizer {i}" for i in range(1, n)]
-    firsts = zip_longest(("hole, build rate", "bit, dogleg severity"), numbers, ("low, +", "high, −"))
+    sides = ("low, +", "high, −") if tracks[0].scales.space is None else ("north", "east")
+    firsts = zip_longest(("hole, build rate", "bit, dogleg severity"), numbers, sides)
     kinds = [", ".join(filter(None, first)) for first in firsts]
     return [*runs, *plan, *zip(kinds, tracks[0].shades(BY_STABILIZER[: len(kinds)]), strict=True)]
 

@@ -102,10 +102,10 @@ def so_far() -> rrb.VisibleTimeRanges:
 
 def vertical_section(scales: Scales, tracks: Sequence[Track]) -> rrb.Spatial2DView:
     """Existing, planned and drilled hole, BHA and bit at true scale; the hole only as far as the cursor."""
-    along = "" if scales.space is None else f" along {round(np.rad2deg(scales.space.azimuth)) % 360}°"
+    azimuth = None if scales.space is None else round(np.rad2deg(scales.space.azimuth)) % 360
     return rrb.Spatial2DView(
         origin="vertical_section",
-        name=f"Vertical section{along} (m)",
+        name="Vertical section (m)" if azimuth is None else f"Section at {azimuth}° (m)",
         background=GROUND,
         visual_bounds=visual(scales.section),
         overrides={track.entity("vertical_section/drilled_hole"): so_far() for track in tracks},

@@ -10,7 +10,7 @@ import numpy as np
 from boreprop.analysis.axis import axis_away
 from boreprop.analysis.hole import bit_positions
 from boreprop.analysis.hole_in_space import positions_in_space
-from boreprop.analysis.rippling import find_rippling
+from boreprop.analysis.rippling import Rippling, find_rippling
 from boreprop.case.case import Case
 from boreprop.core.quantities import BY_NAME
 from boreprop.run.completion import case_of
@@ -133,7 +133,9 @@ class Scales:
         return replace(self, section=section, strip=replace(self.strip, bounds=bounds), space=space)
 
 
-def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) -> Scales:
+def choose_scales(
+    runs: Sequence[Trajectory], *, whole: bool, section: Array, ends: Sequence[Rippling] | None = None
+) -> Scales:
     """Choose the scales that suit some runs, each with its case.
 
     In the bit frame the walls are about half as far apart as the BHA is long, and the largest arrow is a seventh of it.
@@ -146,9 +148,12 @@ def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) ->
         Whether all rows are there. If not, the cases determine the scale of the arrows, and the plots have no ranges.
     section
         Positions that the vertical section should show, (N, 2).
+    ends
+        The waves with which the runs end; None: they are found.
     """
     cases = [case_of(run) for run in runs]
-    waves = [wave for wave in map(find_rippling, runs) if wave.ripples] if whole else []
+    ends = list(map(find_rippling, runs)) if whole and ends is None else ends or []
+    waves = [wave for wave in ends if wave.ripples]
     # the longest wave with which one of the runs ripples, else the longest to be expected
     wavelength = max([wave.wavelength for wave in waves] or [USUAL_WAVELENGTH * case.bha.half_length for case in cases])
     reach = max(case.bha.stabilizer_positions[-1] for case in cases)
@@ -185,7 +190,7 @@ def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) ->
 def choose_scales_in_space(runs: Sequence[Trajectory], *, whole: bool, positions: Array) -> Scales:
     """Choose the scales that suit some runs in space, as `choose_scales` does for runs in the plane.
 
-    The vertical section is that in which the runs extend farthest, and what it shows of them determines the wavelength.
+    The vertical section is that in which the runs extend farthest.
 
     Parameters
     ----------
@@ -196,7 +201,12 @@ def choose_scales_in_space(runs: Sequence[Trajectory], *, whole: bool, positions
     """
     cases = [case_of(run) for run in runs]
     space = SpaceScales(section_azimuth(positions), Bounds((0.0, 1.0), (0.0, 1.0)), 1.0, 1.0, 1.0, 0)
-    seen = choose_scales([space.projected(run) for run in runs], whole=whole, section=space.on_section(positions))
+    seen = choose_scales(
+        [space.projected(run) for run in runs],
+        whole=whole,
+        section=space.on_section(positions),
+        ends=list(map(find_rippling, runs)) if whole else [],
+    )
     ripple = max(map(largest_ripple, runs, repeat(seen.trend))) if whole else 0.0
     ripple = ripple or seen.ripple[1] / SMALL_LENGTH.factor
     space = replace(

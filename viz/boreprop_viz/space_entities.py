@@ -170,7 +170,12 @@ def log_toolface(track: Track, space: SpaceScales, discs: Discs) -> None:
         inside = place + np.array([0.0, 0.45 + 0.25 * track.place])
         send(track, "across/toolface/label", at, rr.Points2D.columns(positions=np.tile(inside, (len(force), 1))))
         degrees = np.round(UNITS["rad"].factor * discs.rows["rss_toolface"], 1) + 0.0  # without a zero below zero
-        send_numbers(track, "across/toolface/label", at, degrees, lambda angle: f"{angle:.15g} {UNITS['rad'].shown}")
+        send_numbers(track, "across/toolface/label", at, degrees, in_degrees)
+
+
+def in_degrees(angle: float) -> str:
+    """An angle in degrees, with its unit."""
+    return f"{angle:.15g} {UNITS['rad'].shown}".replace("-", "−")
 
 
 def log_upright(track: Track, space: SpaceScales, discs: Discs) -> None:

@@ -76,7 +76,6 @@ def log_discs(rec: rr.RecordingStream, space: SpaceScales, runs: list[Trajectory
         [[[0.0, -1.0], [0.0, -0.85]], [[1.0, 0.0], [0.85, 0.0]], [[0.0, 1.0], [0.0, 0.85]], [[-1.0, 0.0], [-0.85, 0.0]]]
     )
     faint = [*clearances, *(space.discs[TOOLFACE] + ticks)]
-    rec.log("across/upright", text_style(WHITE), static=True)
     rec.log("across/marks", rr.LineStrips2D(faint, colors=GREY, radii=rr.Radius.ui_points(0.5)), static=True)
     names = [f"stabilizer {i + 1}{clearance(runs, i)}" for i in range(space.stabilizers)]
     names += [f"bit tilt{limit(runs)}", f"toolface, from {reference(runs)}"]
@@ -157,10 +156,8 @@ def log_styles_in_space(track: Track) -> None:
         rec.log(track.entity(f"hole/{thing}"), spheres, static=True)
     log_styles_across(track, n)
     log_curve_styles(track)
-    log_curve_style(track, RIPPLE, "to north (mm)", track.colour or HOLE, 2.0)
-    log_curve_style(
-        track, RIPPLE_EAST, "to east (mm)", mixed(track.colour or PURPLE, WHITE, 0.3 * bool(track.colour)), 2.0
-    )
+    for curve, side, colour in zip((RIPPLE, RIPPLE_EAST), ("north", "east"), track.shades((HOLE, PURPLE)), strict=True):
+        log_curve_style(track, curve, f"to {side} (mm)", colour, 2.0)
     log_lane_styles(track)
 
 
@@ -175,6 +172,7 @@ def log_styles_across(track: Track, n: int) -> None:
     for thing in [*map(str, range(1, n)), "tilt"]:
         rec.log(track.entity(f"across/middle/{thing}"), dots(WHITE, 4.0), static=True)
         rec.log(track.entity(f"across/trail/{thing}"), dots(track.colour or BIT, 1.0), static=True)
+    rec.log(track.entity("across/upright"), text_style(WHITE), static=True)
     rec.log(track.entity("across/toolface/label"), text, static=True)
     for force, colour in forces.items():
         rec.log(track.entity(f"across/{force}"), arrows(colour), static=True)

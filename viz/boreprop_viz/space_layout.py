@@ -55,7 +55,7 @@ def plan_view(space: SpaceScales, tracks: Sequence[Track]) -> rrb.Spatial2DView:
     """The hole from above, north up, at true scale and as far as the cursor."""
     return rrb.Spatial2DView(
         origin="plan_view",
-        name="Plan view (m), north up",
+        name="Plan view (m)",
         background=GROUND,
         visual_bounds=visual(space.plan),
         overrides={track.entity("plan_view/drilled_hole"): so_far() for track in tracks},

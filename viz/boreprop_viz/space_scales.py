@@ -10,6 +10,7 @@ from boreprop.run.trajectory import Trajectory
 from .scene import Array, Bounds
 from .space_scene import disc_places
 
+LOST = ("average_inclination", "north", "east")  # columns that have no projection
 PLAN_MARGIN = 0.3  # of the extent of the holes, to either side in the plan view: room for the numbers of metres
 
 
@@ -31,7 +32,7 @@ class SpaceScales:
 
     def projected(self, rows: Trajectory) -> Trajectory:
         """Rows as seen in the vertical section: positions and inclinations of a run in the plane."""
-        columns = {name: values for name, values in rows.columns.items() if not name.startswith("average_inclination")}
+        columns = {name: values for name, values in rows.columns.items() if not name.startswith(LOST)}
         columns["displacement"] = self.on_section(positions_in_space(rows))[:, 0]
         for axis in ("bit", "borehole"):
             inclination, azimuth = rows[f"{axis}_inclination"], rows[f"{axis}_azimuth"]

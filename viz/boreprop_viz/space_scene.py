@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from boreprop.analysis.turning import NEARLY_VERTICAL
+from boreprop.analysis.ellipse import NEARLY_VERTICAL
 from boreprop.case.case import Case
 from boreprop.core.quantities import CLEARANCES
 from boreprop.run.ground import on_rows
@@ -22,7 +22,7 @@ from .scene import Array, Bounds
 SIDES = 10  # of the tube of a hole
 PLAY = 0.35  # part of the radius of a disc which is the clearance of a stabilizer: it is enlarged
 APART = 3.2  # radii from the middle of a disc to that of the next
-ROOM, BELOW = 1.6, 1.95  # radii from the middle of a disc to the edges of the view, with room for text
+ROOM, BELOW = 1.6, 2.2  # radii from the middle of a disc to the edges of the view, with room for text
 IN_ONE_COLUMN = 4  # discs at most
 TILT, TOOLFACE = -2, -1  # which discs, after those of the stabilizers
 

@@ -18,7 +18,7 @@ from .space import untwisted
 from .waves import mean_over, slope
 
 NARROW = 0.1  # minor over major axis: a narrower ellipse counts as a line
-HARMONICS = 5  # of a wave that are looked at: chaotic ones may be patterns of several that are alike
+HARMONICS = 16  # of a wave that are looked at: what repeats may be a pattern of several turns
 CERTAIN = 3.0  # standard errors by which the hole must wind to one side
 FOLLOWED = 20  # waves at the end: in none may it wind to the other side, and from their differences comes the error
 SLOW = 0.02  # of a turn in a wave: a phase that drifts faster than this comes from irregular waves

@@ -7,10 +7,9 @@ import numpy as np
 
 from ..arrays import Floats
 from ..core.survey import Survey
+from .ellipse import NEARLY_VERTICAL
 from .hole import HoleAxis
 from .hole_in_space import SurveyInSpace, angle_between, azimuth_of, chord_direction, inclination_of
-
-NEARLY_VERTICAL = np.deg2rad(3.0)  # inclination up to which high and right are north and east, and azimuth says little
 
 
 def existing_in_space(survey: Survey, reach: float, spacing: float) -> HoleAxis:

@@ -103,7 +103,7 @@ def _axis(wave: Rippling) -> str:
 def _side(ellipse: Ellipse) -> str:
     """Where the longer axis of an ellipse is."""
     if ellipse.from_north:
-        return f"at azimuth {degrees(ellipse.direction):.0f}°"
+        return f"at azimuth {round(degrees(ellipse.direction)) % 180}°"
     if ellipse.direction > pi / 2:
         return f"{degrees(pi - ellipse.direction):.0f}° left of the high side"
     return f"{degrees(ellipse.direction):.0f}° right of the high side"
