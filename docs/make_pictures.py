@@ -41,6 +41,9 @@ def main() -> None:
         record({"paper_case": ripples, "more_weight": heavier}, save=recording)
         with viewer(recording) as shown:
             keep(whole(shown, 150.0), "overlaid")
+        record({"spiral": simulate(load_case(EXAMPLES / "spiral.toml"))}, save=recording)
+        with viewer(recording) as shown:
+            keep(whole(shown, 212.5), "spiral")
         drill_for_a_while(Path(name, "build_section.fmu"), recording, rows=5000)
         with viewer(recording) as shown:
             keep(whole(shown, LIVE_AT), "live")

@@ -18,7 +18,7 @@ from boreprop.case.case import Case
 from boreprop.case.file import load_case
 from boreprop.kernel import binding
 from boreprop.kernel.compiler import NoCompilerError, build_library, host_platform
-from boreprop_fmu.native.binaries import BINARIES, binary_path, build_binaries, compile_binary, is_current
+from boreprop_fmu.native.binaries import BINARIES, LAWS, binary_path, build_binaries, compile_binary, is_compiled
 from boreprop_fmu.pack.build import build_fmu
 from flavours import NATIVE, PYTHON, Flavour
 from forking import run_script
@@ -108,10 +108,10 @@ def binaries(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
         pytest.skip("no FMU has a binary for this machine")
     if request.config.getoption("--own-compiler"):
         folder = tmp_path_factory.mktemp("binaries")
-        compile_binary(binary_path(host, folder), None)
+        for in_space in LAWS:
+            compile_binary(binary_path(host, folder, in_space), None, in_space)
         return folder
-    binary = binary_path(host)
-    if not binary.exists() or not is_current(binary.read_bytes()):
+    if not all(is_compiled(host, in_space=in_space) for in_space in LAWS):
         try:
             list(build_binaries())
         except NoCompilerError as error:

@@ -1,6 +1,7 @@
 """Cases whose tipping is tested in several files."""
 
-from boreprop.analysis.rippling import Rippling, State
+from boreprop.analysis.rippling import Rippling
+from boreprop.analysis.search import State
 from boreprop.analysis.study.design import vary
 from boreprop.case.case import Case
 from boreprop.case.paper import paper_case

@@ -29,10 +29,10 @@ if TYPE_CHECKING:
     from .analysis.summary import summarize as summarize
     from .analysis.tipping import critical_dogleg as critical_dogleg
     from .case.case import Case as Case
-    from .case.case import InputSchedule as InputSchedule
-    from .case.case import Schedule as Schedule
     from .case.file import load_case as load_case
     from .case.formations import Formation as Formation
+    from .case.inputs import InputSchedule as InputSchedule
+    from .case.inputs import Schedule as Schedule
     from .case.paper import paper_case as paper_case
     from .core.errors import BorepropError as BorepropError
     from .core.ground import Wear as Wear
@@ -52,8 +52,8 @@ _HOMES = {  # public name → module
     "BottomHoleAssembly": "core.system",
     "Case": "case.case",
     "Formation": "case.formations",
-    "InputSchedule": "case.case",
-    "Schedule": "case.case",
+    "InputSchedule": "case.inputs",
+    "Schedule": "case.inputs",
     "Stopped": "run.trajectory",
     "Survey": "core.survey",
     "Trajectory": "run.trajectory",

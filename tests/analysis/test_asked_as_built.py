@@ -8,8 +8,8 @@ import pytest
 
 from boreprop.analysis.hole import hole_of
 from boreprop.analysis.lying import _Steady, steady_lie
-from boreprop.analysis.rippling import State
 from boreprop.analysis.sag import BeamInHole, largest_sag, steady_sag
+from boreprop.analysis.search import State
 from boreprop.analysis.steering import build_rate_curve, responses_as_built, steady_response
 from boreprop.analysis.summary import summarize
 from boreprop.analysis.tipping import drill_until_steady

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from boreprop.analysis.axis import AXIS_REACH, axis_ripple
-from boreprop.analysis.rippling import State, find_rippling
+from boreprop.analysis.rippling import find_rippling
+from boreprop.analysis.search import State
 from boreprop.case.paper import LENGTH_SCALE, paper_case
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from boreprop.analysis import tipping
-from boreprop.analysis.rippling import Rippling, State, find_rippling
+from boreprop.analysis.rippling import Rippling, find_rippling
+from boreprop.analysis.search import State
 from boreprop.analysis.study.design import vary
 from boreprop.analysis.tipping import (
     critical_dogleg,

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from boreprop.case.case import Case, InputSchedule, Schedule
 from boreprop.case.file import dump_case, files_named, load_case, parse_case
 from boreprop.case.parameters import parameters, with_parameters
-from boreprop.case.schedules import steered
+from boreprop.case.schedules import force_schedule
 from boreprop.case.tables import read_inputs
 from boreprop.core.errors import ParameterError
 from boreprop.errors import InputError
@@ -173,8 +173,11 @@ shares = st.lists(st.tuples(st.floats(0.0, 1.0), st.sampled_from([0.0, 180.0, 36
 @given(st.floats(0.0, 5e4), shares)
 def test_a_tool_pushes_up_or_down_for_its_share_of_the_time(full: float, log: list[tuple[float, float]]) -> None:
     duty, toolface = zip(*log, strict=True)
+    columns = {"drilled_length": tuple(map(float, range(len(log)))), "duty": duty, "toolface_deg": toolface}
+    schedule = force_schedule(columns, None, "held", full)
     up = np.cos(np.radians(toolface))
-    np.testing.assert_allclose(steered(full, duty, toolface), full * np.array(duty) * up, rtol=1e-12)
+    np.testing.assert_allclose(schedule.rss_force, full * np.array(duty) * up, rtol=1e-12)
+    assert not schedule.steers_in_space
 
 
 def steering(rest: str) -> str:
@@ -199,10 +202,6 @@ def test_duty_and_toolface_give_the_force(paper_text: str, tmp_path: Path, place
 @pytest.mark.parametrize(
     ("rest", "message"),
     [
-        (
-            "drilled_length = [0]\nduty = [1]\ntoolface_deg = [45]",
-            "rss.toolface_deg[1]: must be 0 or 180, since the hole lies in a plane (others need a later version), ",
-        ),
         ("drilled_length = [0]\nduty = [65]\ntoolface_deg = [0]", "rss.duty[1]: must be <= 1, got 65.0"),
         (
             "drilled_length = [0]\nduty = [1]\ntoolface_deg = [0, 0]",
@@ -229,7 +228,7 @@ def test_what_is_wrong_with_steering_is_said(paper_text: str, rest: str, message
 
 def test_a_negative_force_and_one_of_another_kind_are_refused() -> None:
     with pytest.raises(ParameterError, match=r"full_force: must be >= 0, got -1\.0"):
-        steered(-1.0, (1.0,), (0.0,))
+        force_schedule({"drilled_length": (0.0,), "duty": (1.0,), "toolface_deg": (0.0,)}, None, "held", -1.0)
     with pytest.raises(ParameterError, match="interpolation: must be held or linear, got 'spline'"):
         Schedule((0.0,), (0.0,), "spline")
 

@@ -14,8 +14,6 @@ from boreprop.case.file import dump_case, load_case, parse_case
 from boreprop.case.paper import paper_case
 from boreprop.core.errors import ParameterError
 from boreprop.errors import InputError
-from boreprop.run.simulate import simulate
-from boreprop_fmu.pack.build import build_fmu
 from conftest import Command
 from places import EXAMPLES
 
@@ -46,11 +44,8 @@ def test_a_right_angle_is_refused(angle: str, constraint: str) -> None:
 @pytest.mark.parametrize(
     "planar",
     [
-        lambda case: simulate(case, length=1.0, engine="native"),
-        lambda case: simulate(case, length=1.0, engine="python"),
         lambda case: find_roots(case),
         lambda case: steady_response(case, 0.0, 0.0),
-        lambda case: build_fmu(case, Path("walks.fmu")),
     ],
 )
 def test_what_is_planar_refuses_a_bit_that_walks(planar: Callable[[Case], object]) -> None:
@@ -60,7 +55,6 @@ def test_what_is_planar_refuses_a_bit_that_walks(planar: Callable[[Case], object
 
 def test_a_command_says_so_in_one_line(command_here: Command, tmp_path: Path) -> None:
     (tmp_path / "walks.toml").write_text(with_walk("10.0"), encoding="utf-8")
-    done = command_here("boreprop", "simulate", "walks.toml", "--output", "run.csv")
+    done = command_here("boreprop", "steering", "walks.toml")
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
     assert "bit_walk_angle: must be 0" in done.stderr
-    assert not (tmp_path / "run.csv").exists()

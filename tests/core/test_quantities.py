@@ -41,6 +41,7 @@ def test_every_field_of_a_case_is_in_the_table(part: str, made: type) -> None:
         "inputs",
         "formations",
         "wear",
+        "toolface_reference",
     }  # which hold inputs by their names
 
 

@@ -6,7 +6,8 @@ from math import radians
 import numpy as np
 import pytest
 
-from boreprop.analysis.rippling import Rippling, State
+from boreprop.analysis.rippling import Rippling
+from boreprop.analysis.search import State
 from boreprop.analysis.summary import summarize
 from boreprop.case.case import Case, Schedule
 from boreprop.case.file import load_case

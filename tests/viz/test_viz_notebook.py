@@ -6,7 +6,6 @@ import shutil
 import subprocess
 import sys
 from base64 import b64decode
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from textwrap import dedent
 from typing import Any
@@ -29,6 +28,7 @@ from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
 from boreprop_viz import show
 from boreprop_viz.notebook import picture_size
+from notebooks import counts, executed, kinds, printed, read
 from places import EXAMPLES
 from viewers import draws
 
@@ -203,28 +203,13 @@ def test_the_picture_is_as_large_as_the_viewer(size: tuple[Any, Any], pixels: tu
 # The example
 
 
-def outputs(notebook: nbformat.NotebookNode) -> list[nbformat.NotebookNode]:
-    return [output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]
-
-
-def printed(notebook: nbformat.NotebookNode) -> list[str]:
-    return [output.text for output in outputs(notebook) if output.output_type == "stream"]
-
-
-def kinds(notebook: nbformat.NotebookNode) -> list[set[str]]:
-    """The MIME types of what is shown."""
-    return [set(output.data) for output in outputs(notebook) if "data" in output]
-
-
 @pytest.fixture(scope="module")
 def committed() -> nbformat.NotebookNode:
-    notebook: nbformat.NotebookNode = nbformat.read(NOTEBOOK, as_version=4)  # type: ignore[no-untyped-call]
-    return notebook
+    return read(NOTEBOOK)
 
 
 def test_the_example_is_executed_from_top_to_bottom(committed: nbformat.NotebookNode) -> None:
-    counts = [cell.execution_count for cell in committed.cells if cell.cell_type == "code"]
-    assert counts == list(range(1, len(counts) + 1))
+    assert counts(committed) == list(range(1, len(counts(committed)) + 1))
     assert committed.metadata.kernelspec.name == "python3"
 
 
@@ -246,12 +231,7 @@ def test_each_viewer_in_the_example_has_left_a_picture(committed: nbformat.Noteb
 @draws
 @pytest.mark.slow
 def test_the_example_runs_in_a_new_kernel_and_says_what_is_in_its_file(committed: nbformat.NotebookNode) -> None:
-    spec = spec_from_file_location("execute_notebook", EXAMPLES / "execute_notebook.py")
-    assert spec
-    assert spec.loader
-    tool = module_from_spec(spec)
-    spec.loader.exec_module(tool)
-    executed = tool.execute(NOTEBOOK)
-    assert printed(executed) == printed(committed)
-    assert kinds(executed) == kinds(committed)
-    assert executed.metadata == committed.metadata
+    now = executed(NOTEBOOK)
+    assert printed(now) == printed(committed)
+    assert kinds(now) == kinds(committed)
+    assert now.metadata == committed.metadata

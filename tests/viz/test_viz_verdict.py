@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 import rerun as rr
 
-from boreprop.analysis.rippling import State, find_rippling
+from boreprop.analysis.rippling import find_rippling
+from boreprop.analysis.search import State
 from boreprop.case.case import Case
 from boreprop.case.file import load_case
 from boreprop.case.paper import paper_case

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from boreprop.kernel.compiler import FOLDER, PLATFORMS, build_library, library_path
-from boreprop_fmu.native.binaries import INCLUDE, NATIVE, UNIVERSAL, compile_binary, is_current
+from boreprop_fmu.native.binaries import INCLUDE, LAWS, NATIVE, UNIVERSAL, binary_path, compile_binary, is_current
 from libraries import Library, elf, libraries_in
 from places import ROOT
 
@@ -34,13 +34,16 @@ def kernel(platform: str) -> str:
     return f"boreprop/kernel/{library_path(platform).name}"
 
 
-def fmu(platform: str) -> str:
-    return f"boreprop_fmu/binaries/{platform}/Borehole{PLATFORMS[platform].suffix}"
+def fmu(platform: str, in_space: bool) -> str:
+    return f"boreprop_fmu/binaries/{platform}/{binary_path(platform, in_space=in_space).name}"
 
 
 def libraries(contents: Mapping[str, bytes], platform: str) -> Iterator[tuple[str, Library]]:
     """Each library in a wheel for a platform, and its C file."""
-    for path, source in [(kernel(platform), "library.c"), *((fmu(name), "fmi2.c") for name in PLATFORMS)]:
+    for path, source in [
+        (kernel(platform), "library.c"),
+        *((fmu(name, law), "fmi2.c") for name in PLATFORMS for law in LAWS),
+    ]:
         for library in libraries_in(contents[path]):
             yield source, library
 
@@ -83,13 +86,15 @@ def test_it_holds_the_packages_and_the_libraries_and_nothing_else(contents: dict
 
 
 def test_its_libraries_are_for_the_processors_that_they_should_be_for(contents: dict[str, bytes], target: str) -> None:
-    for path, names in [(kernel(target), (target,))] + [(fmu(p), UNIVERSAL.get(p, (p,))) for p in PLATFORMS]:
+    for path, names in [(kernel(target), (target,))] + [
+        (fmu(p, law), UNIVERSAL.get(p, (p,))) for p in PLATFORMS for law in LAWS
+    ]:
         wanted = [(PLATFORMS[name].system, PLATFORMS[name].machine) for name in names]
         assert [(library.system, library.processor) for library in libraries_in(contents[path])] == wanted, path
 
 
 def test_its_binaries_of_the_fmu_are_of_these_sources(contents: dict[str, bytes]) -> None:
-    assert [name for name in PLATFORMS if not is_current(contents[fmu(name)])] == []
+    assert [fmu(name, law) for name in PLATFORMS for law in LAWS if not is_current(contents[fmu(name, law)])] == []
 
 
 def test_no_library_needs_more_than_its_platform_promises(contents: dict[str, bytes], target: str) -> None:

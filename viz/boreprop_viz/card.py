@@ -45,7 +45,8 @@ class Card:
         self.names = [source.name for source in sources]
         self.sayings: list[list[Saying]] = [[] for _ in sources]
         self.going_on = [source.live for source in sources]
-        cases = table(self.names, [case_facts(source.case) for source in sources])
+        facts = case_facts if scales.space is None else case_facts_in_space
+        cases = table(self.names, [facts(source.case) for source in sources])
         rec.log(CARD, rr.TextDocument(cases, media_type=rr.MediaType.MARKDOWN), static=True)
 
     def say(self, run: int, sayings: Sequence[Saying]) -> None:
@@ -112,16 +113,33 @@ def table(names: Sequence[str], facts: Sequence[dict[str, str]]) -> str:
 
 def case_facts(case: Case) -> dict[str, str]:
     """The facts about a case: name → value in the units people use."""
-    bha, bit = case.bha, case.bit
-    modal = not bha.body_point_positions  # else it has no modes whose roots could be found
+    modal = not case.bha.body_point_positions  # else it has no modes whose roots could be found
     straight = straight_drilling(case)
     return {
-        "active weight on bit": UNITS["N"].text(case.active_weight_on_bit),
-        "**ηΠ**": f"**{eta_pi(bha, bit, case.active_weight_on_bit):.4g}**",
+        **_weight(case),
         "drilling straight, contact": touching(straight.response) + ", tilt at its limit" * straight.saturated,
         "drilling straight, roots": BY_THE_ROOTS[straight.verdict],
         "its critical ηΠ": _limit(straight.critical) if modal else BY_THE_ROOTS[None],
         "critical ηΠ, all touching": _limit_of_all(case) if modal else BY_THE_ROOTS[None],
+        **_assembly(case),
+    }
+
+
+def case_facts_in_space(case: Case) -> dict[str, str]:
+    """The facts about a case in space, for which those on drilling straight in a plane do not hold."""
+    return {**_weight(case), "walk angle ϖ": UNITS["rad"].text(case.bit.walk_angle), **_assembly(case)}
+
+
+def _weight(case: Case) -> dict[str, str]:
+    return {
+        "active weight on bit": UNITS["N"].text(case.active_weight_on_bit),
+        "**ηΠ**": f"**{eta_pi(case.bha, case.bit, case.active_weight_on_bit):.4g}**",
+    }
+
+
+def _assembly(case: Case) -> dict[str, str]:
+    bha, bit = case.bha, case.bit
+    return {
         "stabilizers": f"{', '.join(f'{s:.4g}' for s in bha.stabilizer_positions)} m",
         "clearances": f"{', '.join(map(SMALL_LENGTH.number, bha.stabilizer_clearances)) or '–'} {SMALL_LENGTH.shown}",
         "beam": _beam(case),

@@ -15,7 +15,6 @@ from boreprop.units import SMALL_LENGTH, UNITS
 
 from .scene import AHEAD, Array, Shapes
 from .source import Stretch
-from .style import LANES, PLOTS
 from .track import Track, arrivals, moments, points, send, send_arrows, send_curve, send_numbers, send_strips
 
 RIPPLE = "plots/ripple/ripple"
@@ -133,22 +132,21 @@ def planned_curve(track: Track, plot: str) -> str:
     return shared if track.scales.start is not None else track.entity(f"{shared}/planned")
 
 
-def log_plots(track: Track, shapes: Shapes) -> None:
+def log_plots(track: Track, rows: Trajectory) -> None:
     """The curves of all plots for which the run has columns."""
-    rows = shapes.rows
-    for name, plot in PLOTS.items():
+    for name, plot in track.scales.plots.items():
         curves = {track.entity(curve(name, scalar)): scalar for scalar in plot.names(rows.structure)}
         for entity, scalar in (curves | {planned_curve(track, name): plot.planned}).items():
             if scalar in rows.columns:
                 send_curve(track, entity, moments(rows), plot.unit.factor * rows[scalar])
 
 
-def log_tilt_limits(track: Track, shapes: Shapes) -> None:
+def log_tilt_limits(track: Track, rows: Trajectory) -> None:
     """±ψ*, from the first row to the last, with both ends of each change."""
-    limit = UNITS["rad"].factor * on_rows(track.case, shapes.rows, "bit_tilt_limit")
+    limit = UNITS["rad"].factor * on_rows(track.case, rows, "bit_tilt_limit")
     changes = np.flatnonzero(np.diff(limit))
     at = np.unique([0, *changes, *(changes + 1), len(limit) - 1])
-    ends = moments(shapes.rows).where(at)
+    ends = moments(rows).where(at)
     for side, sign in (("lower", -1.0), ("upper", 1.0)):
         send_curve(track, track.entity(f"plots/bit_tilt/{side}_limit"), ends, sign * limit[at])
 
@@ -189,7 +187,7 @@ def log_modes(track: Track, rows: Trajectory, new: int) -> None:
     short of memory drops what is oldest.
     """
     again = np.diff(rows["drilled_length"] // (AGAIN * track.case.bha.half_length), prepend=np.nan) != 0.0
-    for quantity, states in LANES.items():
+    for quantity, states in track.scales.lanes.items():
         for lane, scalar in zip(lanes(quantity, rows.n), BY_NAME[quantity].names(rows.n), strict=True):
             changed = np.flatnonzero((np.diff(rows[scalar], prepend=np.nan) != 0.0) | again)
             changed = changed[changed >= rows.row_count - new]

@@ -13,8 +13,8 @@ from boreprop.case.case import Case
 from boreprop.units import UNITS
 
 from .entities import RIPPLE, curve, lanes, planned_curve
-from .scales import Scales, round_down
-from .scene import Array
+from .scales import Scales
+from .scene import Array, Bounds, round_down
 from .style import (
     BIT,
     BODY,
@@ -23,9 +23,7 @@ from .style import (
     FURNITURE,
     GREY,
     HOLE,
-    LANES,
     PLAN,
-    PLOTS,
     RSS,
     SHADES,
     STROKES,
@@ -57,23 +55,31 @@ def log_styles(track: Track) -> None:
     rec, n = track.rec, len(track.case.bha.stabilizer_positions)
     for thing, stroke in STROKES.items():
         log_stroke(rec, track.entity(thing), stroke if track.colour is None else stroke.of(track.colour))
-    rec.log(track.entity("vertical_section/bit"), _dots(WHITE, 4.0), static=True)
+    rec.log(track.entity("vertical_section/bit"), dots(WHITE, 4.0), static=True)
     contacts = rr.Points2D.from_fields(radii=rr.Radius.ui_points(3.0), draw_order=5.0)
     rec.log(track.entity("vertical_section/contacts"), contacts, static=True)
     forces = {"rss_force": track.colour or RSS, "bit_lateral_force": track.colour or BIT}
-    rec.log(track.entity("vertical_section/depths"), _text(WHITE), static=True)
+    rec.log(track.entity("vertical_section/depths"), text_style(WHITE), static=True)
     for i, colour in enumerate(track.shades(BY_STABILIZER[: n - 1]), 1):
-        rec.log(track.entity(f"bit_frame/contact_point/{i}"), _dots(colour, 5.0), static=True)
+        rec.log(track.entity(f"bit_frame/contact_point/{i}"), dots(colour, 5.0), static=True)
         forces[f"contact_force/{i}"] = colour
     if track.case.bha.body_point_positions:
-        rec.log(track.entity("bit_frame/body_contact_point"), _dots(track.colour or BODY, 3.0), static=True)
-        rec.log(track.entity("bit_frame/body_contact_force"), _arrows(track.colour or BODY), static=True)
-    text = _text(mixed(track.colour or WHITE, WHITE, PALE))
+        rec.log(track.entity("bit_frame/body_contact_point"), dots(track.colour or BODY, 3.0), static=True)
+        rec.log(track.entity("bit_frame/body_contact_force"), arrows(track.colour or BODY), static=True)
+    text = text_style(mixed(track.colour or WHITE, WHITE, PALE))
     for force, colour in forces.items():
-        rec.log(track.entity(f"bit_frame/{force}"), _arrows(colour), static=True)
+        rec.log(track.entity(f"bit_frame/{force}"), arrows(colour), static=True)
         rec.log(track.entity(f"bit_frame/{force}/label"), text, static=True)
     rec.log(track.entity("bit_frame/tilt/label"), text, static=True)
-    for name, plot in PLOTS.items():
+    log_curve_styles(track)
+    log_curve_style(track, RIPPLE, "ripple (mm)", track.colour or HOLE, 2.0)
+    log_lane_styles(track)
+
+
+def log_curve_styles(track: Track) -> None:
+    """Colours and names of the curves of the plots."""
+    rec = track.rec
+    for name, plot in track.scales.plots.items():
         scalars = plot.names(track.case.structure)
         for scalar, colour in zip(scalars, track.shades(plot.colours[: len(scalars)]), strict=True):
             log_curve_style(track, curve(name, scalar), curve_label(scalar, plot.unit), colour, 2.0)
@@ -82,15 +88,13 @@ def log_styles(track: Track) -> None:
             rec.log(planned_curve(track, name), line, static=True)
     for side in ("lower", "upper"):
         log_curve_style(track, f"plots/bit_tilt/{side}_limit", f"{side} limit of the bit tilt (°)", GREY, 1.0)
-    log_curve_style(track, RIPPLE, "ripple (mm)", track.colour or HOLE, 2.0)
-    log_lane_styles(track)
 
 
 def log_lane_styles(track: Track) -> None:
     """The words of the lanes, and their colours: those of the stabilizers and of the bit, or that of the run."""
     n = len(track.case.bha.stabilizer_positions)
     own = dict(zip(lanes("stabilizer_contact", n), BY_STABILIZER, strict=False))
-    for quantity, states in LANES.items():
+    for quantity, states in track.scales.lanes.items():
         for lane in lanes(quantity, n):
             colour = track.colour or own.get(lane, BIT)
             colours = [FAINT if i is None else mixed(colour, GREY, SHADES[i]) for _, i in states.values()]
@@ -116,15 +120,18 @@ def curve_style(label: str, colour: Colour, width: float) -> rr.SeriesLines:
     return rr.SeriesLines(colors=colour, names=label, widths=width, aggregation_policy=thinned)
 
 
-def _dots(colour: Colour, radius: float) -> rr.Points2D:
+def dots(colour: Colour, radius: float) -> rr.Points2D:
+    """The style of dots."""
     return rr.Points2D.from_fields(colors=colour, radii=rr.Radius.ui_points(radius), draw_order=40.0)
 
 
-def _arrows(colour: Colour) -> rr.Arrows2D:
+def arrows(colour: Colour) -> rr.Arrows2D:
+    """The style of forces."""
     return rr.Arrows2D.from_fields(colors=colour, radii=rr.Radius.ui_points(2.0), draw_order=50.0)
 
 
-def _text(colour: Colour) -> rr.Points2D:
+def text_style(colour: Colour) -> rr.Points2D:
+    """The style of text."""
     return rr.Points2D.from_fields(colors=colour, radii=rr.Radius.ui_points(0.0), show_labels=True)
 
 
@@ -139,17 +146,20 @@ def metres(value: float) -> str:
     return f"{round(value, 3) + 0.0:.15g}"
 
 
-def log_grid(rec: rr.RecordingStream, scales: Scales) -> None:
-    """Lines at round numbers of metres, labelled along the left and the bottom edge, except in the corners."""
-    (left, right), (top, bottom) = scales.section.x, scales.section.y
-    step = scales.grid_step
-    x, z = (step * np.arange(np.ceil(low / step), high / step) for low, high in (scales.section.x, scales.section.y))
+def log_grid(rec: rr.RecordingStream, shown: Bounds, view: str = "vertical_section", up: float = -1.0) -> None:
+    """Lines at round numbers of metres, labelled along the left and the bottom edge, except in the corners.
+
+    `up` is the sign of the numbers up the screen.
+    """
+    (left, right), (top, bottom) = shown.x, shown.y
+    step = shown.grid_step
+    x, z = (step * np.arange(np.ceil(low / step), high / step) for low, high in (shown.x, shown.y))
     lines = [*points(x[:, None], np.array([top, bottom])), *points(np.array([left, right]), z[:, None])]
-    rec.log("vertical_section/grid", rr.LineStrips2D.from_fields(strips=lines), static=True)
+    rec.log(f"{view}/grid", rr.LineStrips2D.from_fields(strips=lines), static=True)
     left, right, bottom = 0.9 * left + 0.1 * right, 0.9 * right + 0.1 * left, 0.95 * bottom + 0.05 * top
     x, z = x[(x > left) & (x < right)], z[z < bottom - 0.055 * (bottom - top)]  # a line of text above the lowest
-    log_labels(rec, "vertical_section/grid/depth", points(left, z), [f"{metres(value)} m" for value in z])
-    log_labels(rec, "vertical_section/grid/displacement", points(x, bottom), [f"{metres(value)} m" for value in x])
+    log_labels(rec, f"{view}/grid/depth", points(left, z), [f"{metres(-up * value)} m" for value in z])
+    log_labels(rec, f"{view}/grid/displacement", points(x, bottom), [f"{metres(value)} m" for value in x])
 
 
 def log_round_start(rec: rr.RecordingStream, scales: Scales) -> None:
@@ -157,7 +167,7 @@ def log_round_start(rec: rr.RecordingStream, scales: Scales) -> None:
     if scales.start is None:
         return
     tick = rr.TimeColumn(DEPTH_TIMELINE, sequence=[round(1000 * scales.round_start)])
-    for plot in (*PLOTS, "ripple"):
+    for plot in (*scales.plots, "ripple"):
         rec.send_columns(f"plots/{plot}/0_start", [tick], rr.Scalars.columns(scalars=np.full(1, np.nan)))
 
 

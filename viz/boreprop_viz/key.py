@@ -11,7 +11,7 @@ import numpy as np
 import rerun as rr
 
 from .furniture import log_labels
-from .style import BIT, BODY, BY_STABILIZER, GREY, HOLE, OLIVE, PLAN, RSS, Colour
+from .style import BIT, BLUE, BODY, BY_STABILIZER, GREY, HOLE, OLIVE, PLAN, PURPLE, RSS, WHITE, Colour
 from .track import Track
 
 KEY = "key"
@@ -31,10 +31,13 @@ def entries(tracks: Sequence[Track], planned: bool) -> list[Entry]:
         stabilizers = [(f"stabilizer {i}", colour) for i, colour in enumerate(BY_STABILIZER[: n - 1], 1)]
         body = [("body on the wall", BODY)] if tracks[0].case.bha.body_point_positions else []
         own = [("RSS", RSS), *stabilizers, *body, ("dogleg severity", OLIVE)]
+        if tracks[0].scales.space is not None:
+            own += [("walk rate, to east", PURPLE), ("size", WHITE), ("to the right", BLUE)]
         return [("hole", HOLE), ("BHA, bit", BIT), *plan, *own]
     runs = [(shortened(track.name), track.colour or GREY) for track in tracks]
     numbers = [f"stabilizer {i}" for i in range(1, n)]
-    firsts = zip_longest(("hole, build rate", "bit, dogleg severity"), numbers, ("low, +", "high, −"))
+    sides = ("low, +", "high, −") if tracks[0].scales.space is None else ("north", "east")
+    firsts = zip_longest(("hole, build rate", "bit, dogleg severity"), numbers, sides)
     kinds = [", ".join(filter(None, first)) for first in firsts]
     return [*runs, *plan, *zip(kinds, tracks[0].shades(BY_STABILIZER[: len(kinds)]), strict=True)]
 

@@ -6,6 +6,7 @@ last waves follow the cursor.
 
 from collections.abc import Sequence
 
+import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
 
@@ -14,7 +15,7 @@ from .key import KEY, LINE, WIDTH, Entry, line_count
 from .listing import STATIONS
 from .scales import Scales
 from .scene import Bounds
-from .style import GROUND, PLOTS, TABS
+from .style import GROUND, TABS
 from .track import DEPTH_TIMELINE, TIMELINE, TIMELINES, Track
 
 INFINITE = rr.TimeRangeBoundary.infinite()
@@ -89,23 +90,25 @@ def first_timeline(scales: Scales) -> str:
     return TIMELINE if scales.start is None else DEPTH_TIMELINE
 
 
-def _bounds(bounds: Bounds) -> rrb.VisualBounds2D:
+def visual(bounds: Bounds) -> rrb.VisualBounds2D:
+    """The range of a view."""
     return rrb.VisualBounds2D(x_range=bounds.x, y_range=bounds.y)
 
 
-def _so_far() -> rrb.VisibleTimeRanges:
+def so_far() -> rrb.VisibleTimeRanges:
     """All that was logged up to the cursor, on any timeline."""
     return rrb.VisibleTimeRanges([rrb.VisibleTimeRange(timeline, start=INFINITE, end=HERE) for timeline in TIMELINES])
 
 
 def vertical_section(scales: Scales, tracks: Sequence[Track]) -> rrb.Spatial2DView:
     """Existing, planned and drilled hole, BHA and bit at true scale; the hole only as far as the cursor."""
+    azimuth = None if scales.space is None else round(np.rad2deg(scales.space.azimuth)) % 360
     return rrb.Spatial2DView(
         origin="vertical_section",
-        name="Vertical section (m)",
+        name="Vertical section (m)" if azimuth is None else f"Section at {azimuth}° (m)",
         background=GROUND,
-        visual_bounds=_bounds(scales.section),
-        overrides={track.entity("vertical_section/drilled_hole"): _so_far() for track in tracks},
+        visual_bounds=visual(scales.section),
+        overrides={track.entity("vertical_section/drilled_hole"): so_far() for track in tracks},
     )
 
 
@@ -116,8 +119,8 @@ def strip(scales: Scales, tracks: Sequence[Track]) -> rrb.Spatial2DView:
         name=f"Ripple × {scales.strip.lateral:g}",
         titlebar=False,  # of which the view is too narrow to show more than the buttons
         background=GROUND,
-        visual_bounds=_bounds(scales.strip.bounds),
-        overrides={track.entity("strip/hole"): _so_far() for track in tracks},
+        visual_bounds=visual(scales.strip.bounds),
+        overrides={track.entity("strip/hole"): so_far() for track in tracks},
     )
 
 
@@ -142,7 +145,7 @@ def bit_frame(scales: Scales) -> rrb.Spatial2DView:
         origin="bit_frame",
         name=f"Bit frame, lateral × {scales.lateral:g}",
         background=GROUND,
-        visual_bounds=_bounds(scales.frame),
+        visual_bounds=visual(scales.frame),
     )
 
 
@@ -153,15 +156,14 @@ def tab(name: str, views: Sequence[rrb.View]) -> rrb.Vertical | None:
 
 def plot(entity: str, scales: Scales) -> rrb.TimeSeriesView:
     """One plot over the whole run."""
-    return series(entity, PLOTS[entity].unit.heading(PLOTS[entity].title), scales, scales.ranges[entity], whole=True)
+    shown = scales.plots[entity]
+    return series(entity, shown.unit.heading(shown.title), scales, scales.ranges[entity], whole=True)
 
 
 def waves(name: str, scales: Scales, tracks: Sequence[Track], *, whole: bool) -> rrb.Vertical:
     """A tab of ripple and modes, over the whole run or over the last waves up to the cursor."""
     lanes = LANES_FRAME + LANE * sum(track.lanes for track in tracks)
-    modes = rrb.StateTimelineView(
-        origin="modes", name="Contacts: low, high side; saturated tilt: +, −", time_view=_time_axis(scales, whole)
-    )
+    modes = rrb.StateTimelineView(origin="modes", name=scales.lanes_title, time_view=_time_axis(scales, whole))
     return rrb.Vertical(
         series("ripple", "Ripple: hole axis less its trend (mm)", scales, scales.ripple, whole=whole),
         modes,

@@ -20,6 +20,7 @@ from .source import Source
 from .verdict import Verdict
 
 STATIONS = "stations"
+AXIS_IN_SPACE = ("drilled_length", "displacement", "true_vertical_depth", "north", "east")
 AXIS = ("drilled_length", "displacement", "true_vertical_depth")  # the columns that a listing needs
 
 
@@ -34,11 +35,12 @@ class Listing:
     def listed(self, source: Source, verdict: Verdict) -> Iterator[Callable[[Trajectory], None]]:
         """Give a function that takes the rows of a run, and log its table when the block ends."""
         drilled: list[list[Array]] = []
+        names = AXIS_IN_SPACE if source.spatial else AXIS
         try:
-            yield lambda rows: drilled.append([rows[name] for name in AXIS])
+            yield lambda rows: drilled.append([rows[name] for name in names])
         finally:
             if drilled:
-                columns = dict(zip(AXIS, map(np.concatenate, zip(*drilled, strict=True)), strict=True))
+                columns = dict(zip(names, map(np.concatenate, zip(*drilled, strict=True)), strict=True))
                 self._log(source, Trajectory(columns, source.case), verdict)
 
     def _log(self, source: Source, run: Trajectory, verdict: Verdict) -> None:

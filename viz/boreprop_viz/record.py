@@ -10,25 +10,30 @@ from typing import Self
 
 import numpy as np
 import rerun as rr
+import rerun.blueprint as rrb
 
 from boreprop.case.file import dump_case
 from boreprop.case.parameters import parameters
 from boreprop.core.survey import Survey
+from boreprop.errors import InputError
 from boreprop.run.trajectory import Trajectory
 
 from .card import Card
 from .furniture import log_furniture, log_grid, log_plan
-from .key import entries, log_key
+from .key import Entry, entries, log_key
 from .layout import blueprint
 from .listing import Listing
-from .scales import Extremes, Scales, choose_scales
+from .scales import Extremes, Scales, choose_scales, choose_scales_in_space
 from .scene import Array, planned_path
 from .section import log_severities
 from .sinks import flush, open_recording
 from .source import LiveRun, Source, live, stored
+from .space_furniture import log_furniture_in_space, log_plan_grid
+from .space_layout import blueprint_in_space
+from .space_stream import SpaceStream
 from .stream import RunStream
 from .strip import log_strip_grid
-from .track import make_tracks
+from .track import Track, make_tracks
 
 LONGEST_NAME = 100  # letters of the name of an application: Rerun allows some 150
 
@@ -108,6 +113,8 @@ class Drawing:
     def of(cls, sources: Iterable[Source], plan: Survey | None = None) -> Self:
         """Choose the scales; `InputError` if the plan does not reach the start of a run."""
         sources = list(sources)
+        if any(source.spatial for source in sources):
+            return cls(sources, plan, scales_in_space(sources, plan))
         ahead = [source.likely_positions() for source in sources]
         if plan is not None:
             ahead += planned_paths(plan, sources)
@@ -156,19 +163,22 @@ class Drawing:
         sources, scales = self.sources, self.scales
         rec.send_recording_name(self.name)
         log_cases(rec, sources)
-        log_furniture(rec, scales, [source.case for source in sources])
+        if scales.space is None:
+            log_furniture(rec, scales, [source.case for source in sources])
+        else:
+            log_furniture_in_space(rec, scales, scales.space, [source.beginning for source in sources])
         log_frames(rec, scales)
         if self.plan is not None:
             log_plan(rec, planned_paths(self.plan, sources))
         tracks = make_tracks(rec, scales, sources)
         key = entries(tracks, planned=self.plan is not None)
         log_key(rec, key)
-        rec.send_blueprint(blueprint(scales, tracks, key))
+        rec.send_blueprint(arranged(scales, tracks, key))
         card, listing = Card(rec, scales, sources), Listing(rec, self.plan)
-        extremes, done = Extremes(), 0
+        extremes, done = Extremes(scales.plots), 0
         try:
             for i, (source, track) in enumerate(zip(sources, tracks, strict=True)):
-                stream = RunStream(replace(track, scales=scales))
+                stream = new_stream(replace(track, scales=scales))
                 with (
                     listing.listed(source, stream.verdict) as follow,
                     card.ending(i, stream.verdict, source.beginning.stopped),
@@ -178,7 +188,7 @@ class Drawing:
                             scales = scales.widened(stretch.rows)
                             stream.rescale(scales)
                             log_frames(rec, scales)
-                            rec.send_blueprint(blueprint(scales, tracks, key))
+                            rec.send_blueprint(arranged(scales, tracks, key))
                         # the stretch before this one would pile up in memory if the disk is slow
                         flush(rec)
                         card.say(i, stream.send(stretch))
@@ -188,7 +198,35 @@ class Drawing:
                         progress(done)
         finally:
             if any(source.live for source in sources):
-                rec.send_blueprint(blueprint(extremes.complete(scales), tracks, key))
+                rec.send_blueprint(arranged(extremes.complete(scales), tracks, key))
+
+
+def scales_in_space(sources: Sequence[Source], plan: Survey | None) -> Scales:
+    """The scales of runs in space; `InputError` if one of them is in the plane, or if there is a plan, which is."""
+    if plan is not None:
+        raise InputError("plan: must come with runs in the plane, got a run in space: leave it out")
+    in_plane = [source.name for source in sources if not source.spatial]
+    if in_plane:
+        raise InputError(
+            f"{in_plane[0]}: must be a run in space like the others, got one in the plane: use --dimensions 3"
+        )
+    return choose_scales_in_space(
+        [source.beginning for source in sources],
+        whole=not any(source.live for source in sources),
+        positions=np.concatenate([source.likely_positions_in_space() for source in sources]),
+    )
+
+
+def new_stream(track: Track) -> RunStream | SpaceStream:
+    """What draws a run, in the plane or in space."""
+    return RunStream(track) if track.scales.space is None else SpaceStream(track, track.scales.space)
+
+
+def arranged(scales: Scales, tracks: Sequence[Track], key: Sequence[Entry]) -> rrb.Blueprint:
+    """The blueprint of runs in the plane or in space."""
+    if scales.space is None:
+        return blueprint(scales, tracks, key)
+    return blueprint_in_space(scales, scales.space, tracks, key)
 
 
 def planned_paths(plan: Survey, sources: Sequence[Source]) -> list[Array]:
@@ -209,8 +247,11 @@ def application(name: str, digest: str) -> str:
 
 def log_frames(rec: rr.RecordingStream, scales: Scales) -> None:
     """What is at fixed places of the section and the strip."""
-    log_grid(rec, scales)
-    log_strip_grid(rec, scales)
+    log_grid(rec, scales.section)
+    if scales.space is None:
+        log_strip_grid(rec, scales)
+    else:
+        log_plan_grid(rec, scales.space)
     if len(scales.strip.lanes) == 1:  # the holes of several runs have the colours of the runs
         log_severities(rec, scales)
 

@@ -1,22 +1,36 @@
 """Chooses the scales and ranges of a recording before its rows are drawn."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import repeat
 from math import ceil, floor, log10
 
 import numpy as np
 
+from boreprop.analysis.axis import axis_away
 from boreprop.analysis.hole import bit_positions
-from boreprop.analysis.rippling import find_rippling
+from boreprop.analysis.hole_in_space import positions_in_space
+from boreprop.analysis.rippling import Rippling, find_rippling
 from boreprop.case.case import Case
 from boreprop.core.quantities import BY_NAME
 from boreprop.run.completion import case_of
 from boreprop.run.ground import largest_along
 from boreprop.run.trajectory import Trajectory
-from boreprop.units import UNITS
+from boreprop.units import SMALL_LENGTH, UNITS
 
-from .scene import Array, Bounds, frame_bounds, section_bounds
-from .style import BY_SEVERITY, PLOTS, Plot
+from .scene import Array, Bounds, frame_bounds, round_down, section_bounds
+from .space_scales import SpaceScales, plan_bounds, section_azimuth
+from .style import (
+    BY_SEVERITY,
+    LANES,
+    LANES_IN_SPACE,
+    LANES_TITLE,
+    LANES_TITLE_IN_SPACE,
+    PLOTS,
+    PLOTS_IN_SPACE,
+    Lanes,
+    Plot,
+)
 
 WAVES = 11.0  # waves that ripple and modes show: more are too narrow to see, fewer do not show whether they last
 USUAL_WAVELENGTH = 1.4  # half lengths of the BHA: the wavelength assumed before there is a ripple
@@ -34,6 +48,9 @@ TILTS = 1.15  # tilt limits to either side in the plot of the tilt, so that a ti
 RIPPLES = 1.15  # ripples to either side in their plot
 WALLS_APART = 0.6  # lengths of the BHA at most, in the bit frame: the factor that enlarges them is rounded down
 CURVED = 0.4  # lengths of the BHA, at most, from the axis of the frame to the walls of a hole that curves
+ENLARGED = 0.07  # of the length of a run, which the enlarged hole in space lies from its trend at most
+THICKNESS = 0.2  # of the trend: the turns of a spiral do not touch
+LONGEST_IN_SPACE = 0.8  # of the radius of a disc: the longest arrow
 LONGEST_ARROW = 7  # parts into which the BHA is divided for the longest arrow to be one
 ARROWS = ("stabilizer_force", "bit_lateral_force", "rss_force")
 
@@ -67,12 +84,8 @@ class Scales:
     start: float | None  # measured depth at which drilling starts, m; None if the runs differ
     begin: float  # drilled length at the first row, m
     ranges: dict[str, tuple[float, float] | None]  # plot → its range in the unit shown; None: the viewer chooses it
-
-    @property
-    def grid_step(self) -> float:
-        """The length between two lines of the grid of the vertical section, m."""
-        (left, right), (top, bottom) = self.section.x, self.section.y
-        return round_down(max(right - left, bottom - top) / 4)
+    plots: Mapping[str, Plot] = field(default_factory=lambda: PLOTS, repr=False)  # which there may be
+    space: SpaceScales | None = field(default=None, repr=False)  # those of runs in space
 
     @property
     def round_start(self) -> float:
@@ -86,13 +99,30 @@ class Scales:
         place = "drilled length (mm)" if self.start is None else "measured depth (mm)"
         return place if self.duration is None else f"{place} or time"
 
+    @property
+    def lanes(self) -> Lanes:
+        """The words of the lanes of modes."""
+        return LANES if self.space is None else LANES_IN_SPACE
+
+    @property
+    def lanes_title(self) -> str:
+        """What the lanes show."""
+        return LANES_TITLE if self.space is None else LANES_TITLE_IN_SPACE
+
     def hold(self, rows: Trajectory) -> bool:
         """Whether vertical section and strip show the bit at all rows."""
         deepest = self.strip.start + rows["drilled_length"][-1]
+        if self.space is not None:
+            if not self.space.plan.hold(self.space.on_plan(positions_in_space(rows))):
+                return False
+            rows = self.space.projected(rows)
         return self.section.hold(bit_positions(rows)) and deepest <= self.strip.bounds.y[1]
 
     def widened(self, rows: Trajectory) -> "Scales":
         """The same scales with a section at least twice as wide, and a strip twice as long, that also show the rows."""
+        space = self.space
+        if space is not None:
+            space, rows = space.widened(rows), space.projected(rows)
         shown = np.concatenate((np.transpose((self.section.x, self.section.y)), bit_positions(rows)))
         section = section_bounds(shown, around=float(np.ptp(shown, axis=0).max()) / 2)
         top, bottom = self.strip.bounds.y
@@ -100,10 +130,12 @@ class Scales:
         deepest = max(self.strip.start + float(rows["drilled_length"][-1]), 2 * bottom - top)
         top = (begin - STRIP_TOP * deepest) / (1 - STRIP_TOP)  # there is room for text above the beginning again
         bounds = Bounds(self.strip.bounds.x, (top, deepest))
-        return replace(self, section=section, strip=replace(self.strip, bounds=bounds))
+        return replace(self, section=section, strip=replace(self.strip, bounds=bounds), space=space)
 
 
-def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) -> Scales:
+def choose_scales(
+    runs: Sequence[Trajectory], *, whole: bool, section: Array, ends: Sequence[Rippling] | None = None
+) -> Scales:
     """Choose the scales that suit some runs, each with its case.
 
     In the bit frame the walls are about half as far apart as the BHA is long, and the largest arrow is a seventh of it.
@@ -116,15 +148,16 @@ def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) ->
         Whether all rows are there. If not, the cases determine the scale of the arrows, and the plots have no ranges.
     section
         Positions that the vertical section should show, (N, 2).
+    ends
+        The waves with which the runs end; None: they are found.
     """
     cases = [case_of(run) for run in runs]
-    waves = [wave for wave in map(find_rippling, runs) if wave.ripples] if whole else []
+    ends = list(map(find_rippling, runs)) if whole and ends is None else ends or []
+    waves = [wave for wave in ends if wave.ripples]
     # the longest wave with which one of the runs ripples, else the longest to be expected
     wavelength = max([wave.wavelength for wave in waves] or [USUAL_WAVELENGTH * case.bha.half_length for case in cases])
     reach = max(case.bha.stabilizer_positions[-1] for case in cases)
     largest = max(largest_force(run) for run in runs) if whole else max(likely_force(case) for case in cases)
-    curves = {name: plot.curves(runs) for name, plot in PLOTS.items()}
-    ranges = {name: plot_range(PLOTS[name], some) if whole else None for name, some in curves.items() if some}
     starts = {case.survey.measured_depth[-1] for case in cases}
     ripples = [RIPPLES * wave.axis_amplitude for wave in waves] or [
         FULL_RIPPLE * wavelength * max(largest_along(case, "bit_tilt_limit") for case in cases)
@@ -149,8 +182,58 @@ def choose_scales(runs: Sequence[Trajectory], *, whole: bool, section: Array) ->
         duration=duration,
         start=start,
         begin=begin,
-        ranges=ranges | {"bit_tilt": with_ticks(-UNITS["rad"].factor * limit, UNITS["rad"].factor * limit)},
+        ranges=plot_ranges(PLOTS, runs, whole)
+        | {"bit_tilt": with_ticks(-UNITS["rad"].factor * limit, UNITS["rad"].factor * limit)},
     )
+
+
+def choose_scales_in_space(runs: Sequence[Trajectory], *, whole: bool, positions: Array) -> Scales:
+    """Choose the scales that suit some runs in space, as `choose_scales` does for runs in the plane.
+
+    The vertical section is that in which the runs extend farthest.
+
+    Parameters
+    ----------
+    runs, whole
+        As in `choose_scales`.
+    positions
+        Positions north, east and down that vertical section and plan view should show, (N, 3).
+    """
+    cases = [case_of(run) for run in runs]
+    space = SpaceScales(section_azimuth(positions), Bounds((0.0, 1.0), (0.0, 1.0)), 1.0, 1.0, 1.0, 0)
+    seen = choose_scales(
+        [space.projected(run) for run in runs],
+        whole=whole,
+        section=space.on_section(positions),
+        ends=list(map(find_rippling, runs)) if whole else [],
+    )
+    ripple = max(map(largest_ripple, runs, repeat(seen.trend))) if whole else 0.0
+    ripple = ripple or seen.ripple[1] / SMALL_LENGTH.factor
+    space = replace(
+        space,
+        plan=plan_bounds(space.on_plan(positions), least=4 * max(case.bit_diameter for case in cases)),
+        lateral=max(1.0, first_digit(ENLARGED * seen.length / ripple)),
+        thickness=THICKNESS * seen.trend,
+        newtons=seen.newtons_per_metre
+        * max(case.bha.stabilizer_positions[-1] for case in cases)
+        / LONGEST_ARROW
+        / LONGEST_IN_SPACE,
+        stabilizers=max(len(case.bha.stabilizer_clearances) for case in cases),
+    )
+    size = RIPPLES * SMALL_LENGTH.factor * ripple
+    return replace(
+        seen,
+        ripple=with_ticks(-size, size, MOST_STEPS_OF_RIPPLE),
+        ranges=plot_ranges(PLOTS_IN_SPACE, runs, whole) | {"bit_tilt": seen.ranges["bit_tilt"]},
+        plots=PLOTS_IN_SPACE,
+        space=space,
+    )
+
+
+def largest_ripple(run: Trajectory, trend: float) -> float:
+    """How far the axis of a run in space lies from its trend at most, m; 0 if the run is too short to have a trend."""
+    _, away, _ = axis_away(run["drilled_length"], positions_in_space(run), trend)
+    return float(np.linalg.norm(away, axis=1).max(initial=0.0))
 
 
 def extent(runs: Sequence[Trajectory], cases: Sequence[Case], whole: bool) -> tuple[float, float | None]:
@@ -213,6 +296,14 @@ def lateral_room(run: Trajectory) -> float:
     return max(straight, (bend + case.bit_diameter / 2) / CURVED)
 
 
+def plot_ranges(
+    plots: Mapping[str, Plot], runs: Sequence[Trajectory], whole: bool
+) -> dict[str, tuple[float, float] | None]:
+    """The range of each plot for which some runs have curves; None if not all of their rows are there."""
+    curves = {name: plot.curves(runs) for name, plot in plots.items()}
+    return {name: plot_range(plots[name], some) if whole else None for name, some in curves.items() if some}
+
+
 def plot_range(plot: Plot, curves: Sequence[Array]) -> tuple[float, float]:
     """The range of a plot of some curves, in the unit shown."""
     values = plot.unit.factor * np.concatenate(curves)
@@ -225,12 +316,13 @@ def plot_range(plot: Plot, curves: Sequence[Array]) -> tuple[float, float]:
 class Extremes:
     """The smallest and largest values of all plots so far: those of a live run have no ranges before its end."""
 
-    def __init__(self) -> None:
+    def __init__(self, plots: Mapping[str, Plot]) -> None:
+        self.plots = plots
         self.found: dict[str, Array] = {}
 
     def take(self, rows: Trajectory) -> None:
         """Look at the next rows of a run."""
-        for name, plot in PLOTS.items():
+        for name, plot in self.plots.items():
             values = np.concatenate([self.found.get(name, np.empty(0)), *plot.curves([rows])])
             finite = values[np.isfinite(values)]
             if len(finite):
@@ -240,7 +332,7 @@ class Extremes:
         """The same scales with a range for each plot."""
         ranges = dict(scales.ranges)
         for name, found in self.found.items():
-            ranges[name] = ranges[name] or plot_range(PLOTS[name], [found])
+            ranges[name] = ranges[name] or plot_range(self.plots[name], [found])
         return replace(scales, ranges=ranges)
 
 
@@ -259,9 +351,3 @@ def first_digit(value: float) -> float:
     """`value` with all of its digits but the first set to zero."""
     power: float = 10.0 ** floor(log10(value))
     return floor(value / power) * power
-
-
-def round_down(value: float) -> float:
-    """The largest of 1, 2 and 5 times powers of ten that is not above `value`."""
-    power = 10.0 ** floor(log10(value))
-    return max(step * power for step in (1, 2, 5) if step * power <= value)

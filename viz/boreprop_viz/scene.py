@@ -7,6 +7,7 @@ The bit frame is that of `boreprop.analysis.sag.BeamInHole`.
 """
 
 from dataclasses import dataclass
+from math import floor, log10
 
 import numpy as np
 from numpy.typing import NDArray
@@ -191,10 +192,22 @@ class Bounds:
     x: tuple[float, float]
     y: tuple[float, float]
 
+    @property
+    def grid_step(self) -> float:
+        """The length between two lines of a grid in it, m."""
+        (left, right), (top, bottom) = self.x, self.y
+        return round_down(max(right - left, bottom - top) / 4)
+
     def hold(self, position: Array) -> bool:
         """Whether all positions (N, 2) are shown."""
         low, high = np.transpose((self.x, self.y))
         return bool(np.all((position >= low) & (position <= high)))
+
+
+def round_down(value: float) -> float:
+    """The largest of 1, 2 and 5 times powers of ten that is not above `value`."""
+    power = 10.0 ** floor(log10(value))
+    return max(step * power for step in (1, 2, 5) if step * power <= value)
 
 
 def section_bounds(position: Array, around: float) -> Bounds:

@@ -27,30 +27,30 @@ DEPTH_ABOVE, TEXT = 0.05, 0.025  # of its height, from a flat hole to the middle
 SWATCH = 0.055  # height of a colour of the key over that of the view, which is a line of text with some room
 
 
-def log_existing_hole(track: Track, hole: HoleAxis, start: float) -> None:
-    """The existing hole, up from where drilling starts, for at least the length of the BHA."""
+def log_existing_hole(track: Track, hole: HoleAxis, start: float, view: str = "vertical_section") -> None:
+    """The existing hole in a view, up from where drilling starts, for at least the length of the BHA."""
     bha = track.case.bha.stabilizer_positions[-1]
     surveyed = track.case.survey.measured_depth[-1] - track.case.survey.measured_depth[0]
     behind = hole.since(start - max(REACH_ABOVE_BHA * bha, surveyed))
     there = behind.position[behind.length <= start]
-    track.rec.log(
-        track.entity("vertical_section/existing_hole"), rr.LineStrips2D.from_fields(strips=[there]), static=True
-    )
+    strips = rr.LineStrips2D if there.shape[1] == 2 else rr.LineStrips3D
+    track.rec.log(track.entity(f"{view}/existing_hole"), strips.from_fields(strips=[there]), static=True)
 
 
 class DrilledHole:
     """Logs the drilled hole of a run in pieces, of which the view shows those up to its cursor.
 
-    Each piece is logged where it ends, and up to there what is drilled of it, for each row.
+    Each piece is logged where it ends, and up to there what is drilled of it, for each row. In the vertical section the
+    measured depths are beside it.
     """
 
-    def __init__(self, track: Track, start: float) -> None:
-        self.track = track
+    def __init__(self, track: Track, start: float, view: str = "vertical_section") -> None:
+        self.track, self.view = track, view
         self.apart = track.case.bha.half_length / POINTS_IN_HALF
         self.start = start  # drilled length at the first row, m
         self.begun = start  # drilled length at which the current piece begins, m
         self.drilled = start  # drilled length up to which the hole is logged, m
-        self.step = track.scales.grid_step  # between two depths that are shown beside the hole, m
+        self.step = track.scales.section.grid_step  # between two depths that are shown beside the hole, m
         self.places = np.empty((0, 5))  # depths at powers of ten; where the hole is there, and half a BHA before, m
 
     def log(self, stretch: Stretch, recent: Trajectory) -> None:
@@ -69,7 +69,8 @@ class DrilledHole:
         through = np.append(drawn, 0)[consecutive(first, count)]
         through[np.cumsum(count) - 1] = new  # each row ends where its bit is
         self._send("newly_drilled", hole, through, count, recent)
-        self._log_depths(stretch.hole, hole.length[-1], recent)
+        if self.view == "vertical_section":
+            self._log_depths(stretch.hole, hole.length[-1], recent)
         self.begun, self.drilled = hole.length[ends[-1]], hole.length[-1]
 
     def _send(self, thing: str, hole: HoleAxis, through: Indices, count: Indices, recent: Trajectory) -> None:
@@ -77,7 +78,7 @@ class DrilledHole:
         ends = hole.length[through[np.cumsum(count) - 1]]
         colours = None if self.track.colour else severity_colours(self.track, recent, ends)
         at, path = arrivals(recent, ends), hole.position[through]
-        send_paths(self.track, f"vertical_section/{thing}", at, path, count, colours)
+        send_paths(self.track, f"{self.view}/{thing}", at, path, count, colours)
 
     def _log_depths(self, hole: HoleAxis, last: float, recent: Trajectory) -> None:
         """The round measured depths down to each that is reached, beside the hole; of one run alone.
@@ -85,7 +86,7 @@ class DrilledHole:
         They are at the side of a steep hole, and by turns above and below a flat one. When the view has become wider,
         fewer of them are shown.
         """
-        start, step = self.track.scales.start, self.track.scales.grid_step
+        start, step = self.track.scales.start, self.track.scales.section.grid_step
         if start is None or self.track.place:
             return
         fine = 10.0 ** np.floor(np.log10(step))

@@ -10,7 +10,9 @@ import numpy as np
 
 from boreprop.analysis.axis import AXIS_REACH
 from boreprop.analysis.hole import HoleAxis, SurveyedHole, bit_positions, existing_hole, turning
+from boreprop.analysis.hole_in_space import directions, is_in_space, positions_in_space
 from boreprop.analysis.plan import deviation_from
+from boreprop.analysis.turning import dogleg_severity, existing_in_space, turning_in_space
 from boreprop.case.case import Case
 from boreprop.core.survey import Survey
 from boreprop.errors import BorepropError, InputError
@@ -89,6 +91,18 @@ class Source:
         inclination = self.case.survey.inclination[-1]
         return np.outer([0.0, self.case.length], [np.sin(inclination), np.cos(inclination)])
 
+    @property
+    def spatial(self) -> bool:
+        """Whether it may leave its vertical plane."""
+        return is_in_space(self.beginning)
+
+    def likely_positions_in_space(self) -> Array:
+        """Positions of the bit of a run in space, (N, 3), as `likely_positions` gives them in the plane."""
+        rows = self.beginning
+        if not self.live:
+            return positions_in_space(rows)
+        return np.outer([0.0, self.case.length], directions(rows["bit_inclination"][:1], rows["bit_azimuth"][:1]))
+
 
 def stored(name: str, run: Trajectory, plan: Survey | None = None, *, batch: int = BATCH) -> Source:
     """The source of a complete run.
@@ -115,7 +129,7 @@ def stored(name: str, run: Trajectory, plan: Survey | None = None, *, batch: int
         raise InputError(f"drilled_length: row {back[0] + 2}: must not decrease, got {length[back[0] + 1]:g}")
     run = complete(run)
     case = case_of(run)
-    [whole] = stretches([run], case, plan)
+    [whole] = stretches_in_space([run], case) if is_in_space(run) else stretches([run], case, plan)
     return Source(name, case, run.row_count, whole.rows, live=False, stretches=pieces(whole, batch))
 
 
@@ -145,7 +159,8 @@ def live(
         raise InputError(f"{name}: must come with its case, as the FMUs of boreprop-fmu do, got none")
     rows = run if pace is None else paced(run, run.columns.index("time"), pace)
     trajectories = (rows_of(run.case, run.columns, some) for some in gather(rows, batch))
-    coming = stretches(trajectories, run.case, plan)
+    spatial = "north" in run.columns
+    coming = stretches_in_space(trajectories, run.case) if spatial else stretches(trajectories, run.case, plan)
     first = next(coming)
     row_count = len(run) if isinstance(run, Sized) else None
     return Source(name, run.case, row_count, first.rows, live=True, stretches=chain([first], coming))
@@ -212,7 +227,7 @@ def rows_of(case: Case, columns: Sequence[str], rows: Sequence[Sequence[float]])
 def stretches(runs: Iterable[Trajectory], case: Case, plan: Survey | None) -> Iterator[Stretch]:
     """Add the hole behind them to consecutive rows. No more hole is kept than drawing the next rows needs."""
     half = case.bha.half_length
-    reach = max(2 * REACH_ABOVE_BHA * half, BUILD_LENGTH + half, 2 * AXIS_REACH * half) + half
+    reach = reach_behind(half)
     hole = existing_hole(case.survey, reach, spacing=half / POINTS_IN_HALF)
     planned = None if plan is None else SurveyedHole.of(plan, case.survey.measured_depth[-1])
     for rows in runs:
@@ -220,6 +235,27 @@ def stretches(runs: Iterable[Trajectory], case: Case, plan: Survey | None) -> It
         hole = hole.followed_by(length, bit_positions(rows))
         yield Stretch(replace(rows, columns=rows.columns | hole_columns(length, hole, half, planned)), hole)
         hole = hole.since(float(length[-1]) - reach)
+
+
+def stretches_in_space(runs: Iterable[Trajectory], case: Case) -> Iterator[Stretch]:
+    """Add the hole behind them to consecutive rows of a run in space, as `stretches` does in the plane."""
+    half = case.bha.half_length
+    hole: HoleAxis | None = None
+    for rows in runs:
+        if hole is None:
+            hole = existing_in_space(case.survey, reach_behind(half), half / POINTS_IN_HALF)
+        length = rows["drilled_length"]
+        hole = hole.followed_by(length, positions_in_space(rows))
+        build, walk = turning_in_space(hole, length, over=BUILD_LENGTH, chord=half)
+        severity = dogleg_severity(hole, length, over=half)
+        columns = {"build_rate": build, "walk_rate": walk, "dogleg_severity": severity}
+        yield Stretch(replace(rows, columns=rows.columns | columns), hole)
+        hole = hole.since(float(length[-1]) - reach_behind(half))
+
+
+def reach_behind(half: float) -> float:
+    """The length of hole behind a row that drawing it needs, m, for half the length of a BHA, m."""
+    return max(2 * REACH_ABOVE_BHA * half, BUILD_LENGTH + half, 2 * AXIS_REACH * half) + half
 
 
 def hole_columns(length: Array, hole: HoleAxis, half: float, plan: SurveyedHole | None) -> dict[str, Array]:

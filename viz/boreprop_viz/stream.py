@@ -66,10 +66,10 @@ class RunStream:
             log_stabilizers,
             log_contacts,
             log_forces,
-            log_plots,
-            log_tilt_limits,
         ):
             log(self.track, shapes)
+        for log_curves in (log_plots, log_tilt_limits):
+            log_curves(self.track, stretch.rows)
         length, ripple = find_ripple(self.track, stretch, self.begin, self.rippled)
         for log_along in (log_ripple, log_strip):
             log_along(self.track, rows, length, ripple, self.rippled)

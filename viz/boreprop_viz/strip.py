@@ -12,8 +12,8 @@ from boreprop.run.trajectory import Trajectory
 from boreprop.units import SMALL_LENGTH
 
 from .furniture import log_labels, metres
-from .scales import STRIP_TOP, Scales, round_down
-from .scene import Array
+from .scales import STRIP_TOP, Scales
+from .scene import Array, round_down
 from .track import Track, arrivals, consecutive, points, send_paths
 
 PIECE = AXIS_POINTS // 2  # points of the ripple in one piece of the hole: half a width of the trend

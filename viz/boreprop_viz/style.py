@@ -78,13 +78,25 @@ STROKES = {
 }
 
 
+STROKES_IN_SPACE = {
+    "plan_view/existing_hole": STROKES["vertical_section/existing_hole"],
+    "plan_view/drilled_hole": STROKES["vertical_section/drilled_hole"],
+    "plan_view/newly_drilled": STROKES["vertical_section/newly_drilled"],
+    "plan_view/bha": STROKES["vertical_section/bha"],
+    "across/blades": Stroke(BIT, 4.0, 2.0, lightness=0.4),
+    "across/tilt": Stroke(BIT, 3.0, 3.0, lightness=0.7),
+}
+
 SI_OF_HOLE = {  # SI units of `source.hole_columns`, …
     "build_rate": "rad/m",
+    "walk_rate": "rad/m",
     "dogleg_severity": "rad/m",
     "distance_from_plan": "m",
     "inclination_less_plan": "rad",
 }
-OVER = {"build_rate": f"over {BUILD_LENGTH:g} m", "dogleg_severity": "over half the BHA"}  # … and over what they are
+OVER = {name: f"over {BUILD_LENGTH:g} m" for name in ("build_rate", "walk_rate")} | {
+    "dogleg_severity": "over half the BHA"
+}  # … and over what they are
 
 
 @dataclass(frozen=True)
@@ -137,6 +149,32 @@ PLOTS = {
     "active_weight_on_bit": Plot("Active weight on bit", ("active_weight_on_bit",), (BLUE,)),
     "rate_of_penetration": Plot("Rate of penetration", ("rate_of_penetration",), (BLUE,)),
 }
+PLOTS_IN_SPACE = {
+    "inclination": replace(PLOTS["inclination"], planned=""),
+    "azimuth": Plot("Azimuth", ("borehole_azimuth", "bit_azimuth"), (HOLE, BIT)),
+    "build_rate": Plot(
+        "Build and walk rate, dogleg severity", ("build_rate", "walk_rate", "dogleg_severity"), (HOLE, PURPLE, OLIVE)
+    ),
+    "bit_tilt": Plot(
+        "Bit tilt: size, high, right", ("bit_tilt", "bit_tilt_high", "bit_tilt_right"), (WHITE, BIT, BLUE)
+    ),
+    "bit_lateral_force": Plot(
+        "Bit side force: size, high, right",
+        ("bit_lateral_force", "bit_lateral_force_high", "bit_lateral_force_right"),
+        (WHITE, BIT, BLUE),
+    ),
+    "stabilizer_force": replace(PLOTS["stabilizer_force"], title="Contact forces"),
+    "rss_force": replace(PLOTS["rss_force"], title="RSS force"),
+    "rss_toolface": Plot("Toolface", ("rss_toolface",), (RSS,)),
+    "active_weight_on_bit": PLOTS["active_weight_on_bit"],
+    "rate_of_penetration": PLOTS["rate_of_penetration"],
+}
+TABS_IN_SPACE = (
+    ("Hole", ("inclination", "azimuth", "build_rate")),
+    ("Tilt", ("bit_tilt", "bit_lateral_force")),
+    ("Forces", ("stabilizer_force", "rss_force", "rss_toolface")),
+    ("Drilling", ("active_weight_on_bit", "rate_of_penetration")),
+)
 TABS = (  # names of tabs and the plots in each
     ("Hole", ("inclination", "build_rate", "bit_tilt")),
     ("Plan", ("distance_from_plan", "inclination_less_plan")),
@@ -146,9 +184,16 @@ TABS = (  # names of tabs and the plots in each
 )
 
 # value → the word in a lane, short enough for a narrow one, and which shade of the lane's colour; None is faint
-LANES: dict[str, dict[int, tuple[str, int | None]]] = {
+Lanes = dict[str, dict[int, tuple[str, int | None]]]
+LANES: Lanes = {
     "stabilizer_contact": {1: ("L", 0), -1: ("H", 1), 0: ("–", None)},
     "bit_tilt_saturation": {1: ("+", 0), -1: ("−", 1), 0: ("–", None)},
+}
+LANES_TITLE = "Contacts: low, high side; saturated tilt: +, −"
+LANES_TITLE_IN_SPACE = "Contacts: on the wall; tilt at its limit ψ*"
+LANES_IN_SPACE: Lanes = {
+    "stabilizer_contact": {1: ("on", 0), 0: ("–", None)},
+    "bit_tilt_saturation": {1: ("ψ*", 0), 0: ("–", None)},
 }
 
 

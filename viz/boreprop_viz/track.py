@@ -12,8 +12,8 @@ import numpy as np
 import pyarrow as pa
 import rerun as rr
 from numpy.typing import NDArray
-from rerun.components import LineStrip2DBatch
-from rerun.encodings import Vec2DBatch
+from rerun.components import LineStrip2DBatch, LineStrip3DBatch
+from rerun.encodings import Vec2DBatch, Vec3DBatch
 
 from boreprop.case.case import Case
 from boreprop.run.trajectory import Trajectory
@@ -174,10 +174,10 @@ def points(x: Array | float, y: Array | float) -> Array:
 
 
 def send_strips(track: Track, thing: str, at: Moments, strips: Array) -> None:
-    """Send line strips at some moments, shape (rows, strips, points, 2)."""
-    rows, per_row, count, _ = strips.shape
-    lines = line_strips(strips.reshape(-1, 2), np.full(rows * per_row, count))
-    columns = rr.LineStrips2D.columns(strips=lines)
+    """Send line strips at some moments, shape (rows, strips, points, 2), in space (rows, strips, points, 3)."""
+    rows, per_row, count, dimensions = strips.shape
+    lines = line_strips(strips.reshape(-1, dimensions), np.full(rows * per_row, count))
+    columns = (rr.LineStrips2D if dimensions == 2 else rr.LineStrips3D).columns(strips=lines)
     send(track, thing, at, columns if per_row == 1 else columns.partition(np.full(rows, per_row)))
 
 
@@ -192,19 +192,22 @@ def send_paths(
 ) -> None:
     """Send one line strip at each moment, in colours (rows, 3) or that of the thing.
 
-    `path` has the points of all strips one after the other, (N, 2), and `count` how many each of them has, (rows,).
+    `path` has the points of all strips one after the other, (N, 2), in space (N, 3), and `count` how many each of them
+    has, (rows,).
     """
-    send(track, thing, at, rr.LineStrips2D.columns(strips=line_strips(path, count), colors=colours))
+    strips = rr.LineStrips2D if path.shape[1] == 2 else rr.LineStrips3D
+    send(track, thing, at, strips.columns(strips=line_strips(path, count), colors=colours))
 
 
 def line_strips(path: Array, count: Indices) -> pa.ListArray:
-    """Line strips through points (N, 2) one after the other, `count` of them each, as Arrow's array of lists.
+    """Line strips through points (N, 2) or (N, 3) one after the other, `count` of them each, as Arrow's array of lists.
 
     Rerun's own conversion from numpy goes from strip to strip.
     """
     offsets = np.append(0, np.cumsum(count)).astype(np.int32)
-    through = Vec2DBatch(path.astype(np.float32)).as_arrow_array()
-    return pa.ListArray.from_arrays(offsets, through, type=LineStrip2DBatch([]).as_arrow_array().type)
+    point, strip = (Vec2DBatch, LineStrip2DBatch) if path.shape[1] == 2 else (Vec3DBatch, LineStrip3DBatch)
+    through = point(path.astype(np.float32)).as_arrow_array()
+    return pa.ListArray.from_arrays(offsets, through, type=strip([]).as_arrow_array().type)
 
 
 def send_arrows(track: Track, thing: str, at: Moments, tip: Array, force: Array) -> None:

@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from boreprop.analysis.rippling import Rippling, State, find_rippling, last_wave, visible_waves
+from boreprop.analysis.rippling import Rippling, find_rippling, last_wave, visible_waves
+from boreprop.analysis.search import State
 from boreprop.analysis.summary import SHORT_WAVE
 from boreprop.analysis.waves import large_until
 from boreprop.case.case import Case

@@ -80,9 +80,10 @@ class Opener:
         if path.suffix == ".toml":
             if self.case or self.fmu:
                 raise InputError(f"{path}: must be a result file with --case or --fmu, got a case file")
-            case = open_case(path)
+            case = open_case(path, in_plane=False)
             self.planned(case)  # raises before anything is drilled
-            warn_of_fallback()
+            if not case.in_space:
+                warn_of_fallback()
             with console.progress("drilling", case.length) as drilled:
                 return simulate(case, progress=drilled)
         if path.suffix not in SUFFIXES:

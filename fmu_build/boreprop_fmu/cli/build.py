@@ -14,7 +14,7 @@ from boreprop.kernel.compiler import CompilerError
 from boreprop.report.tables.sag import steadily_outside
 from boreprop.run.files import files_read
 
-from ..native.binaries import PLATFORMS, build_binaries, check_platform, is_compiled
+from ..native.binaries import LAWS, PLATFORMS, build_binaries, check_platform, is_compiled
 from ..pack.build import IDENTIFIER, RUNTIMES, build_fmu
 from ..pack.python import ADVICE
 
@@ -45,10 +45,10 @@ def build_command(
 ) -> None:
     """Pack a case, and the model with it, as an FMU."""
     console.check_output(output, (".fmu",), reads=files_read(case_file))
-    case, chosen = open_case(case_file), None if platforms is None else _chosen(platforms)
+    case, chosen = open_case(case_file, in_plane=False), None if platforms is None else _chosen(platforms)
     if runtime != "python":
         _compile_missing(chosen or [])
-    if warning := steadily_outside(case):
+    if not case.in_space and (warning := steadily_outside(case)):
         console.warn(f"{case_file}: {warning}")
     build_fmu(case, output, runtime=runtime, name=name, platforms=chosen)
     with ZipFile(output) as archive:
@@ -74,7 +74,7 @@ def _compile_missing(platforms: list[str]) -> None:
     """Compile what is not there, or stale, for platforms that were asked for."""
     for platform in platforms:
         check_platform(platform)
-    missing = [platform for platform in platforms if not is_compiled(platform)]
+    missing = [platform for platform in platforms if not all(is_compiled(platform, in_space=law) for law in LAWS)]
     if not missing:
         return
     with console.progress("compiling", len(missing)) as done:

@@ -95,6 +95,8 @@ class FmuRun:
         for name in ("rss_force", "drilled_length") + ("relative_tolerance",) * (relative_tolerance is not None):
             if name not in self._variables:
                 raise InputError(f"{fmu}: must have a variable {name!r}, got {', '.join(self._variables) or 'none'}")
+        if self._course and "rss_toolface" in self._course.names and "rss_toolface" not in self._variables:
+            raise InputError(f"{fmu}: must be made of a case in space for a toolface, got one that drills in a plane")
         n = sum(name.startswith("average_inclination[") for name in self._variables)
         scheduled = [name for name in CLEARANCES if self._course and name in self._course.names]
         own = [name for name in (*names_of_runs(n), *scheduled) if name in self._variables]
@@ -219,6 +221,7 @@ class GivenInputs:
             return
         names = [name for name in course.names if name in variables]
         self._references = {name: variables[name].valueReference for name in names}
+        self._whole = {name for name in names if variables[name].type == "Integer"}
         self._rates = np.ones(len(course.starts))
         if RATE in course.names:
             self._rates = course.values[:, course.names.index(RATE)]
@@ -246,7 +249,10 @@ class GivenInputs:
         slopes = dict(zip(course.names, (course.slopes[piece] * self._rates[piece]).tolist(), strict=True))
         for name, reference in self._references.items():
             if name not in self._given or not isclose(self._given[name], values[name], rel_tol=ROUNDING):
-                slave.setReal([reference], [values[name]])
+                if name in self._whole:
+                    slave.setInteger([reference], [int(values[name])])
+                else:
+                    slave.setReal([reference], [values[name]])
         self._slopes = {self._references[name]: slopes[name] for name in self._references if slopes[name]}
         if self._changes:  # what is there when the piece after this one starts
             ahead = course.starts[piece + 1] - course.starts[piece]

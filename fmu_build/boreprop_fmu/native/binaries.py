@@ -1,4 +1,4 @@
-"""Compiles the native FMU, one binary a platform for all cases, and finds what is compiled.
+"""Compiles the native FMU, two binaries a platform, in the plane and in space, and finds what is compiled.
 
 A binary says which sources it was made from. Needs the standard library only: the build hook imports it.
 """
@@ -19,6 +19,8 @@ BINARIES = NATIVE.parent / "binaries"
 SOURCE = NATIVE / "fmi2.c"
 INCLUDE = (compiler.FOLDER, NATIVE / "importer")  # where headers are: the kernel's, and those of FMI
 PLATFORMS = tuple(compiler.PLATFORMS)
+SPACE = "SPACE"  # is defined for what drills in space, see kernel/dimensions.h
+LAWS = (False, True)  # whether a binary is for space
 UNIVERSAL = {"darwin64": ("darwin64", "aarch64-darwin")}  # hosts on either processor look into darwin64
 
 MARK = re.compile(rb"boreprop-fmu-sources-(\w+)")  # in a binary, see packed_case.h
@@ -37,9 +39,10 @@ def check_platform(platform: str) -> None:
         raise InputError(f"platform: must be one of {', '.join(PLATFORMS)}, got {platform!r}")
 
 
-def binary_path(platform: str, folder: Path = BINARIES) -> Path:
-    """Where the binary for a platform is, or would be."""
-    return folder / platform / f"Borehole{compiler.PLATFORMS[platform].suffix}"
+def binary_path(platform: str, folder: Path = BINARIES, in_space: bool = False) -> Path:
+    """Where the binary for a platform, in the plane or in space, is, or would be."""
+    name = "BoreholeInSpace" if in_space else "Borehole"
+    return folder / platform / f"{name}{compiler.PLATFORMS[platform].suffix}"
 
 
 def build_binaries(platforms: Iterable[str] = (), folder: Path = BINARIES) -> Iterator[Path]:
@@ -68,39 +71,43 @@ def build_binaries(platforms: Iterable[str] = (), folder: Path = BINARIES) -> It
     """
     names = list(platforms)
     for platform in PLATFORMS:
-        if not is_compiled(platform, folder):
-            binary_path(platform, folder).unlink(missing_ok=True)
+        for in_space in LAWS:
+            if not is_compiled(platform, folder, in_space):
+                binary_path(platform, folder, in_space).unlink(missing_ok=True)
     if names:
         for platform in names:
-            yield build_binary(platform, folder)
+            for in_space in LAWS:
+                yield build_binary(platform, folder, in_space)
         return
     host = host_platform()
     if host is None:
         raise CompilerError(f"platform: must be one of {', '.join(PLATFORMS)}, got this machine, which is none")
-    try:
-        yield build_binary(host, folder)
-    except NoCompilerError:
-        yield compile_binary(binary_path(host, folder), None)
+    for in_space in LAWS:
+        try:
+            yield build_binary(host, folder, in_space)
+        except NoCompilerError:
+            yield compile_binary(binary_path(host, folder, in_space), None, in_space)
 
 
-def build_binary(platform: str, folder: Path = BINARIES) -> Path:
-    """Compile the binary for a platform with ziglang; errors as in `build_binaries`."""
+def build_binary(platform: str, folder: Path = BINARIES, in_space: bool = False) -> Path:
+    """Compile a binary for a platform with ziglang; errors as in `build_binaries`."""
     check_platform(platform)
-    output = binary_path(platform, folder)
+    output = binary_path(platform, folder, in_space)
     if platform not in UNIVERSAL:
-        return compile_binary(output, platform)
+        return compile_binary(output, platform, in_space)
     with temporary_folder("boreprop-fmu-") as drafts:
-        slices = [compile_binary(binary_path(name, drafts), name).read_bytes() for name in UNIVERSAL[platform]]
+        paths = [(name, binary_path(name, drafts, in_space)) for name in UNIVERSAL[platform]]
+        slices = [compile_binary(path, name, in_space).read_bytes() for name, path in paths]
     output.parent.mkdir(parents=True, exist_ok=True)
     with replacing(output) as draft:
         draft.write_bytes(join(slices))
     return output
 
 
-def compile_binary(output: Path, platform: str | None) -> Path:
+def compile_binary(output: Path, platform: str | None, in_space: bool = False) -> Path:
     """Compile for one processor: with ziglang for a platform, or for this machine with its own compiler."""
     output.parent.mkdir(parents=True, exist_ok=True)
-    defines = {"BOREPROP_SOURCES_DIGEST": f'"{digest()}"'}
+    defines = {"BOREPROP_SOURCES_DIGEST": f'"{digest()}"'} | ({SPACE: "1"} if in_space else {})
     return compile_library(SOURCE, output, include=INCLUDE, defines=defines, platform=platform)
 
 
@@ -109,9 +116,9 @@ def is_current(binary: bytes) -> bool:
     return set(MARK.findall(binary)) == {digest().encode()}
 
 
-def is_compiled(platform: str, folder: Path = BINARIES) -> bool:
+def is_compiled(platform: str, folder: Path = BINARIES, in_space: bool = False) -> bool:
     """Whether there is a binary for a platform, of the sources as they are."""
-    path = binary_path(platform, folder)
+    path = binary_path(platform, folder, in_space)
     return path.exists() and is_current(path.read_bytes())
 
 

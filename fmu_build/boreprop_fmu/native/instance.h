@@ -112,7 +112,7 @@ static int are_off_bottom(const double input[INPUT_COUNT]) {
     return input[IN_ACTIVE_WEIGHT_ON_BIT] == 0.0 && input[IN_RATE_OF_PENETRATION] == 0.0;
 }
 
-/* The inputs that are held along a communication step: bit and rock, and the whole weight on bit. */
+/* The inputs that are held along a communication step: bit and rock, the whole weight on bit, and the toolface. */
 static Inputs held_inputs(const Component *c) {
     Inputs inputs = {
         .lateral_steering_resistance = c->value[IN_LATERAL_STEERING_RESISTANCE],
@@ -120,6 +120,12 @@ static Inputs held_inputs(const Component *c) {
         .bit_tilt_limit = c->value[IN_BIT_TILT_LIMIT],
         .weight_on_bit = c->packed.variables.structure.axial ? c->value[IN_WEIGHT_ON_BIT] : 0.0
     };
+    if (c->packed.variables.structure.space) {
+        const int *input = c->packed.variables.input;
+        inputs.bit_walk_angle = c->value[input[IN_BIT_WALK_ANGLE]];
+        inputs.rss_toolface = c->value[input[IN_RSS_TOOLFACE]];
+        inputs.toolface_reference = c->value[input[IN_TOOLFACE_REFERENCE]];
+    }
     return inputs;
 }
 
@@ -190,7 +196,7 @@ static int check_given(const Component *c, const double input[INPUT_COUNT], char
     Problem problem;
     for (int i = 0; i < INPUT_COUNT; i++)
         if (value_count(INPUT_TABLE[i].size, c->packed.variables.structure) &&
-            !check_quantity(&INPUT_TABLE[i], 0, input[i], &problem)) {
+            !check_quantity(&INPUT_TABLE[i], 0, input[c->packed.variables.input[i]], &problem)) {
             if (i == IN_ACTIVE_WEIGHT_ON_BIT && are_off_bottom(input)) continue;
             if (i != IN_ACTIVE_WEIGHT_ON_BIT || input[i] != 0.0) return tell(&problem, why);
             return explain(why, "active_weight_on_bit: must be > 0 where rate_of_penetration is > 0, got 0.0");

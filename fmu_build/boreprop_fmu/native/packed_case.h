@@ -90,20 +90,21 @@ static int read_radius(CaseFile *file, PackedCase *packed, char why[LINE]) {
 
 /* The survey, column by column; there cannot be more stations than there is text. */
 static int read_stations(CaseFile *file, PackedCase *packed, char why[LINE]) {
-    static const Name COLUMNS_OF_SURVEY[] = {Q_MEASURED_DEPTH, Q_INCLINATION};
+    static const Name COLUMNS_OF_SURVEY[] = {Q_MEASURED_DEPTH, Q_INCLINATION, Q_AZIMUTH};
     char name[48], fault[LINE];
     long count;
     Problem problem;
     if (!read_count(file, "stations", 1, (long)strlen(file->at) / 2 + 1, &count, why)) return 0;
-    double *next = packed->stations = calloc((size_t)count, 2 * sizeof *next);
+    double *next = packed->stations = calloc((size_t)count, (DIRECTIONS + 1) * sizeof *next);
     if (!next) return explain(why, "%s: must fit into the memory, got %ld stations", file->path, count);
-    for (int column = 0; column < 2; column++)
+    for (int column = 0; column <= DIRECTIONS; column++)
         for (long k = 1; k <= count; k++) {
             snprintf(name, sizeof name, "%s[%ld]", NAME[COLUMNS_OF_SURVEY[column]], k);
             if (!read_number(file, name, next++, why)) return 0;
         }
     packed->survey.count = count;
     packed->survey.measured_depth = packed->stations, packed->survey.inclination = packed->stations + count;
+    packed->survey.azimuth = DIRECTIONS > 1 ? packed->stations + 2 * count : NULL;
     if (check_survey(&packed->survey, &problem)) return 1;
     tell(&problem, fault);
     return explain(why, "%s: %s", file->path, fault);
@@ -131,13 +132,15 @@ static int read_ground(CaseFile *file, PackedCase *packed, char why[LINE]) {
 }
 
 static int read_structure(CaseFile *file, Structure *structure, char why[LINE]) {
-    long n, sections, axial, points, layered, sensors;
+    long n, sections, axial, points, layered, sensors, space;
     if (!read_count(file, "stabilizers", 1, MAX_STABILIZERS, &n, why)) return 0;
     if (!read_count(file, "sections", 0, MAX_SECTIONS, &sections, why)) return 0;
     if (!read_count(file, "axial_load", 0, 1, &axial, why)) return 0;
     if (!read_count(file, "body_points", 0, MAX_POINTS, &points, why)) return 0;
     if (!read_count(file, "layered", 0, 1, &layered, why)) return 0;
     if (!read_count(file, "sensors", 0, MAX_SENSORS, &sensors, why)) return 0;
+    if (!read_count(file, "space", DIRECTIONS - 1, DIRECTIONS - 1, &space, why)) return 0; /* as this is compiled for */
+    structure->space = (int)space;
     structure->n = (int)n, structure->sections = (int)sections, structure->axial = (int)axial;
     structure->points = (int)points, structure->layered = (int)layered, structure->sensors = (int)sensors;
     return 1;

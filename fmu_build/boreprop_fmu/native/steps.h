@@ -12,8 +12,8 @@ static int drill_on(Component *c, double to, const double end[INPUT_COUNT], char
     double way = to - drilling_length(&c->run->drilling), force = c->value[IN_RSS_FORCE];
     double weight = c->value[IN_ACTIVE_WEIGHT_ON_BIT], end_weight = end[IN_ACTIVE_WEIGHT_ON_BIT];
     double least = LEAST_SHARE * larger(weight, end_weight);
-    int axial = c->packed.variables.structure.axial, held = 1;
-    for (int i = IN_LATERAL_STEERING_RESISTANCE; i < IN_WEIGHT_ON_BIT + axial; i++) held &= end[i] == c->value[i];
+    int axial = c->packed.variables.structure.axial, held = 1, inputs_end = c->packed.variables.first_output;
+    for (int i = IN_LATERAL_STEERING_RESISTANCE; i < inputs_end; i++) held &= end[i] == c->value[i];
     int stays = end[IN_RSS_FORCE] == force && end_weight == weight;
     weight = larger(weight, least), end_weight = larger(end_weight, least);
     Inputs inputs = held_inputs(c);
@@ -58,6 +58,9 @@ static fmi2Status check_step(
 /* Say, once, where the axis of the BHA has left the hole. The farther it is from the wall, the more of the hole is
    drilled until it is looked at again. States know nothing of that: a host that goes back and forth hears it once. */
 static void look_at_body(Component *c) {
+#ifdef SPACE /* the sag is that of a plane */
+    c->next_look = INFINITY;
+#else
     Drilling *drilling = &c->run->drilling;
     double length = drilling_length(drilling),
            reach = drilling->system.stabilizer_position[drilling->system.structure.n - 1];
@@ -68,6 +71,7 @@ static void look_at_body(Component *c) {
     if (!(fabs(sag.offset) > radius)) return;
     c->next_look = INFINITY;
     log_line(&c->callbacks, c->name, fmi2Warning, say_outside(sag, radius, length, line));
+#endif
 }
 
 /* One communication step. The length counts from an anchor, so that rounding does not add up from step to step. */

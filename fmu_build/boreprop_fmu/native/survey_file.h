@@ -1,17 +1,17 @@
-/* Surveys from plain CSV files: columns measured_depth (m) and inclination_deg, by name; others, and rows of empty cells,
-   are ignored. What core/columns.py reads in Python. */
+/* Surveys from plain CSV files: columns measured_depth (m), inclination_deg and, in space, perhaps azimuth_deg, by name;
+   others, and rows of empty cells, are ignored. What core/columns.py reads in Python. */
 #ifndef BOREPROP_SURVEY_FILE_H
 #define BOREPROP_SURVEY_FILE_H
 
 #include "files.h"
 #include "survey.h"
 
-enum { COLUMNS = 2 };
+enum { REQUIRED = 2, COLUMNS = 3 }; /* the third column may be missing, and is not looked for in the plane */
 
-static const char *const COLUMN[COLUMNS] = {"measured_depth", "inclination_deg"};
+static const char *const COLUMN[COLUMNS] = {"measured_depth", "inclination_deg", "azimuth_deg"};
 static const char PLAIN[] = "plain CSV: UTF-8, commas, decimal points, depths in m, inclinations in degrees";
-static const double LARGEST_VALUE[COLUMNS] = {INFINITY, 180.0};       /* of either sign */
-static const double UNIT[COLUMNS] = {1.0, 3.141592653589793 / 180.0}; /* m, rad */
+static const double LARGEST_VALUE[COLUMNS] = {INFINITY, 180.0, 360.0};                           /* of either sign */
+static const double UNIT[COLUMNS] = {1.0, 3.141592653589793 / 180.0, 3.141592653589793 / 180.0}; /* m, rad */
 
 /* Take one field of a row: `*from` moves behind it, `*field` is its text. Gives the character that ended it. */
 static char next_field(char **from, char **field) {
@@ -43,12 +43,12 @@ static int read_header(const char *path, char **from, int position[COLUMNS], cha
         more = next_field(from, &field) == ',';
         field += strspn(field, " \t");
         for (size_t length = strlen(field); length && strchr(" \t", field[length - 1]);) field[--length] = '\0';
-        for (int i = 0; i < COLUMNS; i++)
+        for (int i = 0; i <= DIRECTIONS; i++)
             if (position[i] < 0 && !strcmp(field, COLUMN[i])) position[i] = count;
         if (strlen(got) + SHOWN < sizeof got) strcat(strcat(got, count ? ", " : ""), quoted(field, shown));
         count++;
     }
-    for (int i = 0; i < COLUMNS; i++)
+    for (int i = 0; i < REQUIRED; i++)
         if (position[i] < 0)
             return explain(why, "%s: must have a column '%s' (%s), got [%s]", path, COLUMN[i], PLAIN, got);
     return count;
@@ -76,10 +76,17 @@ static long read_rows(
             return -1;
         }
         for (int i = 0; i < COLUMNS; i++) {
+            if (position[i] < 0) continue; /* zero */
             int number = parse_number(text[i], &columns[i][rows]) && isfinite(columns[i][rows]);
             if (number && fabs(columns[i][rows]) <= LARGEST_VALUE[i]) continue;
-            const char *must = number ? "between -180 and 180" : "a finite number";
-            explain(why, "%s:%ld: %s: must be %s, got %s", path, line, COLUMN[i], must, quoted(text[i], shown));
+            quoted(text[i], shown);
+            if (!number) explain(why, "%s:%ld: %s: must be a finite number, got %s", path, line, COLUMN[i], shown);
+            else {
+                double most = LARGEST_VALUE[i];
+                explain(
+                    why, "%s:%ld: %s: must be between %g and %g, got %s", path, line, COLUMN[i], -most, most, shown
+                );
+            }
             return -1;
         }
         for (int i = 0; i < COLUMNS; i++) columns[i][rows] *= UNIT[i];
@@ -115,6 +122,7 @@ static double *read_survey(const char *path, Survey *survey, char why[LINE]) {
     }
     if (rows >= 0) {
         survey->count = rows, survey->measured_depth = columns[0], survey->inclination = columns[1];
+        survey->azimuth = DIRECTIONS > 1 ? columns[2] : NULL;
         if (!check_survey(survey, &problem)) {
             tell(&problem, fault);
             explain(why, "%s: %s", path, fault);

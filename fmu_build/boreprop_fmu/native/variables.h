@@ -16,13 +16,14 @@ typedef struct {
 
 enum { MOST_VARIABLES = INPUT_COUNT + MOST_OUTPUTS + MOST_PARAMETERS + 1 };
 
-/* All variables by value reference: the inputs, numbered as in INPUT_TABLE, the outputs, the parameters of the kernel,
-   and last the survey file. */
+/* All variables by value reference: the inputs in the order of INPUT_TABLE, of which all have their number there up to the
+   first that may be missing, the outputs, the parameters of the kernel, and last the survey file. */
 typedef struct {
     Structure structure;
     int count;
     /* value references */
     int first_output, first_parameter, first_clearance, eta_pi, relative_tolerance, survey_file;
+    int input[INPUT_COUNT]; /* by number in INPUT_TABLE, of those that there are */
     Variable at[MOST_VARIABLES];
 } Variables;
 
@@ -43,7 +44,12 @@ static void add_variables(Variables *all, int place, Name quantity, Size size, R
 /* The variables of a drilling system of this structure. */
 static void list_variables(Variables *all, Structure structure) {
     all->structure = structure, all->count = 0;
-    for (int k = 0; k < INPUT_COUNT; k++) add_variables(all, k, INPUT_TABLE[k].name, INPUT_TABLE[k].size, INPUT, REAL);
+    for (int k = 0; k < INPUT_COUNT; k++) {
+        all->input[k] = all->count;
+        add_variables(
+            all, k, INPUT_TABLE[k].name, INPUT_TABLE[k].size, INPUT, INPUT_TABLE[k].is_whole ? INTEGER : REAL
+        );
+    }
     all->first_output = all->count;
     for (int k = 0; k < OUTPUT_COUNT; k++) {
         if (k == OUT_ETA_PI) all->eta_pi = all->count;

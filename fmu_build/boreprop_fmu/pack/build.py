@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from boreprop.case.case import Case
-from boreprop.core.system import check_in_plane
 from boreprop.errors import InputError
 
 from ..native.binaries import BINARIES
@@ -52,10 +51,8 @@ def build_fmu(
     Raises
     ------
     InputError
-        If there is no such runtime, the name is not one of C, a binary is missing for a platform that is named, or was
-        compiled from other sources.
-    ParameterError
-        If the bit walks.
+        If there is no such runtime, a case in space is to run in Python, the name is not one of C, a binary is missing
+        for a platform that is named, or was compiled from other sources.
     OSError
         If the file cannot be written; it is unchanged then.
     """
@@ -67,8 +64,11 @@ def build_fmu(
         raise InputError(f"platforms: must be left out for the runtime python, got {', '.join(platforms) or 'none'}")
     if runtime == "python" and not case.bha.structure.is_of_the_paper:
         raise InputError(f"runtime: must be native for a BHA with {case.bha.structure.beyond_the_paper}, got 'python'")
-    check_in_plane(case.bit)
-    if runtime == "native" or (runtime == "auto" and (platforms is not None or is_native_here(binaries))):
+    native_here = platforms is not None or is_native_here(binaries, case.in_space)
+    if case.in_space and (runtime == "python" or (runtime == "auto" and not native_here)):
+        remedy = "use --runtime native; where a binary is missing, run: python -m boreprop_fmu.native"
+        raise InputError(f"runtime: must be native for a case in space, got {runtime!r}: {remedy}")
+    if runtime == "native" or (runtime == "auto" and native_here):
         write_archive(pack_native(case, name, binaries, platforms), output)
     else:
         write_archive(pack_python(case, name), output)

@@ -144,7 +144,7 @@ def _add_variable(
         if display := UNITS[quantity.unit].ascii:
             typed.set("displayUnit", display)
         typed.set("nominal", repr(quantity.nominal))
-    number = repr if quantity.kind == "Real" else "{:d}".format
+    number = repr if quantity.kind == "Real" else "{:.0f}".format
     least = _least(quantity, int(name.rpartition("[")[2].rstrip("]")) if "[" in name else 1)
     if isfinite(least):
         typed.set("min", number(least))

@@ -15,7 +15,7 @@ from boreprop.kernel.compiler import FOLDER as KERNEL
 from boreprop.kernel.compiler import host_platform
 from boreprop.kernel.generate import quantities_digest
 
-from ..native.binaries import NATIVE, PLATFORMS, SOURCE, binary_path, check_platform, is_current
+from ..native.binaries import NATIVE, PLATFORMS, SOURCE, SPACE, binary_path, check_platform, is_current
 from .archive import identify
 from .contents import describe, pack_manual, start_values
 
@@ -29,7 +29,7 @@ PREFIX = """\
 
 def pack_native(case: Case, identifier: str, binaries: Path, platforms: Sequence[str] | None) -> dict[str, bytes]:
     """The files of an FMU that needs no Python: path in the FMU → content. Parameters are those of `build_fmu`."""
-    code = pack_sources(identifier)
+    code = pack_sources(identifier, case.in_space)
 
     def numbers(guid: str) -> dict[str, bytes]:
         description = describe(case, identifier, guid, native=True, source_files=[SOURCE.name])
@@ -39,15 +39,16 @@ def pack_native(case: Case, identifier: str, binaries: Path, platforms: Sequence
     return {
         **numbers(guid),
         **code,
-        **pack_binaries(identifier, binaries, platforms),
+        **pack_binaries(identifier, binaries, platforms, case.in_space),
         **pack_manual(case, identifier, "native"),
     }
 
 
-def pack_sources(identifier: str) -> dict[str, bytes]:
+def pack_sources(identifier: str, in_space: bool) -> dict[str, bytes]:
     """The C code. Its functions are called after the FMU, so that several can be linked into one program."""
     code = {path.name: path.read_bytes() for folder in (NATIVE, KERNEL) for path in folder.glob("*.h")}
-    code[SOURCE.name] = PREFIX.format(identifier=identifier).encode() + SOURCE.read_bytes()
+    law = f"#define {SPACE}\n" if in_space else ""
+    code[SOURCE.name] = (PREFIX.format(identifier=identifier) + law).encode() + SOURCE.read_bytes()
     return {f"sources/{name}": content for name, content in code.items()}
 
 
@@ -55,12 +56,14 @@ def case_text(case: Case, guid: str) -> bytes:
     """The case as lines "name value", in SI units, in the order in which packed_case.h reads them."""
     structure, start, survey = case.structure, start_values(case), case.survey
     lines: dict[str, object] = {"guid": guid, "quantities": quantities_digest(), **structure._asdict()}
-    del lines["space"]  # an FMU drills in the plane
     names = scalar_names(INPUTS + PARAMETERS, structure)
     lines |= {name: float(start[name]) for name in names if not isinstance(start[name], str)}
     lines["bit_diameter"] = float(case.bit_diameter)
     lines["stations"] = len(survey.measured_depth)
-    for column, values in (("measured_depth", survey.measured_depth), ("inclination", survey.inclination)):
+    columns = {"measured_depth": survey.measured_depth, "inclination": survey.inclination}
+    if structure.space:
+        columns["azimuth"] = survey.azimuth or (0.0,) * len(survey.measured_depth)
+    for column, values in columns.items():
         lines |= {f"{column}[{k}]": float(value) for k, value in enumerate(values, start=1)}
     ground = case.ground.numbers if case.ground else []
     lines["ground"] = len(ground)
@@ -68,14 +71,14 @@ def case_text(case: Case, guid: str) -> bytes:
     return "".join(f"{name} {value}\n" for name, value in lines.items()).encode()
 
 
-def pack_binaries(identifier: str, folder: Path, platforms: Sequence[str] | None) -> dict[str, bytes]:
+def pack_binaries(identifier: str, folder: Path, platforms: Sequence[str] | None, in_space: bool) -> dict[str, bytes]:
     """The binaries for some platforms, or all that there are, under the FMU's name; errors as in `build_fmu`."""
     packed = {}
     if platforms is None:
-        platforms = [platform for platform in PLATFORMS if binary_path(platform, folder).exists()]
+        platforms = [platform for platform in PLATFORMS if binary_path(platform, folder, in_space).exists()]
     for platform in platforms:
         check_platform(platform)
-        path = binary_path(platform, folder)
+        path = binary_path(platform, folder, in_space)
         content = path.read_bytes() if path.exists() else b""
         if not is_current(content):
             got = "one of others; compile it again:" if content else "none; compile it:"
@@ -87,7 +90,7 @@ def pack_binaries(identifier: str, folder: Path, platforms: Sequence[str] | None
     return packed
 
 
-def is_native_here(folder: Path) -> bool:
-    """Whether there is a binary for this machine."""
+def is_native_here(folder: Path, in_space: bool) -> bool:
+    """Whether there is a binary for this machine, in the plane or in space."""
     platform = host_platform()
-    return platform is not None and binary_path(platform, folder).exists()
+    return platform is not None and binary_path(platform, folder, in_space).exists()

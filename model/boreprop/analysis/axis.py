@@ -31,12 +31,34 @@ def axis_ripple(
         Lengths at whole multiples of a fortieth of the width, and the ripple there, m, shape (k,) each. They are those
         from which the hole goes on for `AXIS_REACH` widths to both sides; there may be none.
     """
+    at, away, forward = axis_away(length, position, width)
+    return at, away[:, 0] * forward[:, 1] - away[:, 1] * forward[:, 0]
+
+
+def axis_away(
+    length: NDArray[np.float64], position: NDArray[np.float64], width: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """How far the axis of a hole lies from its smooth trend, as a vector, in any number d of dimensions.
+
+    Parameters
+    ----------
+    length, width
+        As in `axis_ripple`.
+    position
+        Positions of the axis, m, shape (N, d).
+
+    Returns
+    -------
+    length, away, forward
+        Lengths as in `axis_ripple`, (k,), the way from the trend to the axis there, m, (k, d), and the direction of the
+        trend, a unit vector, (k, d).
+    """
     spacing = width / AXIS_POINTS
     first, last = np.ceil(length[0] / spacing), np.floor(length[-1] / spacing)
     at = spacing * np.arange(first, last + 1)
     u = np.arange(-AXIS_REACH * AXIS_POINTS, AXIS_REACH * AXIS_POINTS + 1) / AXIS_POINTS
     if len(at) < len(u):
-        return np.empty(0), np.empty(0)
+        return np.empty(0), np.empty((0, position.shape[1])), np.empty((0, position.shape[1]))
     gaussian = np.exp(-(u**2) / 2)
     weights = gaussian * (np.sum(gaussian * u**4) - np.sum(gaussian * u**2) * u**2)  # now Σ weights·u² = 0
     weights /= weights.sum()
@@ -46,4 +68,4 @@ def axis_ripple(
     away = axis[within] - trend
     forward = np.gradient(trend, axis=0) if len(trend) > 1 else axis[[-1]] - axis[[0]]
     forward /= np.linalg.norm(forward, axis=1)[:, None]
-    return at[within], away[:, 0] * forward[:, 1] - away[:, 1] * forward[:, 0]
+    return at[within], away, forward

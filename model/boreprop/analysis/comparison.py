@@ -10,6 +10,7 @@ from ..errors import InputError
 from ..run.completion import case_of
 from ..run.trajectory import Trajectory
 from .hole import chord_inclination, hole_of
+from .hole_in_space import chord_direction, hole_in_space, inclination_of, is_in_space
 from .rippling import find_rippling
 from .summary import averaging_length
 
@@ -77,7 +78,11 @@ def compare(run: Trajectory, survey: Survey) -> Comparison:
             f"got {depth[0]:g} to {depth[-1]:g} m"
         )
     depth, measured = depth[inside], inclination[inside]
-    predicted = chord_inclination(hole_of(run, case.survey, 2 * over), depth - zero + over / 2, over)
+    middle = depth - zero + over / 2
+    if is_in_space(run):
+        predicted = inclination_of(chord_direction(hole_in_space(run, case.survey, 2 * over), middle, over))
+    else:
+        predicted = chord_inclination(hole_of(run, case.survey, 2 * over), middle, over)
     apart = np.diff(depth)
     return Comparison(
         averaging_length=over,

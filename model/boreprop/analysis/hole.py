@@ -26,7 +26,7 @@ class Hole(Protocol):
     """Anything that has a position at each length along it."""
 
     def at(self, length: Floats) -> Floats:
-        """Positions (x, z) at the given lengths, m, shape (..., 2)."""
+        """Positions (x, z) at the given lengths, m, shape (..., 2); in space north, east and down, shape (..., 3)."""
 
 
 @dataclass(frozen=True)
@@ -107,11 +107,11 @@ class HoleAxis:
     """The axis of a hole, straight between points."""
 
     length: Floats  # of each point, increasing, m, (N,)
-    position: Floats  # x and z, m, (N, 2)
+    position: Floats  # x and z, m, (N, 2); in space north, east and down, (N, 3)
 
     def at(self, length: Floats) -> Floats:
-        """Positions (x, z) at the given lengths, m, shape (..., 2)."""
-        return np.stack([np.interp(length, self.length, self.position[:, axis]) for axis in (0, 1)], axis=-1)
+        """Positions at the given lengths, m, shape (..., 2) or, in space, (..., 3)."""
+        return np.stack([np.interp(length, self.length, along) for along in self.position.T], axis=-1)
 
     def followed_by(self, length: Floats, position: Floats) -> "HoleAxis":
         """The hole extended through further points, without those that are not ahead of its end."""

@@ -9,48 +9,33 @@ every wave of a ripple changes the mode of the BHA. A wave that changes no mode 
 
 The finding holds for the inclination at which the run ends: as the inclination changes, gravity changes ripples and may
 end them.
+
+In space the direction of the hole swings, to two sides, and a wave may wind: then the wavelength is the pitch, and the
+amplitude that to the side where it is largest. What a planar hole does by the walls that stabilizers touch, it does by
+their sides, too: a wave in which the force of a wall goes round changes modes.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from itertools import groupby
 from math import exp, inf, log, nan
-from statistics import median
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Floats
+from ..arrays import Complexes, Floats
 from ..core.system import BottomHoleAssembly
 from ..errors import InputError
 from ..run.ground import STEADY
 from ..run.trajectory import Trajectory
-from .waves import (
-    FEWEST_ROWS,
-    FEWEST_WAVES,
-    LastWaves,
-    large_since,
-    likeness,
-    mean_over,
-    slope,
-    wavelength_in_rows,
-    without_even_trend,
-)
+from .ellipse import Ellipse, ellipse_of, sideways
+from .hole_in_space import is_in_space, positions_in_space
+from .search import AT_THE_END, Found, State, search
+from .space import direction_of, sides_of
+from .waves import FEWEST_ROWS, FEWEST_WAVES, LastWaves, large_since, mean_over, slope
 
 LONGEST = 6.0  # half lengths of the BHA: the longest wave that is searched for
-SHORTER = 4.0  # each window is shorter than the last by this factor, so that small short waves on long ones are found
-SMALLEST_AMPLITUDE = np.radians(0.001)  # far above the error that the integrator leaves in a straight hole, 1e-10°
-ALIKE = 0.5  # the autocorrelation at one wavelength from which a signal counts as a wave
-ALIKE_SWITCHING = 0.2  # the same if each wave changes the mode, which noise does not: chaotic ripples have 0.25 to 0.6
-NOISE = 4.5  # standard deviations, 1/√rows, of the autocorrelation of white noise: noise reaches this at no lag tried
-STILL_ALIKE = 0.8  # times ALIKE: the autocorrelation that the last waves must have, or the wave has ended
-AT_THE_END = 4  # waves at the end that decide whether a wave is still there, its size and whether it changes modes
-MOST_WAVES = 10  # waves at the end from which the growth is determined, …
-MOST_OF_LONGEST = 2.0  # … or as many as fit into this many of the longest waves, if more: ripples beat
-FALLING = 0.03  # loss of size per wave: a wave that falls faster, to half within 23 waves, is dying
-FALLING_IN_ONE_MODE = 1e-4  # the same for a wave that changes no mode, whose exponential decay is this well determined
 HALF = 0.5  # of its size at the end: a wave counts as present since it has had this size
 PHASES = 64  # points of a wave at which its mode is determined
 
@@ -64,16 +49,6 @@ class Stretch(NamedTuple):
     contact: tuple[int, ...]
     saturation: int
     share: float
-
-
-class State(StrEnum):
-    """What becomes of a wave at the end of a run."""
-
-    NONE = "none"  # there is no wave
-    DYING = "dying"
-    LASTING = "lasting"
-    GROWING = "growing"
-    STEERED = "steered"  # there is a wave, but force or weight change too often to say whether it would last
 
 
 @dataclass(frozen=True)
@@ -103,7 +78,9 @@ class Rippling:
     modes
         The modes that one wave goes through, beginning where the inclination rises through its trend: the wall that
         each stabilizer touches (1 lower, −1 upper, 0 none) and the saturation of the bit tilt (1, −1, 0). At each phase
-        it is the mode of most of the last waves.
+        it is the mode of most of the last waves. In space it is empty.
+    ellipse
+        In space, the ellipse in which the hole goes through its last waves; None in a plane.
     """
 
     state: State = State.NONE
@@ -116,6 +93,7 @@ class Rippling:
     switching: bool | None = None
     axis_amplitude: float = nan
     modes: tuple[Stretch, ...] = ()
+    ellipse: Ellipse | None = None
 
     @property
     def ripples(self) -> bool:
@@ -130,30 +108,6 @@ class Rippling:
     def growth_over(self, length: float) -> float:
         """The relative change of the amplitude over a drilled length, m: 0.1 is growth by a tenth."""
         return exp(min(self.growth * length, 700.0)) - 1.0  # of 710 the exponential would overflow
-
-
-@dataclass(frozen=True)
-class _Rows:
-    """Some rows of a run: drilled length, m, inclination, rad, and modes, whole numbers, shape (rows, k)."""
-
-    length: Floats
-    inclination: Floats
-    modes: NDArray[np.int_] | None
-
-    def where(self, kept: NDArray[np.bool_] | slice) -> "_Rows":
-        """The rows that a mask or a slice selects."""
-        return _Rows(self.length[kept], self.inclination[kept], None if self.modes is None else self.modes[kept])
-
-
-class _Found(NamedTuple):
-    """A wave that was found, the last of its waves, and the rows that end with them; the defaults if there is none."""
-
-    rippling: Rippling = Rippling()
-    waves: LastWaves | None = None
-    rows: _Rows | None = None
-
-
-_NOTHING = _Found()
 
 
 def longest_wave(bha: BottomHoleAssembly) -> float:
@@ -222,7 +176,7 @@ def find_rippling(
     if np.shape(run) != np.shape(inclination):
         shapes = f"{np.shape(inclination)} for {np.shape(run)}"
         raise InputError(f"inclination: must have a value for each drilled length, got the shapes {shapes}")
-    return _with_course(_find(run, inclination, inf if longest is None else longest, modes, inputs))
+    return _with_course(search(run, inclination, inf if longest is None else longest, modes, inputs))
 
 
 def last_wave(run: Trajectory) -> Rippling:
@@ -230,23 +184,33 @@ def last_wave(run: Trajectory) -> Rippling:
 
     Studies do not report these, and they take longest to compute.
     """
-    return _wave_of(run, None).rippling
+    return _plain(_wave_of(run, None))
 
 
-def _wave_of(run: Trajectory, longest: float | None) -> _Found:
+def _plain(found: Found) -> Rippling:
+    """The wave that was found, without its details."""
+    return Rippling(found.state, found.wavelength, found.amplitude, found.growth, switching=found.switching)
+
+
+def _wave_of(run: Trajectory, longest: float | None) -> Found:
     """The wave with which a run ends, with its last waves and their rows."""
     if longest is None:
         longest = longest_wave(run.case.bha) if run.case else inf
-    inputs = [run[name] for name in STEADY if name in run.columns]
-    return _find(run["drilled_length"], run["borehole_inclination"], longest, modes_of(run), inputs)
+    inputs = [run[name] for name in (*STEADY, "rss_toolface") if name in run.columns]
+    if is_in_space(run):
+        sides = sides_of(run) if "bit_tilt_saturation" in run else None  # a measured hole has none
+        return search(run["drilled_length"], direction_of(run), longest, sides, inputs)
+    return search(run["drilled_length"], run["borehole_inclination"], longest, modes_of(run), inputs)
 
 
-def _with_details(run: Trajectory, found: _Found) -> Rippling:
-    """The wave that was found, with the fields since, spread, axis_amplitude and modes."""
+def _with_details(run: Trajectory, found: Found) -> Rippling:
+    """The wave that was found, with the fields since, spread, axis_amplitude and modes; in space with its ellipse."""
+    if is_in_space(run):
+        return _with_ellipse(run, found)
     length = run["drilled_length"]
     position = np.column_stack((run["displacement"], run["true_vertical_depth"]))
     if found.waves is None:
-        return found.rippling
+        return _plain(found)
     starts = found.waves.starts()
     return replace(
         _with_course(found),
@@ -256,117 +220,49 @@ def _with_details(run: Trajectory, found: _Found) -> Rippling:
     )
 
 
+def _with_ellipse(run: Trajectory, found: Found) -> Rippling:
+    """The wave that was found in space, with all fields but modes."""
+    if found.waves is None:
+        return _plain(found)
+    length = run["drilled_length"]
+    moved = np.append(np.diff(length) > 0, True)
+    starts = found.waves.along(found.waves.axis).starts()
+    hole = sideways(length[moved], positions_in_space(run)[moved], found.wavelength)
+    inside, inclination = mean_over(length[moved], run["borehole_inclination"][moved], found.wavelength)
+    late = length[moved][inside] >= found.waves.x[0]
+    ellipse = ellipse_of(hole, found.wavelength) if hole else None
+    return replace(
+        _with_course(found),
+        wavelength=ellipse.pitch if ellipse and ellipse.pitch > 0 else found.wavelength,
+        spread=float(np.std(np.diff(starts))) if len(starts) > 1 else nan,
+        inclination_drift=slope(length[moved][inside][late], inclination[late]),
+        axis_amplitude=_height(found.waves, hole.length, hole.away) / 2 if hole else nan,
+        ellipse=ellipse,
+    )
+
+
+def _height(waves: LastWaves, x: Floats, away: Complexes) -> float:
+    """The height of the mean of the last waves of the axis, to the side to which it is largest, m."""
+    axis = replace(waves, deviation=np.interp(waves.x, x, away))
+    return axis.along(axis.axis).height()
+
+
 def modes_of(run: Trajectory) -> NDArray[np.int_]:
     """Contact of each non-ideal stabilizer and saturation of the bit tilt, whole numbers, shape (rows, n)."""
     return np.column_stack((run.stack("stabilizer_contact"), run["bit_tilt_saturation"])).astype(int)
 
 
-def _find(
-    length: Floats,
-    inclination: Floats,
-    longest: float,
-    modes: NDArray[np.int_] | None,
-    inputs: Sequence[Floats],
-) -> _Found:
-    """The wave at the end of a run, see `find_rippling`."""
-    changed = np.zeros(max(len(length) - 1, 0), dtype=bool)
-    for values in inputs:
-        changed |= values[1:] != values[:-1]
-    moved = np.ones(len(length), dtype=bool)  # of several rows at one length, only the last one is used
-    np.greater(length[1:], length[:-1], out=moved[:-1])
-    steady = int(np.count_nonzero(moved[: int(np.flatnonzero(changed)[-1]) + 1])) if changed.any() else 0
-    rows = _Rows(length, inclination, modes) if moved.all() else _Rows(length, inclination, modes).where(moved)
-    found = _search(rows.where(slice(steady, None)), longest)
-    if found.waves or not steady:
-        return found
-    found = _search(rows, longest)
-    rippling = replace(found.rippling, state=State.STEERED)
-    return found._replace(rippling=rippling) if found.rippling.ripples else _NOTHING
-
-
-def _search(rows: _Rows, longest: float) -> _Found:
-    """The wave in windows at the end of some rows: the first holds five of the longest waves, the last few rows."""
-    found, fewest = [_NOTHING], int(FEWEST_WAVES * FEWEST_ROWS)
-    if len(rows.length) < fewest:
-        return _NOTHING
-    spacing = (rows.length[-1] - rows.length[0]) / (len(rows.length) - 1)
-    count = int(min(len(rows.length), FEWEST_WAVES * longest / spacing + 1))
-    followed = MOST_OF_LONGEST * count * spacing / FEWEST_WAVES
-    while count >= fewest:
-        found.append(_wave(rows, spacing, count, followed))
-        count = int(count / SHORTER)
-    return max(found, key=_weight)
-
-
-def _with_course(found: _Found) -> Rippling:
-    """The wave that was found, with the fields since and inclination_drift."""
-    if found.waves is None or found.rows is None:
-        return found.rippling
-    few = 1 if found.rippling.state is State.GROWING else AT_THE_END  # waves: of several that grow one is too small
+def _with_course(found: Found) -> Rippling:
+    """The wave that was found, with the fields since and inclination_drift, which in space is nan."""
+    if found.waves is None or found.length is None or found.direction is None:
+        return _plain(found)
+    few = 1 if found.state is State.GROWING else AT_THE_END  # waves: of several that grow one is too small
     least = HALF * float(found.waves.sizes[-few:].min())
     return replace(
-        found.rippling,
-        since=large_since(found.rows.length, found.rows.inclination, found.waves.wavelength, least),
-        inclination_drift=slope(found.waves.x, found.waves.trend),
+        _plain(found),
+        since=large_since(found.length, found.direction, found.wavelength, least),
+        inclination_drift=nan if np.iscomplexobj(found.direction) else slope(found.waves.x, found.waves.trend),
     )
-
-
-def _weight(found: _Found) -> tuple[bool, bool, float]:
-    """A sort key: a wave that lasts comes before one that dies, and a large one before a small one."""
-    there = found.waves is not None
-    return found.rippling.ripples, there, found.rippling.amplitude if there else 0.0
-
-
-def _wave(rows: _Rows, spacing: float, count: int, followed: float) -> _Found:
-    """The wave in the last `count` rows, followed back over `followed` m, or over ten waves if that is more."""
-    length, inclination = rows.length, rows.inclination
-    grid = length[-1] - spacing * np.arange(count)[::-1]
-    signal = without_even_trend(np.interp(grid, length, inclination))
-    if np.abs(signal).max() < SMALLEST_AMPLITUDE:
-        return _NOTHING
-    period, alike = wavelength_in_rows(signal)
-    enough = max(ALIKE, NOISE / np.sqrt(count - period)) if alike else inf
-    if alike < enough and (rows.modes is None or alike < ALIKE_SWITCHING):
-        return _NOTHING
-    wavelength = float(period * spacing)
-    waves = LastWaves.of(length, inclination, wavelength, max(MOST_WAVES, int(followed / wavelength)))
-    if waves.count < FEWEST_WAVES - 1 or waves.sizes[-1] <= 0:
-        return _NOTHING
-    irregular = max(likeness(waves.deviation, period), ALIKE_SWITCHING)
-    amplitude = waves.height() / 2 / irregular**0.5  # the mean of waves that differ is lower than each of them
-    if amplitude < SMALLEST_AMPLITUDE:
-        return _NOTHING
-    switching = _switching(rows, waves)
-    if not switching and (alike < enough or not _still_there(waves, period)):
-        return _NOTHING
-    growth, error = waves.growth()
-    limit = FALLING_IN_ONE_MODE if switching is False else FALLING
-    rippling = Rippling(
-        State.DYING if growth + error < -limit else State.GROWING if growth - error > limit else State.LASTING,
-        wavelength,
-        amplitude,
-        growth / wavelength,
-        switching=switching,
-    )
-    return _Found(rippling, waves, rows)
-
-
-def _switching(rows: _Rows, waves: LastWaves) -> bool | None:
-    """Whether a contact or the saturation changes in each of the last waves; None without modes."""
-    if rows.modes is None:
-        return None
-    late = int(np.searchsorted(waves.wave[1:], waves.count - AT_THE_END))
-    first = int(np.searchsorted(rows.length, waves.x[late]))
-    modes = rows.modes[first : first + len(waves.x) - late]
-    changes = np.bincount(waves.wave[late + 1 :], (modes[1:] != modes[:-1]).any(axis=1), waves.count)
-    return bool(median(changes[-AT_THE_END:].tolist()) >= 1)
-
-
-def _still_there(waves: LastWaves, period: float) -> bool:
-    """Whether the last four waves, taken alone, still count as a wave."""
-    late = waves.deviation[waves.place >= waves.count - AT_THE_END]
-    enough = STILL_ALIKE * max(ALIKE, NOISE / max(len(late) - period, 1.0) ** 0.5)
-    return bool(likeness(late, period) >= enough)
 
 
 def _axis_amplitude(length: Floats, position: Floats, waves: LastWaves) -> float:

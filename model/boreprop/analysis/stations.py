@@ -9,7 +9,8 @@ from ..core.checks import check_number
 from ..run.completion import case_of
 from ..run.trajectory import Trajectory
 from .hole import SurveyedHole, chord_inclination, hole_of
-from .plan import Deviation, deviation_from
+from .hole_in_space import angle_between, azimuth_of, chord_direction, hole_in_space, inclination_of, is_in_space
+from .plan import Deviation, check_in_plane_of_plan, deviation_from
 from .rippling import find_rippling
 from .summary import averaging_length
 
@@ -31,9 +32,14 @@ class Stations:
     true_vertical_depth, displacement
         Vertical and horizontal distance from the bit at the start of the run, m.
     dogleg_severity
-        Magnitude of the curvature since the station before, rad/m, at least over the averaging length.
+        Magnitude of the curvature since the station before, rad/m, at least over the averaging length; in space the
+        angle between the directions there, as in the method of minimum curvature, over the length.
     deviation
         How far the hole is off its plan; None without a plan.
+    azimuth
+        Of a run in space, mean azimuth, rad, from north over east, nan where the hole is vertical; None in the plane.
+    north, east
+        Of a run in space, m from the bit at the start of the run; None in the plane.
     """
 
     averaging_length: float
@@ -43,6 +49,9 @@ class Stations:
     displacement: Floats
     dogleg_severity: Floats
     deviation: Deviation | None = None
+    azimuth: Floats | None = None
+    north: Floats | None = None
+    east: Floats | None = None
 
 
 def list_stations(
@@ -71,16 +80,20 @@ def list_stations(
         If the run lacks its case or a column.
     """
     check_number("spacing", spacing, above=0.0)
+    if plan is not None:
+        check_in_plane_of_plan(run)
     case = case_of(run)
     over = averaging_length(case.bha, find_rippling(run)) if averaged_over is None else averaged_over
-    hole = hole_of(run, case.survey, 2 * over)
     zero = case.survey.measured_depth[-1]
     drilled = run["drilled_length"]
     depth = station_depths(zero + float(drilled[0]), zero + float(drilled[-1]), spacing)
     length = depth - zero
-    position, inclination = hole.at(length), chord_inclination(hole, length, over)
     before = np.minimum(np.append(-np.inf, length[:-1]), length - over)
     before[0] = length[0] - over
+    if is_in_space(run):
+        return _in_space(run, over, depth, length, before)
+    hole = hole_of(run, case.survey, 2 * over)
+    position, inclination = hole.at(length), chord_inclination(hole, length, over)
     turn = inclination - chord_inclination(hole, before, over)
     return Stations(
         averaging_length=over,
@@ -90,6 +103,23 @@ def list_stations(
         displacement=position[:, 0],
         dogleg_severity=np.abs(turn) / (length - before),
         deviation=None if plan is None else deviation_from(plan, hole, length, over),
+    )
+
+
+def _in_space(run: Trajectory, over: float, depth: Floats, length: Floats, before: Floats) -> Stations:
+    """A run in space at stations, with the lengths from which the dogleg severity of each is taken."""
+    hole = hole_in_space(run, case_of(run).survey, 2 * over)
+    position, direction = hole.at(length), chord_direction(hole, length, over)
+    return Stations(
+        averaging_length=over,
+        measured_depth=depth,
+        inclination=inclination_of(direction),
+        true_vertical_depth=position[:, 2],
+        displacement=np.hypot(position[:, 0], position[:, 1]),
+        dogleg_severity=angle_between(chord_direction(hole, before, over), direction) / (length - before),
+        azimuth=azimuth_of(direction),
+        north=position[:, 0],
+        east=position[:, 1],
     )
 
 

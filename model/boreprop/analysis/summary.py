@@ -16,10 +16,13 @@ from ..run.completion import case_of
 from ..run.trajectory import Trajectory
 from ..units import BUILD_LENGTH
 from .hole import bit_positions, hole_of
-from .rippling import Rippling, State, find_rippling, visible_waves
+from .hole_in_space import azimuth_of, chord_direction, hole_in_space, inclination_of, is_in_space
+from .rippling import Rippling, find_rippling, visible_waves
 from .sag import Sag, largest_sag
+from .search import State
 
 SHORT_WAVE, LONG_WAVE = 0.25, 1.8  # half lengths of the BHA: the usual wavelengths of ripples lie in between
+NO_AZIMUTH = 0.0174533  # rad, a degree: the mean azimuth of a hole closer to the vertical says little
 
 
 @dataclass(frozen=True)
@@ -53,9 +56,12 @@ class Summary:
     drilled_length
         The length that was drilled, m.
     averaging_length
-        The length of hole over which each inclination is averaged, m.
+        The length of hole over which each inclination and azimuth is averaged, m.
     start_inclination, end_inclination
         Mean inclination at the first and at the last row, rad.
+    start_azimuth, end_azimuth
+        Of a run in space, the mean azimuth there, rad, from north over east; None in the plane, nan in a hole that is
+        within `NO_AZIMUTH` of the vertical.
     build_rate
         Mean build rate over the whole run, rad/m; positive builds inclination.
     largest_build_rate
@@ -93,6 +99,8 @@ class Summary:
     stopped: str | None = None
     sag: Sag | None = None
     body_contact: BodyContact | None = None
+    start_azimuth: float | None = None
+    end_azimuth: float | None = None
 
 
 def summarize(trajectory: Trajectory) -> Summary:
@@ -122,7 +130,7 @@ def summarize(trajectory: Trajectory) -> Summary:
     """
     hidden = hidden_waves(trajectory["drilled_length"], case_of(trajectory).bha)
     sag = None
-    if not case_of(trajectory).bha.body_point_positions:
+    if not case_of(trajectory).bha.body_point_positions and not is_in_space(trajectory):
         with suppress(MissingColumn):  # the other figures need fewer columns
             sag = largest_sag(trajectory)
     return replace(sum_up(trajectory, find_rippling(trajectory)), hidden_waves=hidden, sag=sag)
@@ -143,6 +151,7 @@ def sum_up(trajectory: Trajectory, rippling: Rippling) -> Summary:
     drilled_by_then = slice(int(np.searchsorted(later, length[-1], side="right")))
     rates = (np.interp(later[drilled_by_then], length, inclination) - inclination[drilled_by_then]) / BUILD_LENGTH
     drilled = float(length[-1] - length[0])
+    start_azimuth, end_azimuth = _azimuths(trajectory, over)
     return Summary(
         drilled_length=drilled,
         averaging_length=over,
@@ -156,7 +165,19 @@ def sum_up(trajectory: Trajectory, rippling: Rippling) -> Summary:
         rippling=rippling,
         stopped=trajectory.stopped,
         body_contact=_body_contact(trajectory, share),
+        start_azimuth=start_azimuth,
+        end_azimuth=end_azimuth,
     )
+
+
+def _azimuths(run: Trajectory, over: float) -> tuple[float | None, float | None]:
+    """The mean azimuths at the first and the last row of a run in space; None in the plane."""
+    if not is_in_space(run):
+        return None, None
+    hole, ends = hole_in_space(run, case_of(run).survey, over), run["drilled_length"][[0, -1]]
+    direction = chord_direction(hole, ends, over)
+    azimuth = np.where(np.sin(inclination_of(direction)) > np.sin(NO_AZIMUTH), azimuth_of(direction), np.nan)
+    return float(azimuth[0]), float(azimuth[1])
 
 
 def _body_contact(run: Trajectory, share: Callable[[NDArray[np.bool_]], float]) -> BodyContact | None:
@@ -194,8 +215,11 @@ def hidden_waves(length: Floats, bha: BottomHoleAssembly) -> str:
 def mean_inclination(run: Trajectory, survey: Survey, over: float) -> Floats:
     """The inclination at each row of a run of the chord to the hole `over` metres behind, rad, shape (rows,).
 
-    The run starts at the end of the survey; above the first station of the survey the hole is straight.
+    The run starts at the end of the survey; above the first station of the survey the hole is straight. In space
+    inclinations have no sign.
     """
+    if is_in_space(run):
+        return inclination_of(chord_direction(hole_in_space(run, survey, over), run["drilled_length"], over))
     behind = hole_of(run, survey, over).at(run["drilled_length"] - over)
     inclination: Floats = np.arctan2(*(bit_positions(run) - behind).T)
     turns = np.abs(inclination[1:] - inclination[:-1])

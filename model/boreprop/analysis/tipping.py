@@ -28,7 +28,8 @@ from ..errors import CannotContinue, ParameterError
 from ..run.engines import Engine, engine, held, start
 from ..run.trajectory import Stopped, Trajectory
 from ..run.workers import WorkerLost, work
-from .rippling import Rippling, State, find_rippling, last_wave
+from .rippling import Rippling, find_rippling, last_wave
+from .search import State
 from .stability.contacts import can_touch, first_that_touches
 from .stability.roots import critical_eta_pi
 from .study.design import vary

@@ -1,7 +1,7 @@
 """Waves at the end of a signal: their length, their similarity, their size and its growth.
 
-A signal is an array of rows. Where a function takes `x`, the rows may have any spacing; otherwise they are evenly
-spaced.
+A signal is an array of rows, real, or complex: the parts of a vector to two sides. Where a function takes `x`, the rows
+may have any spacing; otherwise they are evenly spaced.
 """
 
 from dataclasses import dataclass
@@ -26,21 +26,22 @@ LEAST_SIZE = 1e-6  # of the largest wave: a smaller one counts as this, so that 
 KEPT = 64  # bases of polynomials kept, one for each number of rows: the cases of a study share a few of them
 
 Integers = NDArray[np.intp]
+Signal = NDArray[Any]
 
 
-def without_trend(x: Floats, signal: Floats) -> Floats:
+def without_trend(x: Floats, signal: Signal) -> Signal:
     """A signal less its least-squares polynomial of degree `DEGREE` in x, shape (rows,)."""
     return _without(_polynomials(2 * (x - x[0]) / (x[-1] - x[0]) - 1), signal)
 
 
-def without_even_trend(signal: Floats) -> Floats:
+def without_even_trend(signal: Signal) -> Signal:
     """A signal of evenly spaced rows less its least-squares polynomial of degree `DEGREE`, shape (rows,)."""
     return _without(_even_polynomials(len(signal)), signal)
 
 
-def _without(basis: Floats, signal: Floats) -> Floats:
+def _without(basis: Floats, signal: Signal) -> Signal:
     """A signal less its projection on an orthonormal basis, shape (rows, k)."""
-    trend: Floats = basis @ (basis.T @ signal)
+    trend: Signal = basis @ (basis.T @ signal)
     return signal - trend
 
 
@@ -60,23 +61,24 @@ def slope(x: Floats, y: Floats) -> float:
     return float(away @ y / (away @ away))
 
 
-def autocorrelation(signal: Floats, lags: int) -> Floats:
+def autocorrelation(signal: Signal, lags: int) -> Floats:
     """Correlation of a signal, shape (rows,), with itself shifted by 0, 1, …, `lags` − 1 rows, shape (lags,).
 
     There are fewer lags than rows. Each correlation is normalized over the rows that overlap, so a wave that grows or
-    dies has 1 at its wavelength, like one that lasts.
+    dies has 1 at its wavelength, like one that lasts. That of a complex signal is the real part.
     """
     rows = len(signal)
     padded = 2 ** (rows + lags - 1).bit_length()  # numpy's FFT: scipy's is no faster and takes longer to import
-    spectrum = np.fft.rfft(signal, padded)
-    products = np.fft.irfft(spectrum.real**2 + spectrum.imag**2, padded)[:lags]
-    energy = np.concatenate(([0.0], np.cumsum(signal**2)))
+    transform, inverse = (np.fft.fft, np.fft.ifft) if np.iscomplexobj(signal) else (np.fft.rfft, np.fft.irfft)
+    spectrum = transform(signal, padded)
+    products = inverse(spectrum.real**2 + spectrum.imag**2, padded)[:lags].real
+    energy = np.concatenate(([0.0], np.cumsum(np.abs(signal) ** 2)))
     scale = np.sqrt((energy[-1] - energy[:lags]) * energy[: rows - lags : -1])
     alike: Floats = np.divide(products, scale, out=np.zeros(lags), where=scale > 0)
     return alike
 
 
-def likeness(signal: Floats, lag: float) -> float:
+def likeness(signal: Signal, lag: float) -> float:
     """The autocorrelation of a signal near a lag, in rows: 1 for a wave of that length.
 
     It is the highest of those at the three whole numbers nearest to `lag`.
@@ -87,13 +89,18 @@ def likeness(signal: Floats, lag: float) -> float:
     return max(_correlation(signal[rows:], signal[:-rows]) for rows in (near - 1, near, near + 1))
 
 
-def _correlation(late: Floats, early: Floats) -> float:
+def _correlation(late: Signal, early: Signal) -> float:
     """The correlation of two signals of mean zero, shape (rows,) each; 0 if one of them is zero everywhere."""
-    scale = float((late @ late) * (early @ early)) ** 0.5
-    return float(late @ early) / scale if scale else 0.0
+    scale = (_product(late, late) * _product(early, early)) ** 0.5
+    return _product(late, early) / scale if scale else 0.0
 
 
-def wavelength_in_rows(signal: Floats) -> tuple[float, float]:
+def _product(a: Signal, b: Signal) -> float:
+    """The scalar product of two signals; of complex ones the real part."""
+    return float(a @ b) if a.dtype.kind == "f" else float(a.real @ b.real + a.imag @ b.imag)
+
+
+def wavelength_in_rows(signal: Signal) -> tuple[float, float]:
     """The wavelength of a signal without trend, in rows, and the autocorrelation there; (nan, 0) if there is no wave.
 
     The wavelength is the shortest lag at which the autocorrelation has a high peak, from `FEWEST_ROWS` to the number of
@@ -129,7 +136,7 @@ def _summit(values: Floats, top: int) -> float:
     return top + min(max((before - after) / (2 * bend), -0.5), 0.5) if bend < 0 else top
 
 
-def mean_over(x: Floats, y: NDArray[Any], width: float) -> tuple[slice, NDArray[Any]]:
+def mean_over(x: Floats, y: Signal, width: float) -> tuple[slice, Signal]:
     """The mean of `y`, real or complex, over the interval of a given width around each x.
 
     x increases, shape (rows,). Returned are the slice of those x whose whole interval has data, and the means there. A
@@ -146,14 +153,14 @@ def mean_over(x: Floats, y: NDArray[Any], width: float) -> tuple[slice, NDArray[
     return inside, (np.interp(at + half, x, integral) - np.interp(at - half, x, integral)) / (2 * width)
 
 
-def large_since(x: Floats, y: Floats, wavelength: float, least: float) -> float:
+def large_since(x: Floats, y: Signal, wavelength: float, least: float) -> float:
     """The x from which on the root mean square of a wave over one wavelength is at least `least`."""
     at, square = _square(x, y, wavelength)
     small = np.flatnonzero(square < least**2)
     return float(at[small[-1]] + wavelength / 2 if len(small) else x[0])
 
 
-def large_until(x: Floats, y: Floats, wavelength: float, least: float) -> float:
+def large_until(x: Floats, y: Signal, wavelength: float, least: float) -> float:
     """The x up to which, last of all, the root mean square of a wave over one wavelength is at least `least`."""
     at, square = _square(x, y, wavelength)
     large = np.flatnonzero(square >= least**2)
@@ -162,11 +169,11 @@ def large_until(x: Floats, y: Floats, wavelength: float, least: float) -> float:
     return float(at[large[-1]] - wavelength / 2 if large[-1] < len(at) - 1 else x[-1])
 
 
-def _square(x: Floats, y: Floats, wavelength: float) -> tuple[Floats, Floats]:
+def _square(x: Floats, y: Signal, wavelength: float) -> tuple[Floats, Floats]:
     """Where there are data for it, the mean square of a wave about its trend, over one wavelength."""
     inside, trend = mean_over(x, y, wavelength)
     at = x[inside]
-    inside, square = mean_over(at, (y[inside] - trend) ** 2, wavelength)
+    inside, square = mean_over(at, np.abs(y[inside] - trend) ** 2, wavelength)
     return at[inside], square
 
 
@@ -186,12 +193,12 @@ class LastWaves:
 
     wavelength: float
     x: Floats
-    deviation: Floats
-    trend: Floats
+    deviation: Signal
+    trend: Signal
     count: int
 
     @classmethod
-    def of(cls, x: Floats, y: Floats, wavelength: float, most: int) -> "LastWaves":
+    def of(cls, x: Floats, y: Signal, wavelength: float, most: int) -> "LastWaves":
         """The last waves of a signal y over increasing x: at most `most`, perhaps none."""
         first = int(np.searchsorted(x, x[-1] - (most + 1 + ALMOST) * wavelength)) - 1
         x, y = x[max(first, 0) :], y[max(first, 0) :]
@@ -218,7 +225,21 @@ class LastWaves:
     def sizes(self) -> Floats:
         """The root mean square of each wave, shape (count,)."""
         rows = np.maximum(np.bincount(self.wave, minlength=self.count), 1)
-        return np.sqrt(np.bincount(self.wave, self.deviation**2, self.count) / rows)
+        return np.sqrt(np.bincount(self.wave, np.abs(self.deviation) ** 2, self.count) / rows)
+
+    @cached_property
+    def axis(self) -> complex:
+        """The direction in which a complex signal swings most, of magnitude 1; 1 for a real one."""
+        if not np.iscomplexobj(self.deviation):
+            return 1.0
+        return complex(np.exp(0.5j * np.angle(np.sum(self.deviation**2))))
+
+    def along(self, axis: complex) -> "LastWaves":
+        """The waves of the part of a complex signal in a direction, of magnitude 1; a real one as it is."""
+        if not np.iscomplexobj(self.deviation):
+            return self
+        deviation, trend = ((part * np.conj(axis)).real for part in (self.deviation, self.trend))
+        return LastWaves(self.wavelength, self.x, deviation, trend, self.count)
 
     def growth(self) -> tuple[float, float]:
         """The growth per wave of the logarithm of the size, by least squares, and twice its standard error."""

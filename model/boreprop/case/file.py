@@ -12,7 +12,7 @@ from typing import Any
 import tomli_w
 
 from ..core.columns import regular
-from ..core.quantities import CLEARANCES, QUANTITIES
+from ..core.quantities import CLEARANCES, QUANTITIES, TOOLFACE_REFERENCES
 from ..errors import InputError
 from .case import Case
 from .formations import file_degrees, formations_in_file
@@ -142,16 +142,18 @@ def dump_case(case: Case, **run: str | None) -> str:
     """
     document: dict[str, Any] = {table: {} for table in TABLES if table != "run"}
     for quantity in QUANTITIES:
-        there = quantity.size in ("n-1", "space") or quantity.count(case.bha.structure)  # none: an empty list
+        there = quantity.size == "n-1" or quantity.count(case.structure)  # none: an empty list
         if quantity.key and quantity.field and there:
             table, key = quantity.key.split(".")
             value = attrgetter(quantity.field)(case)
-            if value == quantity.start:
+            if value in (quantity.start, ()) and quantity.size != "n-1":
                 continue
             kinds = {"String": str, "Boolean": bool, "Integer": int}
             written = file_degrees if key.endswith("_deg") else kinds.get(quantity.kind, float)
             columns = document.setdefault(table, {})
             columns[key] = list(map(written, value)) if isinstance(value, tuple) else written(value)
+    if set(case.schedule.toolface_reference) - {TOOLFACE_REFERENCES[0]}:
+        document["rss"]["toolface_reference"] = list(case.schedule.toolface_reference)
     if "section" in document:
         document["bha"]["section"] = sections_in_file(document.pop("section"))
     if "sensor" in document:

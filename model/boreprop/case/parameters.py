@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from ..core.quantities import INPUTS, PARAMETERS, fields_of, quantity_of, scalar_names, values_of
+from ..core.quantities import INPUTS, PARAMETERS, TOOLFACE_REFERENCES, fields_of, quantity_of, scalar_names, values_of
 from ..errors import InputError
 from .body import keep_clearances
 from .case import Case, Schedule
@@ -22,7 +22,9 @@ def parameters(case: Case) -> dict[str, float]:
     values = values_of("", case) | values_of("schedule", case.schedule)
     for part in PARTS:
         values |= values_of(part, getattr(case, part))
-    names = scalar_names(INPUTS + PARAMETERS, case.bha.structure)
+    if case.in_space:
+        values |= {name: profile.values[0] for name, profile in case.schedule.sides().items()}
+    names = scalar_names(INPUTS + PARAMETERS, case.structure)
     return {name: values[name] for name in names if name in values}
 
 
@@ -57,13 +59,17 @@ def with_parameters(case: Case, values: Mapping[str, float]) -> Case:
     for name in values:
         if name not in own:
             raise InputError(f"a parameter must be one of {', '.join(own)}, got {name!r}")
-    structure, wanted = case.bha.structure, own | dict(values)
+    structure, wanted = case.structure, own | dict(values)
     changed = {quantity_of(name).part for name in values}
     parts: dict[str, Any] = {
         part: replace(getattr(case, part), **fields_of(part, wanted, structure)) for part in PARTS if part in changed
     }
     if "schedule" in changed:
-        parts["schedule"] = Schedule((0.0,), (wanted["rss_force"],))
+        sides: dict[str, Any] = {}
+        if case.in_space:
+            reference = TOOLFACE_REFERENCES[int(wanted["toolface_reference"])]
+            sides = {"rss_toolface": (wanted["rss_toolface"],), "toolface_reference": (reference,)}
+        parts["schedule"] = Schedule((0.0,), (wanted["rss_force"],), **sides)
     inputs, formations = case.inputs, case.formations
     for name in values:
         inputs = inputs and inputs.without(name)

@@ -23,8 +23,9 @@ from ..core.quantities import BY_NAME, CLEARANCES, ROCK, Quantity, columns_of, q
 from ..core.survey import Survey
 from ..errors import InputError, shown
 from .body import place_points
-from .case import CLOSE, INTERPOLATIONS, Case, InputSchedule, Schedule
+from .case import Case
 from .formations import lift_formations, lift_wear
+from .inputs import CLOSE, INTERPOLATIONS, InputSchedule, Schedule
 from .schedules import LENGTHS, NAMES_OF_COLUMNS, force_schedule, input_schedule
 from .sections import lift_sections
 from .sensors import lift_sensors
@@ -32,7 +33,8 @@ from .tables import BY_KEY, read_inputs, read_schedule, read_survey
 
 Document = dict[str, dict[str, Any]]  # table → key → value
 
-TILT_LIMIT_DEG = "bit_tilt_limit_deg"  # in a schedule, in place of bit_tilt_limit
+IN_DEGREES = {f"{name}_deg": name for name in NAMES_OF_COLUMNS if quantity_of(name).unit == "rad"}
+"""Columns of a schedule in degrees → what they stand for."""
 DEEPEST = 100  # parts that a dotted key may have
 TABLES = ("bha", "bit", "drilling", "hole", "rss", "run")  # of a file, in the order in which they are written
 OF_FILES = ("hole.survey", "rss.schedule", "drilling.schedule")
@@ -46,6 +48,8 @@ CHOICES: dict[str, tuple[tuple[str, ...], ...]] = {
         ("schedule",),
         ("drilled_length", "duty", "toolface_deg"),
         ("measured_depth", "duty", "toolface_deg"),
+        ("drilled_length", "force", "toolface_deg"),
+        ("measured_depth", "force", "toolface_deg"),
     ),
 }
 """Table → the sets of keys of which it holds one."""
@@ -53,12 +57,16 @@ CHOICES: dict[str, tuple[tuple[str, ...], ...]] = {
 SCHEDULED = ("active_weight_on_bit", *ROCK)
 """Inputs that a case file gives by a key of their own, unless the schedule of the table [drilling] has them."""
 
-BESIDE = {"hole": ("bit_depth", "true_vertical_depth"), "rss": ("full_force", "interpolation")}
+BESIDE = {
+    "hole": ("bit_depth", "true_vertical_depth", "azimuth_deg"),
+    "rss": ("full_force", "interpolation", "toolface_reference"),
+}
 """Table → the keys that may stand beside each of these sets."""
 
 PATHS = "must be a path with forward slashes or in single quotes, since in double quotes a backslash begins an escape"
 
 _CASE, _NUMBER, _COLUMN = TypeAdapter(Case), TypeAdapter(float), TypeAdapter(tuple[float, ...])
+_TEXTS: TypeAdapter[str | tuple[str, ...]] = TypeAdapter(str | tuple[str, ...])
 
 
 class Read(NamedTuple):
@@ -76,6 +84,7 @@ def parse(text: str, source: Path) -> Read:
     lift_sensors(document, source)
     place_points(document, source)
     check_keys(document, source)
+    repeat_angles(document)
     case, notes = _case(document, source), []
     if "bit_depth" in document["hole"]:
         bit_depth = _typed(_NUMBER, document, "hole.bit_depth", source)
@@ -98,15 +107,16 @@ def _force(document: Document, bit_depth: float, source: Path) -> Schedule:
     table = document["rss"]
     interpolation = table.get("interpolation", "held")
     full_force = _typed(_NUMBER, document, "rss.full_force", source) if "full_force" in table else None
+    reference = _typed(_TEXTS, document, "rss.toolface_reference", source) if "toolface_reference" in table else ()
     if (full_force is None) == ("duty" in table) and "schedule" not in table:
         constraint = "must be given with duty and toolface_deg, and only with them"
         raise InputError(f"{source}: rss.full_force: {constraint}, got {shown(table)}")
     with _naming("rss", source):
         if "schedule" in table:
-            return read_schedule(source.parent / table["schedule"], bit_depth, interpolation, full_force)
+            return read_schedule(source.parent / table["schedule"], bit_depth, interpolation, full_force, reference)
         keys = [key for key in table if key not in BESIDE["rss"]]
         columns = {key: _typed(_COLUMN, document, f"rss.{key}", source) for key in keys}
-        return force_schedule(columns, bit_depth, interpolation, full_force)
+        return force_schedule(columns, bit_depth, interpolation, full_force, reference)
 
 
 def _with_inputs(case: Case, document: Document, bit_depth: float, source: Path) -> Case:
@@ -117,13 +127,13 @@ def _with_inputs(case: Case, document: Document, bit_depth: float, source: Path)
         force, inputs = read_inputs(source.parent / given, bit_depth, interpolation)
     else:
         lengths = set(given) & set(LENGTHS)
-        known = (*NAMES_OF_COLUMNS, TILT_LIMIT_DEG)
+        known = (*NAMES_OF_COLUMNS, *IN_DEGREES)
         if len(lengths) != 1 or len(given) == 1 or set(given) - lengths - set(known):
             constraint = f"must hold either {' or '.join(LENGTHS)}, and any of {', '.join(known)}"
             raise InputError(f"{source}: {where}: {constraint}, got {shown(given)}")
         columns = {key: _typed(_COLUMN, document, f"{where}.{key}", source) for key in given}
-        if TILT_LIMIT_DEG in columns:
-            columns["bit_tilt_limit"] = tuple(map(radians, columns.pop(TILT_LIMIT_DEG)))
+        for name in IN_DEGREES.keys() & columns.keys():
+            columns[IN_DEGREES[name]] = tuple(map(radians, columns.pop(name)))
         with _naming(where, source):
             force, inputs = input_schedule(columns, bit_depth, interpolation)
     if force is not None:
@@ -167,7 +177,7 @@ def _case(document: Document, source: Path) -> Case:
     """The case with its survey as it is given, and without a schedule that depends on where the bit is."""
     fields = case_fields(document)
     if "survey" in document.get("hole", {}):
-        fields["survey"] = asdict(read_survey(source.parent / document["hole"]["survey"]))
+        fields["survey"] = asdict(_surveyed(document, source))
     fields.pop("schedule", None)
     if "schedule" in document.get("drilling", {}):  # what it holds takes the place of these
         for name in SCHEDULED:
@@ -180,6 +190,29 @@ def _case(document: Document, source: Path) -> Case:
         errors = error.errors(include_url=False)
         more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
         raise InputError(f"{source}: {_message(errors[0], document)}{more}") from error
+
+
+def repeat_angles(document: Document) -> None:
+    """Let an azimuth or a toolface that is one number stand for a column of it."""
+    for where, along in (("hole.azimuth_deg", ("measured_depth",)), ("rss.toolface_deg", LENGTHS)):
+        name, _, key = where.partition(".")
+        table = document.get(name, {})
+        columns = [table[other] for other in along if isinstance(table.get(other), list)]
+        if type(table.get(key)) in (int, float) and columns:
+            table[key] = [table[key]] * len(columns[0])
+
+
+def _surveyed(document: Document, source: Path) -> Survey:
+    """The survey in the file that the table [hole] names, of the azimuth there if the file has none."""
+    survey = read_survey(source.parent / document["hole"]["survey"])
+    if "azimuth_deg" not in document["hole"]:
+        return survey
+    azimuth = _typed(_NUMBER, document, "hole.azimuth_deg", source)
+    if survey.azimuth:
+        constraint = f"must be left out, since {document['hole']['survey']} has a column azimuth_deg"
+        raise InputError(f"{source}: hole.azimuth_deg: {constraint}, got {azimuth!r}")
+    with _naming("hole", source):
+        return replace(survey, azimuth=(radians(azimuth),) * len(survey.measured_depth))
 
 
 def _beyond(survey: Survey, bit_depth: float) -> list[str]:

@@ -1,6 +1,6 @@
 """Reads surveys and schedules from CSV files, see `boreprop.case.sheet` for what these may look like."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from math import pi, radians
 from pathlib import Path
@@ -10,7 +10,7 @@ from ..core.errors import ParameterError
 from ..core.quantities import QUANTITIES, quantity_of
 from ..core.survey import Survey
 from ..errors import InputError, shown
-from .case import InputSchedule, Schedule
+from .inputs import InputSchedule, Schedule
 from .schedules import LENGTHS, NAMES_OF_COLUMNS, force_schedule, input_schedule
 from .sheet import Sheet, read_sheet
 
@@ -23,6 +23,10 @@ OTHER_UNITS = {
     "rad": {"deg": pi / 180},
 }
 """Unit of a column → the ends of names under which it may stand in another unit, and what that is in the first one."""
+
+
+ALL_ROUND = ("azimuth_deg", "toolface_deg", "rss_toolface_deg")
+"""Angles that may be given up to a whole turn."""
 
 
 class Spelling(NamedTuple):
@@ -41,27 +45,34 @@ LEAST_NULL = 1e30  # and beyond
 
 
 def read_survey(path: str | Path) -> Survey:
-    """Read a survey: a CSV file with the columns measured_depth (m) and inclination_deg (degrees).
+    """Read a survey: a CSV file with the columns measured_depth (m), inclination_deg and perhaps azimuth_deg (degrees).
 
     Depths in feet are read from a column measured_depth_ft.
 
     Raises
     ------
     InputError
-        If the file cannot be read, an inclination is beyond ±180°, or the depths do not increase.
+        If the file cannot be read, an inclination is beyond ±180° or an azimuth beyond ±360°, or the depths do not
+        increase.
     """
+    groups = [_group("hole", "measured_depth"), _group("hole", "inclination_deg")]
     with naming(path):
-        columns = _read_columns(path, [_group("hole", "measured_depth"), _group("hole", "inclination_deg")])
-        measured_depth, inclination_deg = columns.values()
-        return Survey(measured_depth, tuple(map(radians, inclination_deg)))
+        columns = _read_columns(path, groups, if_there=[_group("hole", "azimuth_deg")])
+        angles = (columns[name] for name in ("inclination_deg", "azimuth_deg") if name in columns)
+        return Survey(columns["measured_depth"], *(tuple(map(radians, column)) for column in angles))
 
 
 def read_schedule(
-    path: str | Path, bit_depth: float | None = None, interpolation: str = "held", full_force: float | None = None
+    path: str | Path,
+    bit_depth: float | None = None,
+    interpolation: str = "held",
+    full_force: float | None = None,
+    reference: str | Sequence[str] = (),
 ) -> Schedule:
     """Read a force schedule: a CSV file with the columns drilled_length or measured_depth (m), and force (N).
 
-    They may also be drilled_length_ft or measured_depth_ft, and force_kN or force_lbf.
+    They may also be drilled_length_ft or measured_depth_ft, and force_kN or force_lbf. A column toolface_deg (degrees)
+    says to which side the force pushes.
 
     Parameters
     ----------
@@ -73,6 +84,8 @@ def read_schedule(
         "held" or "linear".
     full_force
         The force at a duty of 1, N; with it there are the columns duty and toolface_deg in place of the force.
+    reference
+        From where the toolface counts: "gravity", "north" or "frame", or one an entry; none: from the high side.
 
     Raises
     ------
@@ -81,9 +94,10 @@ def read_schedule(
         not known; if the lengths do not start at 0, the depths start beyond the bit, or they do not increase.
     """
     steering = ["force"] if full_force is None else ["duty", "toolface_deg"]
-    columns = _read_columns(path, [_group("rss", *names) for names in (LENGTHS, *([name] for name in steering))])
+    groups = [_group("rss", *names) for names in (LENGTHS, *([name] for name in steering))]
+    columns = _read_columns(path, groups, if_there=[_group("rss", "toolface_deg")] if full_force is None else [])
     with naming(path):
-        return force_schedule(columns, bit_depth, interpolation, full_force)
+        return force_schedule(columns, bit_depth, interpolation, full_force, reference)
 
 
 def read_inputs(
@@ -120,22 +134,26 @@ def naming(path: str | Path) -> Iterator[None]:
         raise InputError(f"{path}: {error.name}: {error.constraint}, got {shown(error.value)}") from error
 
 
-def _read_columns(path: str | Path, groups: list[Group], some_of: list[Group] | None = None) -> dict[str, Column]:
+def _read_columns(
+    path: str | Path, groups: list[Group], some_of: list[Group] | None = None, *, if_there: Sequence[Group] = ()
+) -> dict[str, Column]:
     """Columns of a CSV file: of each group that of the heading that is there; name → values.
 
-    Of the groups `some_of` at least one must be there, if they are given.
+    Of the groups `some_of` at least one must be there, if they are given; of those `if_there` any may be.
     """
-    everything = [heading for group in [*groups, *(some_of or [])] for heading in group]
+    everything = [heading for group in [*groups, *(some_of or []), *if_there] for heading in group]
     sheet = read_sheet(path, everything.__contains__)
     more = [group for group in some_of or [] if any(heading in sheet.headings for heading in group)]
     if some_of and not more:
         raise sheet.missing(*(repr(next(iter(group))) for group in some_of))
+    more += [group for group in if_there if any(heading in sheet.headings for heading in group)]
     found = {heading: group[heading] for group in [*groups, *more] for heading in [_heading(sheet, group)]}
     numbers = sheet.numbers(list(found))
     for heading, column in zip(found, numbers, strict=True):
         for line, value in zip(sheet.lines, column, strict=True):
-            if heading.endswith("_deg") and not -180.0 <= value <= 180.0:
-                raise InputError(f"{path}:{line}: {heading}: must be between -180 and 180, got {value!r}")
+            most = 360.0 if heading in ALL_ROUND else 180.0
+            if heading.endswith("_deg") and not -most <= value <= most:
+                raise InputError(f"{path}:{line}: {heading}: must be between -{most:g} and {most:g}, got {value!r}")
             if value in NULLS or abs(value) >= LEAST_NULL:
                 remedy = "which stands for no value: leave the row out"
                 raise InputError(f"{path}:{line}: {heading}: must be a value, got {value!r}, {remedy}")

@@ -6,10 +6,10 @@ from typing import Annotated
 
 import typer
 
-from ..case.case import Case
+from ..case.case import Case, check_plane
 from ..case.file import load_case, read_case
 from ..case.usual import unusual
-from ..core.system import check_in_plane, scale
+from ..core.system import scale
 from ..errors import InputError, ParameterError
 from ..run.results import read_trajectory
 from ..run.trajectory import Trajectory
@@ -28,12 +28,12 @@ RunCase = Annotated[
 def open_case(path: Path, *, in_plane: bool = True) -> Case:
     """Read a case file; warn, once and in one line, of what is far from any assembly, and of a hole made longer.
 
-    A bit that walks is refused `in_plane`.
+    A case that leaves its plane is refused `in_plane`; a constant azimuth only says where the plane is.
     """
     case, notes = read_case(path)
     try:
         if in_plane:
-            check_in_plane(case.bit)
+            check_plane(case)
         if case.bha.structure.is_of_the_paper:  # others are checked by the native engine
             scale(case.bha, replace(case.bit, walk_angle=0.0))
     except ParameterError as error:  # of a number that no key has, so the case is not refused for a key

@@ -11,7 +11,7 @@ from ..core.options import RELATIVE_TOLERANCE
 from ..run.engines import ENGINES
 from ..run.files import files_read
 from ..run.results import keeping_rows, write_trajectory
-from ..run.simulate import SAMPLE_INTERVAL, simulate
+from ..run.simulate import SAMPLE_INTERVAL, in_dimensions, simulate
 from . import console
 from .cases import open_case
 from .fallback import warn_of_fallback
@@ -40,6 +40,16 @@ def simulate_command(
         ),
     ] = "auto",
     tolerance: Tolerance = None,
+    dimensions: Annotated[
+        int | None,
+        typer.Option(
+            min=2,
+            max=3,
+            metavar="2|3",
+            help="3: drill in space, which a case does anyway that has an azimuth, a walk angle or a toolface other "
+            "than 0 or 180.",
+        ),
+    ] = None,
 ) -> None:
     """Simulate a case and write the run to a file.
 
@@ -47,11 +57,13 @@ def simulate_command(
     there are written, and the exit status is 3.
     """
     check_run_output(output, files_read(case_file))
-    case = open_case(case_file)
+    case = open_case(case_file, in_plane=False)
     if length is not None:
         case = replace(case, length=length)
     check_number("--sample-interval", sample_interval, at_least=case.length / MAX_ROWS)
-    if engine == "auto":
+    if dimensions is not None:
+        case = in_dimensions(case, dimensions)
+    if engine == "auto" and not case.in_space:
         warn_of_fallback()
     with keeping_rows(output), console.progress("drilling", case.length) as drilled:
         trajectory = simulate(

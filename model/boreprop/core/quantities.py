@@ -28,6 +28,7 @@ Size = Literal[
     "space",
     "space n-1",
     "column",
+    "space column",
 ]  # "column": as long as its table
 
 MAX_STABILIZERS = 6
@@ -36,6 +37,8 @@ MAX_POINTS = 128  # of the body at which it may touch the wall
 MOST_WALK = 89 / 180 * pi  # rad: at a right angle the tilt is no longer unique
 MAX_SENSORS = 8
 MOST_DRILLED = 1e5  # m in a communication step of an FMU: no hole is longer, and a step must end soon
+TOOLFACE_REFERENCES = ("gravity", "north", "frame")
+"""From where a toolface counts: from the high side, from north, or from the frame of the bit, which does not twist."""
 RELATIVE_TOLERANCE = 1e-7  # with it θ is within 5e-7 rad of the reference trajectories
 
 
@@ -81,6 +84,7 @@ def counts(structure: Structure) -> dict[str, int]:
         "sensors": sensors,
         "space": space,
         "space n-1": space * (n - 1),
+        "space column": space,
     }
 
 
@@ -191,8 +195,8 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("bit_tilt_limit", "input", "rad", "ψ*", "(10)", "tilt at which the bit gauge meets the wall", above=0.0, at_most=pi / 2, nominal=0.01, key="bit.tilt_limit_deg", field="bit.tilt_limit"),
     Quantity("weight_on_bit", "input", "N", "W", "(3)", "all of the weight on bit, which presses the BHA along its axis; 0: the active weight", size="axial", at_least=0.0, nominal=1e5, key="drilling.weight_on_bit", field="weight_on_bit"),
     Quantity("bit_walk_angle", "input", "rad", "ϖ", "", "walk angle: from the lateral penetration of the bit to the lateral force, positive from the high side to the right looking down the hole", at_least=-MOST_WALK, at_most=MOST_WALK, nominal=0.1, start=0.0, size="space", key="bit.walk_angle_deg", field="bit.walk_angle"),
-    Quantity("rss_toolface", "input", "rad", "γ", "", "side to which the pads push, looking down the hole: 0 up or north, π/2 to the right", size="space", start=0.0),
-    Quantity("toolface_reference", "input", "", "", "", "from where the toolface counts: 0 from the high side, 1 from north, 2 from the frame of the bit", kind="Integer", size="space", at_least=0, at_most=2, start=0.0),
+    Quantity("rss_toolface", "input", "rad", "γ", "", "side to which the pads push, looking down the hole: 0 up or north, π/2 to the right", size="space", start=0.0, key="rss.toolface_deg", field="schedule.rss_toolface"),
+    Quantity("toolface_reference", "input", "", "", "", "from where the toolface counts: 0 from the high side, 1 from north, 2 from the frame of the bit", kind="Integer", size="space", at_least=0, at_most=2, start=0.0, key="rss.toolface_reference"),
 
     Quantity("bit_inclination", "output", "rad", "θ", "(17)", "inclination of the bit axis from the downward vertical", follows=("survey_file",)),
     Quantity("borehole_inclination", "output", "rad", "Θ", "(16)", "inclination of the borehole at the bit", follows=FORCE_AND_WEIGHT),
@@ -258,12 +262,13 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("length", "case", "m", "", "", "length to drill", above=0.0, key="drilling.length", field="length"),
     Quantity("measured_depth", "case", "m", "", "", "stations along the existing hole, the last one is the bit if bit_depth does not say where it is", size="column", key="hole.measured_depth", field="survey.measured_depth"),
     Quantity("inclination", "case", "rad", "Θ", "", "inclination of the existing hole at each station", at_least=-pi, at_most=pi, size="column", key="hole.inclination_deg", field="survey.inclination"),
+    Quantity("azimuth", "case", "rad", "", "", "azimuth of the existing hole at each station, from north over east; one number: of all of it", at_least=-2 * pi, at_most=2 * pi, size="space column", key="hole.azimuth_deg", field="survey.azimuth"),
     Quantity("bit_depth", "case", "m", "", "", "measured depth of the bit at the start of the run; beyond the survey the hole is straight", nominal=1e3, key="hole.bit_depth"),
     Quantity("bit_true_vertical_depth", "case", "m", "", "", "true vertical depth of the bit at the start of the run, from which those of formations count", nominal=1e3, start=0.0, key="hole.true_vertical_depth", field="true_vertical_depth"),
     Quantity("schedule_depth", "case", "m", "", "", "measured depths at which the forces begin, in place of drilled lengths", size="column", nominal=1e3, key="rss.measured_depth"),
     Quantity("full_force", "case", "N", "", "", "force of the steering pads at a duty of 1", at_least=0.0, nominal=1e4, key="rss.full_force"),
     Quantity("duty", "case", "", "", "", "share of the time in which the pads push to the side of the toolface", size="column", at_least=0.0, at_most=1.0, key="rss.duty"),
-    Quantity("toolface", "case", "rad", "", "", "side to which the pads push: 0 up, 180° down", size="column", key="rss.toolface_deg"),
+    Quantity("dimensions", "case", "", "", "", "3: drill in space, which a case does anyway that has an azimuth, a walk angle, or a toolface other than 0 or 180°", kind="Integer", at_least=2, at_most=3, start=2, key="drilling.dimensions", field="dimensions"),
     Quantity("drilling_schedule", "case", "", "", "", "inputs over drilled length or measured depth (a CSV file, or columns in the case file)", kind="String", key="drilling.schedule"),
     Quantity("drilling_interpolation", "case", "", "", "", "how these inputs go from each entry to the next: held or linear", kind="String", start="held", key="drilling.interpolation"),
     Quantity("interpolation", "case", "", "", "", "how the force goes from each entry to the next: held or linear", kind="String", start="held", key="rss.interpolation", field="schedule.interpolation"),
@@ -316,8 +321,12 @@ def followed(quantity: Quantity, structure: int | Structure) -> frozenset[str]:
 
 
 def columns_of(table: str) -> tuple[str, ...]:
-    """The columns, as people name them, of "hole" or "rss": tables of a case file that may be CSV files of their own."""
-    keys = (quantity.key.split(".") for quantity in QUANTITIES if quantity.key and quantity.part)
+    """The columns, as people name them, of "hole" or "rss": tables of a case file that may be CSV files of their own.
+
+    Without those that only count in space, which may be left out.
+    """
+    columns = (quantity for quantity in QUANTITIES if quantity.key and quantity.part and "space" not in quantity.size)
+    keys = (quantity.key.split(".") for quantity in columns)
     return tuple(key for place, key in keys if place == table)
 
 
@@ -325,7 +334,7 @@ def columns_of(table: str) -> tuple[str, ...]:
 
 
 def values_of(part: str, fields: Any) -> dict[str, float]:
-    """The inputs and parameters in a part of a drilling system, by scalar name; a column is represented by its first value.
+    """The inputs and parameters in a part of a drilling system, by scalar name; a column is represented by its first value, an empty one left out.
 
     Parameters
     ----------
@@ -340,8 +349,10 @@ def values_of(part: str, fields: Any) -> dict[str, float]:
             value = getattr(fields, quantity.attribute)
             if quantity.is_list:
                 values |= {f"{quantity.name}[{i}]": element for i, element in enumerate(value, 1)}
-            else:
-                values[quantity.name] = value[0] if isinstance(value, tuple) else value
+            elif not isinstance(value, tuple):
+                values[quantity.name] = value
+            elif value:
+                values[quantity.name] = value[0]
     return values
 
 

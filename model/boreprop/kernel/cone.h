@@ -15,18 +15,18 @@ enum { TOUCHES = -1 };                        /* the contact beyond the bound of
 enum { MOST_TOUCHING = 2 * MAX_STABILIZERS }; /* numbers: two for each stabilizer in contact */
 
 /* The direction of a vector whose length is known to be at least `least` while its regime holds: a function w of the
-   square of the length, which is one over the length from REACHED of that on, and a series in the square below, so that it
-   stays smooth where a trial step goes too far. Gives w, and twice its derivative. */
-#define REACHED 0.7
+   square of the length. It is one over the length from REACHED of that on. Below, where a trial step goes too far, it stays
+   nearly the same, so that what it gives is nearly that of the regime beyond. Gives w, and twice its derivative. */
+#define REACHED 0.8
 static inline void direction_factors(double square, double least, double *w, double *bend) {
     double inner = REACHED * least, from = inner * inner;
     if (square >= from) {
         *w = 1 / sqrt(square), *bend = -*w / square;
         return;
     }
-    double t = 1 - square / from; /* (1 − t)^(−1/2) about t = 0 */
-    *w = (1 + t * (1.0 / 2 + t * (3.0 / 8 + t * (5.0 / 16 + t * (35.0 / 128))))) / inner;
-    *bend = -2 * (1.0 / 2 + t * (3.0 / 4 + t * (15.0 / 16 + t * (35.0 / 32)))) / (inner * from);
+    double t = 1 - square / from; /* the first terms of (1 − t)^(−1/2), and one that brings it back to 1 */
+    *w = (1 + t * (1.0 / 2 + t * (3.0 / 8 - t * (7.0 / 8)))) / inner;
+    *bend = -2 * (1.0 / 2 + t * (3.0 / 4 - t * (21.0 / 8))) / (inner * from);
 }
 
 /* What the wall takes of v: v less the nearest point of the disc of radius y, and its derivative by v, row by row. */
@@ -83,37 +83,124 @@ static inline Touching touching_of(const Modes *modes, Contact contact) {
 }
 
 #define SAME_OFFSET 1e-14 /* relative: so near to the solution no correction brings v nearer */
-enum { MOST_CORRECTIONS = 15 };
+enum { MOST_CORRECTIONS = 15, SMOOTHER = 14, MOST_HALVINGS = 40 };
 /* Over the largest v: after a change as small as this the next would be below rounding, and one that is NEARLY as small and
    does not shrink is rounding itself, which stabilizers close together enlarge. */
 #define NEXT_IS_NOTHING 1e-8
 #define NEARLY 1e-3
+#define SHARPER 0.1 /* of μ, from step to step: after SMOOTHER of them it is rounding */
 
-/* The v of those that touch under their q̃, from a guess in `v`; returns 0 if none is found. Where `answer` is given, it
-   becomes dF/dq̃, row by row, over the directions of each of those that touch. */
-static inline int solve_contacts(
-    const Touching *of, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2], double F[MAX_STABILIZERS][2],
-    double answer[MOST_TOUCHING][MOST_TOUCHING]
-) {
-    int m = of->touching, size = 2 * m, found = 0;
-    double before = INFINITY;
+/* The minimum that F is, with |F_i| made smooth: √(|F_i|² + μ²), in forces times √k_i. */
+typedef struct {
+    int count;
+    double C[MAX_STABILIZERS][MAX_STABILIZERS], root[MAX_STABILIZERS]; /* K⁻¹_ij/√(k_i k_j), √k_i */
+    double q[MAX_STABILIZERS][2], y[MAX_STABILIZERS], mu;
+} Smooth;
+
+static inline double smooth_value(const Smooth *smooth, double u[MAX_STABILIZERS][2]) {
+    double value = 0.0;
+    for (int i = 0; i < smooth->count; i++) {
+        for (int d = 0; d < 2; d++) {
+            double sum = 0.0;
+            for (int j = 0; j < smooth->count; j++) sum += smooth->C[i][j] * u[j][d];
+            value += u[i][d] * (sum / 2 + smooth->q[i][d]);
+        }
+        value += smooth->y[i] * sqrt(u[i][0] * u[i][0] + u[i][1] * u[i][1] + smooth->mu * smooth->mu);
+    }
+    return value;
+}
+
+/* One step of Newton's method towards the minimum, shortened until it goes down; returns 0 where it does not. */
+static inline int go_down(const Smooth *smooth, double u[MAX_STABILIZERS][2]) {
+    int count = smooth->count, size = 2 * count;
+    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1], value = smooth_value(smooth, u), next[MAX_STABILIZERS][2];
+    for (int i = 0; i < count; i++) {
+        double length = sqrt(u[i][0] * u[i][0] + u[i][1] * u[i][1] + smooth->mu * smooth->mu);
+        double w = smooth->y[i] / length;
+        for (int d = 0; d < 2; d++) {
+            double *row = matrix[2 * i + d];
+            row[size] = -smooth->q[i][d] - w * u[i][d];
+            for (int j = 0; j < count; j++) {
+                row[size] -= smooth->C[i][j] * u[j][d];
+                for (int c = 0; c < 2; c++) row[2 * j + c] = d == c ? smooth->C[i][j] : 0.0;
+            }
+            for (int c = 0; c < 2; c++)
+                row[2 * i + c] += (d == c ? w : 0.0) - w * u[i][d] * u[i][c] / (length * length);
+        }
+    }
+    if (!solve_touching(size, 1, matrix)) return 0;
+    double share = 1.0;
+    for (int halving = 0; halving < MOST_HALVINGS; halving++, share /= 2) {
+        for (int i = 0; i < count; i++)
+            for (int d = 0; d < 2; d++) next[i][d] = u[i][d] + share * matrix[2 * i + d][size];
+        if (smooth_value(smooth, next) < value) {
+            memcpy(u, next, (size_t)count * sizeof next[0]);
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* v near the solution for stabilizers that may touch, whatever the start: the minimum is followed while μ goes to zero. It
+   is convex, so that Newton's method ends at it. */
+APART static void come_near(const Touching *of, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2]) {
+    Smooth smooth = {.count = of->touching};
+    double u[MAX_STABILIZERS][2] = {{0}};
+    for (int i = 0; i < smooth.count; i++) smooth.root[i] = sqrt(of->k[i]);
+    for (int i = 0; i < smooth.count; i++) {
+        smooth.y[i] = of->y[i] / smooth.root[i];
+        for (int j = 0; j < smooth.count; j++) smooth.C[i][j] = of->K_inv[i][j] / (smooth.root[i] * smooth.root[j]);
+        for (int d = 0; d < 2; d++) {
+            smooth.q[i][d] = q[i][d] / smooth.root[i];
+            smooth.mu = larger(smooth.mu, fabs(smooth.q[i][d]));
+        }
+    }
+    for (int k = 0; k < SMOOTHER; k++, smooth.mu *= SHARPER)
+        for (int step = 0; step < MOST_CORRECTIONS && go_down(&smooth, u); step++) continue;
+    for (int i = 0; i < smooth.count; i++)
+        for (int d = 0; d < 2; d++) {
+            v[i][d] = q[i][d] - smooth.root[i] * u[i][d];
+            for (int j = 0; j < smooth.count; j++) v[i][d] += of->K_inv[i][j] * u[j][d] / smooth.root[j];
+        }
+}
+
+/* What the wall takes of each v, and its derivative. */
+typedef struct {
     double beyond[MAX_STABILIZERS][2], slope[MAX_STABILIZERS][2][2];
-    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1];
-    if (m == 1) v[0][0] = q[0][0], v[0][1] = q[0][1];
-    for (int correction = 0; !found; correction++) {
+} Walls;
+
+static inline void find_walls(const Touching *of, double v[MAX_STABILIZERS][2], Walls *walls) {
+    for (int a = 0; a < of->touching; a++) beyond_disc(v[a], of->y[a], walls->beyond[a], walls->slope[a]);
+}
+
+/* The rows of the derivative of v − q̃ − Σ K⁻¹ F. */
+static inline void fill_rows(
+    const Touching *of, const Walls *walls, double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1]
+) {
+    for (int a = 0; a < of->touching; a++)
+        for (int b = 0; b < of->touching; b++) {
+            double share = a == b ? 0.0 : of->K_inv[a][b] / of->k[b];
+            for (int d = 0; d < 2; d++)
+                for (int c = 0; c < 2; c++)
+                    matrix[2 * a + d][2 * b + c] = a == b ? d == c : share * walls->slope[b][d][c];
+        }
+}
+
+/* Newton's method from the guess in `v`; returns 0 if it finds nothing. */
+static inline int correct_contacts(
+    const Touching *of, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2], Walls *walls
+) {
+    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1], before = INFINITY;
+    int m = of->touching, size = 2 * m, found = 0;
+    for (int correction = 0; correction < MOST_CORRECTIONS && !found; correction++) {
         double change = 0.0, scale = 0.0;
-        for (int a = 0; a < m; a++) beyond_disc(v[a], of->y[a], beyond[a], slope[a]);
-        if (m <= 1) break;
-        if (correction == MOST_CORRECTIONS) return 0;
+        fill_rows(of, walls, matrix);
         for (int a = 0; a < m; a++)
             for (int d = 0; d < 2; d++) {
-                double *row = matrix[2 * a + d];
-                row[size] = q[a][d] - v[a][d];
-                for (int b = 0; b < m; b++) {
-                    double share = a == b ? 0.0 : of->K_inv[a][b] / of->k[b];
-                    row[size] -= share * beyond[b][d];
-                    for (int c = 0; c < 2; c++) row[2 * b + c] = a == b ? d == c : share * slope[b][d][c];
-                }
+                double *rest = &matrix[2 * a + d][size];
+                *rest = q[a][d] - v[a][d];
+                for (int b = 0; b < m; b++)
+                    if (a != b) *rest -= of->K_inv[a][b] / of->k[b] * walls->beyond[b][d];
             }
         if (!solve_touching(size, 1, matrix)) return 0;
         for (int a = 0; a < m; a++)
@@ -125,33 +212,43 @@ static inline int solve_contacts(
         if (!isfinite(change)) return 0;
         found = change <= NEXT_IS_NOTHING * scale || (change <= NEARLY * scale && change > before / 2);
         before = change;
-        if (found)
-            for (int a = 0; a < m; a++) beyond_disc(v[a], of->y[a], beyond[a], slope[a]);
+        find_walls(of, v, walls);
+    }
+    return found;
+}
+
+/* The v of those that touch under their q̃, sought from a guess in `v`; returns 0 if none is found. Where `answer` is given,
+   it becomes dF/dq̃, row by row, over the directions of each of those that touch. */
+static inline int solve_contacts(
+    const Touching *of, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2], double F[MAX_STABILIZERS][2],
+    double answer[MOST_TOUCHING][MOST_TOUCHING]
+) {
+    int m = of->touching, size = 2 * m;
+    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1];
+    Walls walls;
+    if (m == 1) v[0][0] = q[0][0], v[0][1] = q[0][1];
+    find_walls(of, v, &walls);
+    if (m > 1 && !correct_contacts(of, q, v, &walls)) {
+        come_near(of, q, v);
+        find_walls(of, v, &walls);
+        if (!correct_contacts(of, q, v, &walls)) return 0;
     }
     for (int a = 0; a < m; a++)
-        for (int d = 0; d < 2; d++) F[a][d] = -beyond[a][d] / of->k[a];
+        for (int d = 0; d < 2; d++) F[a][d] = -walls.beyond[a][d] / of->k[a];
     if (!answer) return 1;
-    for (int a = 0; a < m; a++)
-        for (int d = 0; d < 2; d++) {
-            double *row = matrix[2 * a + d];
-            for (int b = 0; b < m; b++) {
-                double share = a == b ? 0.0 : of->K_inv[a][b] / of->k[b];
-                for (int c = 0; c < 2; c++) row[2 * b + c] = a == b ? d == c : share * slope[b][d][c];
-            }
-            for (int j = 0; j < size; j++) row[size + j] = j == 2 * a + d;
-        }
+    fill_rows(of, &walls, matrix);
+    for (int i = 0; i < size; i++)
+        for (int j = 0; j < size; j++) matrix[i][size + j] = i == j;
     if (m > 1 && !solve_touching(size, size, matrix)) return 0;
     for (int a = 0; a < m; a++)
         for (int d = 0; d < 2; d++)
             for (int j = 0; j < size; j++) {
-                double by = slope[a][d][0] * matrix[2 * a][size + j] + slope[a][d][1] * matrix[2 * a + 1][size + j];
+                double by = 0.0;
+                for (int c = 0; c < 2; c++) by += walls.slope[a][d][c] * matrix[2 * a + c][size + j];
                 answer[2 * a + d][j] = -by / of->k[a];
             }
     return 1;
 }
-
-enum { MOST_ROUNDS = 60, SMOOTHER = 14, MOST_HALVINGS = 40 };
-#define SHARPER 0.1 /* of μ, from step to step: after SMOOTHER of them it is rounding */
 
 /* Whether v lies beyond the disc, so that the stabilizer touches; without clearance it always does. */
 static inline int is_beyond(const double v[2], double y) { return y == 0.0 || hypot(v[0], v[1]) > y; }
@@ -197,80 +294,7 @@ static inline double try_contacts(
     return off_balance(modes, q, tried, wanted);
 }
 
-/* The minimum that F is, with |F_i| made smooth: √(|F_i|² + μ²), in forces times √k_i. */
-typedef struct {
-    int count;
-    double C[MAX_STABILIZERS][MAX_STABILIZERS], root[MAX_STABILIZERS]; /* K⁻¹_ij/√(k_i k_j), √k_i */
-    double q[MAX_STABILIZERS][2], y[MAX_STABILIZERS], mu;
-} Smooth;
-
-static inline double smooth_value(const Smooth *smooth, double u[MAX_STABILIZERS][2]) {
-    double value = 0.0;
-    for (int i = 0; i < smooth->count; i++) {
-        for (int d = 0; d < 2; d++) {
-            double sum = 0.0;
-            for (int j = 0; j < smooth->count; j++) sum += smooth->C[i][j] * u[j][d];
-            value += u[i][d] * (sum / 2 + smooth->q[i][d]);
-        }
-        value += smooth->y[i] * sqrt(u[i][0] * u[i][0] + u[i][1] * u[i][1] + smooth->mu * smooth->mu);
-    }
-    return value;
-}
-
-/* One step of Newton's method towards the minimum, shortened until it goes down; returns 0 where it does not. */
-static inline int go_down(const Smooth *smooth, double u[MAX_STABILIZERS][2]) {
-    int count = smooth->count, size = 2 * count;
-    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1], value = smooth_value(smooth, u), next[MAX_STABILIZERS][2];
-    for (int i = 0; i < count; i++) {
-        double length = sqrt(u[i][0] * u[i][0] + u[i][1] * u[i][1] + smooth->mu * smooth->mu),
-               w = smooth->y[i] / length;
-        for (int d = 0; d < 2; d++) {
-            double *row = matrix[2 * i + d];
-            row[size] = -smooth->q[i][d] - w * u[i][d];
-            for (int j = 0; j < count; j++) {
-                row[size] -= smooth->C[i][j] * u[j][d];
-                for (int c = 0; c < 2; c++) row[2 * j + c] = d == c ? smooth->C[i][j] : 0.0;
-            }
-            for (int c = 0; c < 2; c++)
-                row[2 * i + c] += (d == c ? w : 0.0) - w * u[i][d] * u[i][c] / (length * length);
-        }
-    }
-    if (!solve_touching(size, 1, matrix)) return 0;
-    double share = 1.0;
-    for (int halving = 0; halving < MOST_HALVINGS; halving++, share /= 2) {
-        for (int i = 0; i < count; i++)
-            for (int d = 0; d < 2; d++) next[i][d] = u[i][d] + share * matrix[2 * i + d][size];
-        if (smooth_value(smooth, next) < value) {
-            memcpy(u, next, sizeof next);
-            return 1;
-        }
-    }
-    return 0;
-}
-
-/* v near the solution, whatever the start: the minimum is followed while μ goes to zero. It is convex, so that Newton's
-   method ends at it. */
-static inline void come_near(const Modes *modes, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2]) {
-    Smooth smooth = {.count = modes->beam.n - 1};
-    double u[MAX_STABILIZERS][2] = {{0}};
-    for (int i = 0; i < smooth.count; i++) smooth.root[i] = sqrt(compliance(&modes->beam, i, i));
-    for (int i = 0; i < smooth.count; i++) {
-        smooth.y[i] = modes->y_star[i] / smooth.root[i];
-        for (int j = 0; j < smooth.count; j++)
-            smooth.C[i][j] = compliance(&modes->beam, i, j) / (smooth.root[i] * smooth.root[j]);
-        for (int d = 0; d < 2; d++) {
-            smooth.q[i][d] = q[i][d] / smooth.root[i];
-            smooth.mu = larger(smooth.mu, fabs(smooth.q[i][d]));
-        }
-    }
-    for (int k = 0; k < SMOOTHER; k++, smooth.mu *= SHARPER)
-        for (int step = 0; step < MOST_CORRECTIONS && go_down(&smooth, u); step++) continue;
-    for (int i = 0; i < smooth.count; i++)
-        for (int d = 0; d < 2; d++) {
-            v[i][d] = q[i][d] - smooth.root[i] * u[i][d];
-            for (int j = 0; j < smooth.count; j++) v[i][d] += compliance(&modes->beam, i, j) * u[j][d] / smooth.root[j];
-        }
-}
+enum { MOST_ROUNDS = 60 };
 
 /* The contacts that hold under q̃, with their v: Newton's method with the contacts as they are in the guess `v`, again while
    that brings it nearer; else from near the solution. */
@@ -278,6 +302,9 @@ static inline Contact settle_discs(
     const Modes *modes, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2], Contact contact
 ) {
     int count = modes->beam.n - 1, came_near = 0;
+    Contact everywhere = contact;
+    memset(everywhere.of, TOUCHES, (size_t)count);
+    Touching all = touching_of(modes, everywhere);
     double wanted[MAX_STABILIZERS][2], tried[MAX_STABILIZERS][2], best[MAX_STABILIZERS][2], scale = 0.0, least;
     for (int i = 0; i < count; i++)
         scale = larger(scale, larger(modes->y_star[i], larger(fabs(q[i][0]), fabs(q[i][1]))));
@@ -292,7 +319,7 @@ static inline Contact settle_discs(
         if (nearer) continue;
         if (came_near || least <= ROUNDING * scale) break;
         came_near = 1;
-        come_near(modes, q, v);
+        come_near(&all, q, v);
         off = off_balance(modes, q, v, wanted);
         if (off < least) least = off, memcpy(best, v, sizeof best);
     }

@@ -59,7 +59,6 @@ LARGEST = Structure(MAX_STABILIZERS, MAX_SECTIONS, 1, MAX_POINTS, 1, MAX_SENSORS
 NAMES = {quantity.name: quantity.name for quantity in QUANTITIES} | {
     **{name: name for name in (f"{quantity.name}_slope" for quantity in INPUTS if quantity.slope)},
     **DERIVED,
-    "azimuth": "azimuth",
     "parameters": "parameters",
     "state": "state",
     "start_time": "startTime",

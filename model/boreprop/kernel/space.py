@@ -7,12 +7,10 @@ import numpy as np
 from ..core.errors import ParameterError
 from ..core.ground import Ground
 from ..core.options import Options
+from ..core.quantities import TOOLFACE_REFERENCES
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly
 from .binding import SPATIAL, NativeDrilling
-
-TOOLFACE_REFERENCES = ("gravity", "north", "frame")
-"""From where a toolface counts: from the high side, from north, or from the frame of the bit, which does not twist."""
 
 
 class SpaceDrilling(NativeDrilling):

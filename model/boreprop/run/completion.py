@@ -27,6 +27,8 @@ from .trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
+IN_SPACE = ("eta_pi", "active_weight_on_bit", "stabilizer_contact", "rate_of_penetration")
+"""What the formulas also give of a run in space; the others are those of the plane."""
 INDISPENSABLE = ("bit_inclination", "average_inclination", "stabilizer_force")  # the BHA cannot be drawn without them
 FORCE_ROUNDING = 1e-9  # F*, some millinewtons: far above the rounding errors of a balance in a file of twelve digits
 RATE_DECIMALS = 7  # of a rate in m/s: the further ones are rounding errors of lengths and times
@@ -53,7 +55,7 @@ def complete(run: Trajectory) -> Trajectory:
     """
     columns = Columns(run, case_of(run))
     columns.add_row_by_row()
-    columns.add(ALONG_THE_HOLE)
+    columns.add_along_the_hole()
     completed = replace(run, columns=columns.by_name)
     for name in INDISPENSABLE:
         completed.stack(name)  # raises if it is missing
@@ -139,9 +141,17 @@ class Columns:
 
     def add_row_by_row(self) -> None:
         """Add all that the formulas of `ROW_BY_ROW` give, one from another."""
-        paper = self.case.bha.structure.is_of_the_paper
-        while self.add(ROW_BY_ROW + (OF_THE_BEAM if paper else ())):
+        if self.case.in_space:
+            rows = tuple(formula for formula in ROW_BY_ROW if formula.gives in IN_SPACE)
+        else:
+            rows = ROW_BY_ROW + (OF_THE_BEAM if self.case.bha.structure.is_of_the_paper else ())
+        while self.add(rows):
             pass
+
+    def add_along_the_hole(self) -> None:
+        """Add what the formulas of `ALONG_THE_HOLE` give."""
+        in_space = self.case.in_space
+        self.add(tuple(formula for formula in ALONG_THE_HOLE if not in_space or formula.gives in IN_SPACE))
 
 
 class Formula(NamedTuple):

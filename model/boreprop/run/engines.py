@@ -12,9 +12,10 @@ from ..core.drilling import Drilling
 from ..core.errors import ParameterError
 from ..core.ground import Ground
 from ..core.options import Options, Statistics
-from ..core.quantities import ACTING, values_of
+from ..core.quantities import ACTING, TOOLFACE_REFERENCES, values_of
 from ..core.system import BitRock
 from ..kernel.binding import NativeDrilling, available, why_not
+from ..kernel.space import SpaceDrilling
 
 
 class Engine(Protocol):
@@ -92,15 +93,17 @@ def why_not_native() -> str:
     return why_not()
 
 
-def chosen(choice: str) -> str:
-    """The engine, "native" or "python", that one of `ENGINES` stands for; `ParameterError` if it is none of them."""
+def chosen(choice: str, *, in_space: bool = False) -> str:
+    """The engine, "native" or "python", that one of `ENGINES` stands for; `ParameterError` if it cannot be used."""
     if choice not in ENGINES:
         raise ParameterError("engine", f"must be {', '.join(ENGINES[:-1])} or {ENGINES[-1]}", choice)
-    return engine() if choice == "auto" else choice
+    if in_space and choice == "python":
+        raise ParameterError("engine", "must be native for what drills in space", choice)
+    return engine() if choice == "auto" and not in_space else "native" if in_space else choice
 
 
 def start(case: Case, choice: str, options: Options, ground: Ground | None = None) -> Engine:
-    """A case before its first step, under its first force, in some ground; errors as in `simulate`.
+    """A case before its first step in the plane, under its first force, in some ground; errors as in `simulate`.
 
     Without ground, bit and rock go on as they are at the start, as analyses of a case have them.
     """
@@ -115,4 +118,22 @@ def start(case: Case, choice: str, options: Options, ground: Ground | None = Non
         options=options,
         ground=ground,
         **further,
+    )
+
+
+def start_in_space(case: Case, options: Options) -> Engine:
+    """A case before its first step in space, in its own ground; errors as in `simulate`."""
+    sides = {name: profile.values[0] for name, profile in case.schedule.sides().items()}
+    return SpaceDrilling(
+        case.bha,
+        case.bit,
+        case.survey,
+        case.survey.azimuth,
+        active_weight_on_bit=case.active_weight_on_bit,
+        rss_force=case.schedule.rss_force[0],
+        rss_toolface=sides["rss_toolface"],
+        toolface_reference=TOOLFACE_REFERENCES[int(sides["toolface_reference"])],
+        weight_on_bit=case.weight_on_bit,
+        options=options,
+        ground=case.ground,
     )

@@ -1,6 +1,7 @@
 """Simulates a case: drills it under its inputs and gives the trajectory."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -9,11 +10,11 @@ from numpy.typing import NDArray
 from ..arrays import Floats
 from ..case.case import Case
 from ..core.checks import check_number
-from ..core.errors import CannotContinue
+from ..core.errors import CannotContinue, ParameterError
 from ..core.options import RELATIVE_TOLERANCE, Options
 from ..core.quantities import CLEARANCES, OUTPUTS, ROCK, scalar_names
 from .course import Course, acting, course_of
-from .engines import Engine, chosen, start
+from .engines import Engine, chosen, start, start_in_space
 from .ground import rock_in_layers
 from .trajectory import Stopped, Trajectory
 
@@ -22,6 +23,7 @@ Indices = NDArray[np.intc]
 SAMPLE_INTERVAL = 0.1  # m, the usual distance between rows: about 50 rows for each wave of the paper's rippling hole
 PARTS = 100  # a run reports its progress about this many times
 LONGEST_LEG = 50.0  # ℓ₁, to limit memory: an engine keeps all that it needs to return to the beginning of a leg
+CONSTANT = (*ROCK, "bit_walk_angle", "toolface_reference")  # inputs with a column only where they change
 ROUNDING = 1e-9  # sample intervals: a row this close before the end, or before a change of force, counts as on it
 
 
@@ -33,8 +35,9 @@ def simulate(
     relative_tolerance: float = RELATIVE_TOLERANCE,
     progress: Callable[[float], None] | None = None,
     engine: str = "auto",
+    dimensions: int | None = None,
 ) -> Trajectory:
-    """Drill a case under its inputs: solve the paper's equations (5) to (18) over the drilled length.
+    """Drill a case under its inputs: solve the paper's equations (5) to (18), or those in space, over the length.
 
     Parameters
     ----------
@@ -52,7 +55,9 @@ def simulate(
     engine
         "native" is compiled code. "python" is the same model in Python, many times slower; the two agree but for
         rounding. "auto" is the native engine if it is installed, else the Python one. The trajectory says which one
-        drilled it.
+        drilled it. What drills in space is native only.
+    dimensions
+        3: drill in space, as a case anyway does that is `Case.in_space`; the case of the trajectory says so then.
 
     Returns
     -------
@@ -81,8 +86,10 @@ def simulate(
     length = case.length if length is None else length
     check_number("length", length, above=0.0)
     check_number("sample_interval", sample_interval, above=0.0)
-    engine, course = chosen(engine), course_of(case)
-    drilling = start(case, engine, Options(relative_tolerance), case.ground)
+    if dimensions is not None:
+        case = in_dimensions(case, dimensions)
+    engine, course, options = chosen(engine, in_space=case.in_space), course_of(case), Options(relative_tolerance)
+    drilling = start_in_space(case, options) if case.in_space else start(case, engine, options, case.ground)
     names = scalar_names(OUTPUTS, case.structure)
     table = np.full((int(length / sample_interval + ROUNDING) + 1, len(names)), np.nan)
     lengths, pieces, rows = _in_parts(*_legs(course, len(table), sample_interval), LONGEST_LEG * case.bha.length_scale)
@@ -103,7 +110,7 @@ def simulate(
     columns = {
         name: values
         for name, values in zip(course.names, given, strict=True)
-        if name not in ROCK or course.changes(name)
+        if name not in CONSTANT or course.changes(name)
     }
     if case.in_layers:
         columns |= rock_in_layers(case, outputs[names.index("formation")])
@@ -112,6 +119,21 @@ def simulate(
     if stopped:
         raise Stopped(stopped, trajectory) from failure
     return trajectory
+
+
+def in_dimensions(case: Case, dimensions: int) -> Case:
+    """The case as it is drilled in so many dimensions.
+
+    Raises
+    ------
+    ParameterError
+        If they are neither 2 nor 3, or the case leaves the plane.
+    """
+    made = replace(case, dimensions=dimensions)
+    if dimensions == 2 and made.in_space:
+        constraint = "must be 3 for a case with an azimuth, a walk angle or a toolface other than 0 or 180"
+        raise ParameterError("dimensions", constraint, dimensions)
+    return made
 
 
 def _parts(legs: int, reported: bool, cuts: Indices) -> Iterator[slice]:

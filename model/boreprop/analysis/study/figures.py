@@ -9,7 +9,8 @@ from ...core.quantities import BY_NAME
 from ...run.simulate import simulate
 from ...run.trajectory import Stopped
 from ...units import BUILD_LENGTH
-from ..rippling import State, last_wave
+from ..rippling import last_wave
+from ..search import State
 from ..summary import sum_up
 from .design import with_varied
 

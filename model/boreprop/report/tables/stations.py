@@ -12,12 +12,14 @@ from ...run.trajectory import Trajectory
 from ...units import UNITS
 
 SIGNED = "+z.2f"
-NONE = "–"  # below the end of the plan
+NONE = "–"  # below the end of the plan, or the azimuth of a vertical hole
 
 
 def headings(stations: Stations) -> tuple[str, ...]:
     """The headings of the columns of `lines`, with their units; `caption` says what they mean."""
     named = [("MD", "m"), ("incl.", "rad"), ("TVD", "m"), ("displ.", "m"), ("DLS", "rad/m")]
+    if stations.azimuth is not None:
+        named[2:4] = [("azim.", "rad"), ("TVD", "m"), ("north", "m"), ("east", "m")]
     if stations.deviation is not None:
         named += [("planned", "rad"), ("off plan", "rad"), ("off plan", "m")]
     return tuple(f"{name}\n({UNITS[unit].shown})" for name, unit in named)
@@ -32,6 +34,9 @@ def lines(stations: Stations) -> list[tuple[str, ...]]:
         _cells("m", stations.displacement, ".2f"),
         _cells("rad/m", stations.dogleg_severity, ".2f"),
     ]
+    if stations.azimuth is not None and stations.north is not None and stations.east is not None:
+        columns[3:4] = [_cells("m", stations.north, ".2f"), _cells("m", stations.east, ".2f")]
+        columns.insert(2, _cells("rad", stations.azimuth, ".1f"))
     if (off := stations.deviation) is not None:
         columns += [
             _cells("rad", off.planned_inclination),
@@ -48,9 +53,11 @@ def _cells(unit: str, values: Floats, digits: str = "") -> list[str]:
 def caption(stations: Stations) -> str:
     """What the columns of `lines` mean."""
     over = UNITS["m"].text(stations.averaging_length, ".3g")
+    in_plane = stations.azimuth is None
     text = (
-        "MD: measured depth. TVD, displ.: vertical and horizontal distance from the bit at the start. "
-        f"Inclinations: means over the last {over} of hole. "
+        f"MD: measured depth. TVD, {'displ.: vertical and horizontal' if in_plane else 'north, east:'} distance "
+        "from the bit at the start. "
+        f"Inclinations{'' if in_plane else ' and azimuths'}: means over the last {over} of hole. "
         f"DLS: dogleg severity since the station before, at least over {over}."
     )
     return text if stations.deviation is None else f"{text} Off plan: + to the high side of its nearest point."
