@@ -1,16 +1,20 @@
 """The kinks ahead: the lattice of images of each jump in the hole."""
 
 import json
-from math import inf
+from math import factorial, inf
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.polynomial import Polynomial
 
-from boreprop.core.kinks import Kinks
+from boreprop.core import radau
+from boreprop.core.kinks import Kinks, harm_of
 
 S = (1.0, 1.7, 2.9)
 GAINS = [1.0, 1.0, 1.0]
+ANY = (1.0, 1.0, 1.0, 1.0)  # harm
 NOWHERE_NEAR = 1e-12
 
 places = st.lists(st.floats(0.0, 50.0), min_size=1, max_size=6, unique=True)
@@ -25,11 +29,11 @@ def test_each_jump_comes_back_once_at_every_stabilizer(jumps: list[float]) -> No
     kinks = Kinks(S)
     for xi in sorted(jumps):
         kinks.add_images(xi, 1, 0.1)
-    met, at = [], kinks.next_kink(-1.0, inf, GAINS, 0.0)
+    met, at = [], kinks.next_kink(-1.0, inf, GAINS, ANY, 0.0)
     while at < inf:
         met.append(at)
         assert taken(kinks, at) == 2
-        at = kinks.next_kink(at, inf, GAINS, 0.0)
+        at = kinks.next_kink(at, inf, GAINS, ANY, 0.0)
     images = sorted({xi + s_i for xi in jumps for s_i in S})
     for image in images:
         assert min(abs(image - at) for at in met) <= 1e-9
@@ -59,12 +63,28 @@ def test_jumps_in_smoother_derivatives_are_not_kept() -> None:
 
 
 def test_a_step_may_pass_over_a_jump_that_changes_it_by_less_than_the_tolerance() -> None:
-    """By h²/2 times the jump of Y' at a stabilizer, times the gain there."""
-    kinks = Kinks((1.0,))
+    """By (2h)²/2 times the jump of Y' at a stabilizer, times the gain there, before inputs change."""
+    kinks, harm = Kinks((1.0,)), harm_of(0.2, 0.1, False)
     kinks.add_images(0.0, 1, 1e-3)
     change = 5.0 * 1e-3 * 0.4**2 / 2
-    assert kinks.next_kink(0.9, 0.4, [5.0], 1.01 * change) == inf
-    assert kinks.next_kink(0.9, 0.4, [5.0], 0.99 * change) == 1.0
+    assert kinks.next_kink(0.9, 0.4, [5.0], harm, 1.01 * change) == inf
+    assert kinks.next_kink(0.9, 0.4, [5.0], harm, 0.99 * change) == 1.0
+
+
+@pytest.mark.parametrize("order", [1, 2, 3])
+@pytest.mark.parametrize("theta_weight", [0.0, 10.0])
+def test_a_kink_harms_a_step_by_what_collocation_errs_over_it(order: int, theta_weight: float) -> None:
+    """The largest error of a polynomial through the Radau nodes, and of its integral, by brute force."""
+    h, largest = 0.3, 0.0
+    nodes = np.delete(np.array(radau.POINTS), radau.AT_CHECK)
+    t = np.linspace(0.0, 1.0, 801)
+    for start in np.linspace(0.0, 1.0, 401):
+        interpolation = Polynomial.fit(nodes, np.maximum(nodes - start, 0.0) ** order, len(nodes) - 1, domain=[-1, 1])
+        wave, integral = np.maximum(t - start, 0.0) ** order, np.maximum(t - start, 0.0) ** (order + 1) / (order + 1)
+        missed = np.abs(wave - interpolation(t)).max() * h**order * theta_weight
+        largest = max(largest, missed, np.abs(integral - interpolation.integ(lbnd=0.0)(t)).max() * h ** (order + 1))
+    exact = largest / factorial(order)
+    assert harm_of(h, theta_weight, True)[order] == pytest.approx(min(exact, harm_of(h, 0.0, False)[order]), rel=0.02)
 
 
 def test_saved_kinks_are_the_same_after_a_journey_through_json() -> None:

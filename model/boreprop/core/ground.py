@@ -2,6 +2,7 @@
 
 from bisect import bisect_right
 from dataclasses import dataclass
+from itertools import chain
 from math import inf
 from typing import Any, NamedTuple
 
@@ -88,7 +89,7 @@ class Ground:
         """All of it, in the order in which the kernel takes it."""
         given = values_of("bit", self.bit)
         wear = (self.wear.weight_per_metre, self.wear.largest_weight) if self.wear else (0.0, 0.0)
-        return [*(given[name] for name in ROCK), *wear, *self.tops, *(value for row in self.rock for value in row)]
+        return [*(given[name] for name in ROCK), *wear, *self.tops, *chain.from_iterable(self.rock)]
 
     @property
     def first_layer(self) -> int:

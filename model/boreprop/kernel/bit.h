@@ -10,11 +10,6 @@ typedef struct {
     double count, inclination;
 } Reading;
 
-/* A range of inclinations. */
-typedef struct {
-    double low, high;
-} Range;
-
 #define BLIND 1.0 /* ℓ₁: for how long the hole at a point of the body is not looked at, at most */
 
 /* The inclinations of the hole behind the bit, over its reach and BLIND and somewhat beyond. */

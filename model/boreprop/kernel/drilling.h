@@ -155,13 +155,20 @@ static inline Status drilling_start(Drilling *d, const Survey *survey, Inputs in
     return begin(&d->integrator, survey, d->scaled, problem);
 }
 
+/* Whether the way to `xi` lies within the present step and layer, so that nothing but the bit moves unless inputs do. */
+static inline int is_ahead(const Drilling *d, double xi) {
+    const Integrator *p = &d->integrator;
+    return p->exit_known && xi <= p->now.step.end && !(p->exit_side && p->exit <= xi) &&
+           d->ground.weight_per_metre == 0;
+}
+
 /* Drill on to `xi` through the ground, under inputs that are given for a sharp bit and the rock without layers; as `drill`. */
 static inline Status drill_through(Drilling *d, double xi, Inputs given, Problem *problem) {
     Integrator *p = &d->integrator;
     State *now = &p->now;
     double l1 = length_scale(&d->system), start = d->drilled_length / l1, end;
     int left;
-    if (!set_out(p)) return FULL;
+    if (!is_ahead(d, xi) && !set_out(p)) return FULL;
     if (d->system.structure.axial) given.weight_on_bit = whole_weight(given);
     do {
         double until, way = (now->xi - start) * l1;
@@ -172,7 +179,7 @@ static inline Status drill_through(Drilling *d, double xi, Inputs given, Problem
         Status status = good && take_given(d, inputs, problem) ? DONE : FAILED;
         end = smaller(xi, until / l1);
         if (status == DONE && are_others(now, d->scaled, end - now->xi)) {
-            if (!has_room(p)) return FULL;
+            if (!set_out(p) || !has_room(p)) return FULL;
             status = steer(p, d->scaled, problem);
         }
         if (status == DONE) status = drill_in_layer(p, &d->ground, end, &left, problem);

@@ -4,12 +4,13 @@
 
 #include "events.h"
 
-#define STAY 0.01       /* m: a bit that has met a layer drills so far in it at least */
-#define AT_TOP 1e-9     /* m: a bit this little beyond the bound of a layer, by rounding, is at it */
-#define LEAST_LEFT 1e-3 /* of the weight that wear flats bear is left as active weight, at least */
-#define ROUNDED 1e-12   /* relative: a length so little before that of a change is at it */
-enum { LOOKS = 4 };     /* of a step, at whose ends the depth is looked at */
-enum { ROCK = 3 };      /* η, χ, ψ* */
+#define STAY 0.01          /* m: a bit that has met a layer drills so far in it at least */
+#define AT_TOP 1e-9        /* m: a bit this little beyond the bound of a layer, by rounding, is at it */
+#define LEAST_LEFT 1e-3    /* of the weight that wear flats bear is left as active weight, at least */
+#define ROUNDED 1e-12      /* relative: a length so little before that of a change is at it */
+#define UPRIGHT_ENOUGH 1.5 /* rad: an inclination up to which the bit goes down, somewhat less than a right angle */
+enum { LOOKS = 4 };        /* of a step, at whose ends the depth is looked at */
+enum { ROCK = 3 };         /* η, χ, ψ* */
 
 /* Layers are numbered from the top; the first one, 0, has no top of its own. Without numbers there is nothing of this. */
 typedef struct {
@@ -83,9 +84,20 @@ static inline double way_down(const Step *step, double xi) {
     return path[AXES - 1];
 }
 
-/* Where in [a, b] the bit passes a depth below the start of a step on `side`, f_b beyond it at b, as `crossing` does. */
-static inline double pass_depth(const Step *step, double limit, int side, double a, double b, double f_b) {
-    double f_a = side * (way_down(step, a) - limit), c = b;
+/* How inclined the hole is along a step, at least and at most, as far as a bound of its polynomial shows; in the plane. */
+static inline Range inclination_of(const Step *step) {
+    const double *Y = step->x[LATERAL];
+    double turn = 0.0, start = fabs(Y[1]);
+    for (int m = 2; m <= S; m++) turn += m * fabs(Y[m]);
+    Range range = {larger(start - turn, 0.0) / step->h, (start + turn) / step->h};
+    if (DIRECTIONS > 1) range.low = 0.0, range.high = INFINITY;
+    return range;
+}
+
+/* Where in [a, b] the bit passes a depth below the start of a step on `side`, f_a and f_b beyond it at a and b, as
+   `crossing` does. */
+static inline double pass_depth(const Step *step, double limit, int side, double a, double b, double f_a, double f_b) {
+    double c = b;
     if (f_a >= 0) return a;
     for (int k = 0; k < MOST_TRIES; k++) {
         c = (a * f_b - b * f_a) / (f_b - f_a);
@@ -103,15 +115,19 @@ static inline double pass_depth(const Step *step, double limit, int side, double
 /* Where the bit first is outside of its layer along a step, from `begin` on; on which side, 1 below, −1 above, or 0 if
    nowhere. The step starts at `depth`, and the layer lies between `top` and `bottom`, in the unit of the step. */
 static inline int first_exit(const Step *step, double depth, double top, double bottom, double begin, double *where) {
-    const int looks = LOOKS;
+    Range inclined = inclination_of(step);
+    int falls = inclined.high < UPRIGHT_ENOUGH;
+    const int looks = falls ? 1 : LOOKS; /* where the bit only goes down its end shows it */
     double way = step->end - step->xi, part = (step->end - begin) / looks, found[LOOKS];
     Sample samples[2 * LOOKS + 2];
     int count = 0;
     top -= depth, bottom -= depth;
     if (begin > step->end || (-way > top && way < bottom)) return 0; /* a path is no deeper than long */
-    for (int k = 0; k <= LOOKS; k++) {
-        double xi = k < LOOKS ? begin + k * part : step->end;
-        Sample at = {xi, way_down(step, xi)};
+    double square = inclined.low * inclined.low; /* and if it is inclined less deep: cos Θ <= 1 − Θ²/2 + Θ⁴/24 */
+    if (falls && top <= CLOSE && way * (1 - square / 2 * (1 - square / 12)) < bottom) return 0;
+    for (int k = 0; k <= looks; k++) {
+        double xi = k < looks ? begin + k * part : step->end;
+        Sample at = {xi, xi > step->xi ? way_down(step, xi) : 0.0};
         samples[count++] = at;
     }
     int turns = step->end > begin ? extremes(samples, count, found) : 0;
@@ -124,7 +140,9 @@ static inline int first_exit(const Step *step, double depth, double top, double 
         if (!side) continue;
         double limit = side > 0 ? bottom : top, beyond = side * (samples[k].value - limit);
         *where = samples[k].xi;
-        if (k) *where = pass_depth(step, limit, side, samples[k - 1].xi, samples[k].xi, beyond);
+        if (!k) return side;
+        Sample before = samples[k - 1];
+        *where = pass_depth(step, limit, side, before.xi, *where, side * (before.value - limit), beyond);
         return side;
     }
     return 0;

@@ -101,7 +101,9 @@ static inline Plan first_plan(const Step *last, int kink, const Law *law, double
 static inline void choose_length(const Integrator *p, const Law *law, double xi, Plan *plan) {
     double largest = smaller(smaller(p->options.largest_step, p->now.places.nearest), law->longest);
     double h = smaller(plan->planned, largest);
-    double way = next_kink(&p->now.kinks, &p->now.places, law->gains, p->options.relative_tolerance, xi, 2 * h) - xi;
+    Harm harm = harm_of(h, p->options.theta_weight, p->now.inputs_xi > 0);
+    double tolerance = p->options.relative_tolerance;
+    double way = next_kink(&p->now.kinks, &p->now.places, law->gains, &harm, tolerance, xi, 2 * h) - xi;
     double longest = plan->repeated ? h : smaller(STRETCH * h, largest);
     if (way < 2 * h) h = way <= longest ? way : way / 2;
     plan->h = h;

@@ -18,6 +18,11 @@ typedef struct {
 #endif
 } Step;
 
+/* A range of inclinations. */
+typedef struct {
+    double low, high;
+} Range;
+
 #ifdef SPACE
 /* Whatever the law in space says at one place. */
 typedef struct {

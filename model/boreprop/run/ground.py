@@ -1,6 +1,7 @@
 """What the case of a run says of each of its rows: bit and rock there, clearances, and how blunt the bit is."""
 
 from collections.abc import Mapping
+from itertools import chain
 
 import numpy as np
 
@@ -20,7 +21,8 @@ def rock_in_layers(case: Case, formation: Floats) -> dict[str, Floats]:
     ground, columns = case.ground, dict[str, Floats]()
     assert ground is not None
     own, layer = values_of("bit", ground.bit), formation.astype(np.intp)
-    for name, values in zip(ROCK, np.array(ground.rock).T, strict=True):
+    rocks = np.fromiter(chain.from_iterable(ground.rock), float).reshape(-1, len(ROCK))
+    for name, values in zip(ROCK, rocks.T, strict=True):
         rock = np.where(values == 0.0, own[name], values)
         if (rock != rock[0]).any():
             columns[name] = rock[layer]
