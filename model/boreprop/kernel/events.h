@@ -25,23 +25,28 @@ typedef struct {
     const Bound *bound;
 } Watch;
 
-/* The bounded value at `xi`. */
-static inline double watched_value(const Watch *watch, double xi) {
+/* A value along a step, at `xi`, of what there is to know for it. */
+typedef double ValueAlong(const void *what, double xi);
+
+/* The bounded value of a Watch at `xi`. */
+static inline double watched_value(const void *what, double xi) {
+    const Watch *watch = what;
     double x[COMPONENTS], delayed[MAX_PLACES][DIRECTIONS];
     step_state(&watch->trial->step, xi, x);
     hole_at_places(watch->hole, watch->places, xi, delayed);
     return law_at(watch->law, watch->bound, watch->trial, xi, x, delayed);
 }
 
-/* Where the bound is passed on `side` in [a, b], at whose end the value lies f_b beyond it, by regula falsi with the
-   weights of Anderson and Björck. */
-static inline double crossing(const Watch *watch, int side, double a, double b, double f_b) {
-    double limit = side > 0 ? watch->bound->upper : watch->bound->lower;
-    double f_a = side * (watched_value(watch, a) - limit), c = b;
+/* Where in [a, b] a value passes `limit` on `side`, by regula falsi with the weights of Anderson and Björck; f_a and f_b
+   say how far beyond it is at a and b. */
+static inline double crossing(
+    ValueAlong *value, const void *what, double limit, int side, double a, double b, double f_a, double f_b
+) {
+    double c = b;
     if (f_a >= 0) return a;
     for (int k = 0; k < MOST_TRIES; k++) {
         c = (a * f_b - b * f_a) / (f_b - f_a);
-        double f_c = side * (watched_value(watch, c) - limit);
+        double f_c = side * (value(what, c) - limit);
         if (fabs(f_c) < CLOSE_ENOUGH || fabs(b - a) < CLOSE) break;
         if ((f_c > 0) == (f_b > 0)) {
             double weight = 1 - f_c / f_b;
@@ -98,7 +103,9 @@ static inline int meet(const Watch *watch, double slack, const double values[POI
         int side = side_beyond(samples[k].value, bound->lower, bound->upper, slack);
         double limit = side > 0 ? bound->upper : bound->lower;
         if (!side) continue;
-        *where = crossing(watch, side, samples[k - 1].xi, samples[k].xi, side * (samples[k].value - limit));
+        double before = samples[k - 1].xi, f_a = side * (watched_value(watch, before) - limit);
+        double f_b = side * (samples[k].value - limit);
+        *where = crossing(watched_value, watch, limit, side, before, samples[k].xi, f_a, f_b);
         return side;
     }
     return 0;

@@ -77,8 +77,8 @@ static inline int wear_off(
     return 0;
 }
 
-/* How far down the bit goes from the start of a step. */
-static inline double way_down(const Step *step, double xi) {
+/* How far down the bit goes from the start of a Step. */
+static inline double way_down(const void *step, double xi) {
     double path[AXES] = {0};
     move_along(step, xi, path);
     return path[AXES - 1];
@@ -92,24 +92,6 @@ static inline Range inclination_of(const Step *step) {
     Range range = {larger(start - turn, 0.0) / step->h, (start + turn) / step->h};
     if (DIRECTIONS > 1) range.low = 0.0, range.high = INFINITY;
     return range;
-}
-
-/* Where in [a, b] the bit passes a depth below the start of a step on `side`, f_a and f_b beyond it at a and b, as
-   `crossing` does. */
-static inline double pass_depth(const Step *step, double limit, int side, double a, double b, double f_a, double f_b) {
-    double c = b;
-    if (f_a >= 0) return a;
-    for (int k = 0; k < MOST_TRIES; k++) {
-        c = (a * f_b - b * f_a) / (f_b - f_a);
-        double f_c = side * (way_down(step, c) - limit);
-        if (fabs(f_c) < CLOSE_ENOUGH || fabs(b - a) < CLOSE) break;
-        if ((f_c > 0) == (f_b > 0)) {
-            double weight = 1 - f_c / f_b;
-            f_a *= weight > 0 ? weight : 0.5;
-        } else a = b, f_a = f_b;
-        b = c, f_b = f_c;
-    }
-    return c;
 }
 
 /* Where the bit first is outside of its layer along a step, from `begin` on; on which side, 1 below, −1 above, or 0 if
@@ -142,7 +124,7 @@ static inline int first_exit(const Step *step, double depth, double top, double 
         *where = samples[k].xi;
         if (!k) return side;
         Sample before = samples[k - 1];
-        *where = pass_depth(step, limit, side, before.xi, *where, side * (before.value - limit), beyond);
+        *where = crossing(way_down, step, limit, side, before.xi, *where, side * (before.value - limit), beyond);
         return side;
     }
     return 0;
