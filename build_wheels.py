@@ -28,7 +28,8 @@ def build_all(output: Path) -> Iterator[Path]:
         sources = build("sdist", ROOT, output, dated)
         yield sources
         with tarfile.open(sources) as archive:
-            archive.extractall(place, filter="data")
+            archive.extraction_filter = getattr(tarfile, "data_filter", None)  # which Python 3.11.3 has not
+            archive.extractall(place)
         tree = Path(place, sources.name.removesuffix(".tar.gz"))
         for platform in PLATFORMS:
             yield build("wheel", tree, output, {**dated, "BOREPROP_PLATFORM": platform})
