@@ -138,7 +138,7 @@ def test_what_of_others_is_linked_into_those_for_linux_is_named(
     assert binary.needs == stripped.needs
     assert binary.exports == stripped.exports
     assert binary.inside == {"fmi2.c", "stat-2.32.c"}
-    assert kernel.inside == {"library.c"}
+    assert kernel.inside == {"library.c", "space.c"}
     assert "io/stat-2.32.c" in THIRD_PARTY.read_text(encoding="utf-8")
 
 
