@@ -15,10 +15,11 @@ from boreprop.case.case import Case, InputSchedule
 from boreprop.case.file import load_case
 from boreprop.case.formations import Formation
 from boreprop.core.ground import Wear
-from boreprop.run.simulate import simulate
+from boreprop.run.simulate import SAMPLE_INTERVAL, simulate
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 LENGTH, LAYERS, ROUNDS = 3000.0, 1000, 15
+INTERVALS = (1.0, SAMPLE_INTERVAL)  # m
 SHARES = (0.7, 1.0, 1.4)  # of its own η that the rock has from layer to layer
 
 
@@ -41,10 +42,10 @@ def opening(case: Case) -> Case:
     return replace(case, inputs=inputs)
 
 
-def seconds(case: Case) -> float:
-    """CPU time of a run with a row each metre, s."""
+def seconds(case: Case, interval: float) -> float:
+    """CPU time of a run with rows at an interval, m, in s."""
     begin = process_time()
-    simulate(case, sample_interval=1.0, engine="native")
+    simulate(case, sample_interval=interval, engine="native")
     return process_time() - begin
 
 
@@ -58,14 +59,15 @@ def main() -> None:
     for name in ("paper_case", "build_section"):
         case = replace(load_case(EXAMPLES / f"{name}.toml"), length=LENGTH)
         cases = {label: change(case) for label, change in changed.items()}
-        ratios: dict[str, list[float]] = {label: [] for label in cases}
-        for _ in range(ROUNDS):
-            alone = seconds(case)
-            for label, each in cases.items():
-                ratios[label].append(seconds(each) / alone)
-        print(f"{name}, {LENGTH:g} m, {1e3 * alone:.1f} ms of CPU without anything of this")
-        for label, some in ratios.items():
-            print(f"    {label}: {median(some):.2f} times that")
+        for interval in INTERVALS:
+            ratios: dict[str, list[float]] = {label: [] for label in cases}
+            for _ in range(ROUNDS):
+                alone = seconds(case, interval)
+                for label, each in cases.items():
+                    ratios[label].append(seconds(each, interval) / alone)
+            print(f"{name}, rows of {interval:g} m, {LENGTH:g} m, {1e3 * alone:.1f} ms of CPU without anything of this")
+            for label, some in ratios.items():
+                print(f"    {label}: {median(some):.2f} times that")
 
 
 if __name__ == "__main__":

@@ -30,7 +30,11 @@ nitpicky = True
 nitpick_ignore_regex = [  # types of other projects, whose documentation is not fetched
     ("py:.*", r"(python:|pathlib|collections\.abc|concurrent|numpy|rerun|Dataset|DataArray).*"),
 ]
-nitpick_ignore = [("py:class", "boreprop.analysis.stability.characteristic.Characteristic")]  # not for scripts
+nitpick_ignore = [  # not for scripts
+    ("py:class", "boreprop.analysis.stability.characteristic.Characteristic"),
+    ("py:class", "boreprop.core.ground.Ground"),
+    ("py:class", "boreprop.core.quantities.Structure"),
+]
 default_role = "code"
 suppress_warnings = ["mystnb.unknown_mime_type"]
 

@@ -167,8 +167,13 @@ def test_a_binary_that_is_asked_for_must_be_there(case: Case, tmp_path: Path) ->
     assert not list(tmp_path.iterdir())
 
 
-def test_the_command_compiles_what_is_asked_for(command_here: Command, paper_case: Path, tmp_path: Path) -> None:
+def test_the_command_compiles_what_is_asked_for(
+    command_here: Command, paper_case: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     pytest.importorskip("ziglang")
+    monkeypatch.setattr(
+        "boreprop_fmu.cli.build.BINARIES", tmp_path / "binaries"
+    )  # others pack all that is in the usual one
     done = command_here("boreprop-fmu", "build", paper_case, "--platforms", "win64", "--output", "a.fmu")
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.endswith("MB, native: win64, C sources\n")

@@ -14,7 +14,7 @@ from boreprop.kernel.compiler import CompilerError
 from boreprop.report.tables.sag import steadily_outside
 from boreprop.run.files import files_read
 
-from ..native.binaries import LAWS, PLATFORMS, build_binaries, check_platform, is_compiled
+from ..native.binaries import BINARIES, LAWS, PLATFORMS, build_binaries, check_platform, is_compiled
 from ..pack.build import IDENTIFIER, RUNTIMES, build_fmu
 from ..pack.python import ADVICE
 
@@ -50,7 +50,7 @@ def build_command(
         _compile_missing(chosen or [])
     if not case.in_space and (warning := steadily_outside(case)):
         console.warn(f"{case_file}: {warning}")
-    build_fmu(case, output, runtime=runtime, name=name, platforms=chosen)
+    build_fmu(case, output, runtime=runtime, name=name, platforms=chosen, binaries=BINARIES)
     with ZipFile(output) as archive:
         folders = [path.split("/") for path in archive.namelist()]
     is_native = any(path[0] == "sources" for path in folders)
@@ -74,12 +74,12 @@ def _compile_missing(platforms: list[str]) -> None:
     """Compile what is not there, or stale, for platforms that were asked for."""
     for platform in platforms:
         check_platform(platform)
-    missing = [platform for platform in platforms if not all(is_compiled(platform, in_space=law) for law in LAWS)]
+    missing = [platform for platform in platforms if not all(is_compiled(platform, BINARIES, law) for law in LAWS)]
     if not missing:
         return
-    with console.progress("compiling", len(missing)) as done:
+    with console.progress("compiling", len(missing) * len(LAWS)) as done:
         try:
-            for count, _ in enumerate(build_binaries(missing), start=1):
+            for count, _ in enumerate(build_binaries(missing, BINARIES), start=1):
                 done(count)
         except CompilerError as error:
             raise InputError(f"--platforms: {error}") from error

@@ -19,7 +19,10 @@ COMMANDS = {  # name → module and what it does
     "hysteresis": ("boreprop.cli.tipping", "Draw where a ripple dies out on the way up, and returns on the way down."),
     "roots": ("boreprop.cli.stability", "Print whether each mode of a case is stable, drifts or oscillates."),
     "stability": ("boreprop.cli.stability", "Draw the stability chart of a case over ηΠ and λ₂, and print its limits."),
-    "spiral": ("boreprop.cli.spiral", "Print the spiral into which a case drills a vertical hole, and where it ends."),
+    "spiral": (
+        "boreprop.cli.spiral",
+        "Print the spiral into which a case drills a vertical hole, whether it lasts, and where it ends.",
+    ),
     "figures": ("boreprop.cli.figures", "Draw the paper's figures 6, 7 and 8 (PNG)."),
 }
 

@@ -17,7 +17,7 @@ from ...arrays import Complexes, Floats
 from ...case.case import Case
 from ...core.beam import Beam
 from ...core.survey import Survey
-from ...core.system import scale
+from ...core.system import check_in_plane, scale
 from ...run.simulate import simulate
 from ...run.trajectory import Trajectory
 from ..rippling import find_rippling
@@ -52,9 +52,10 @@ def transverse_growth(case: Case) -> TransverseGrowth:
 
     Errors are those of `simulate`; a bit that walks has no planar ripple and is refused.
     """
+    check_in_plane(case.bit)
     l1 = case.length_scale
-    vertical = replace(case, survey=Survey((0.0, l1), (0.0, DOGLEG)), inputs=None, formations=())
-    vertical = replace(vertical, schedule=type(case.schedule)())
+    alone = replace(case, schedule=type(case.schedule)(), inputs=None, formations=(), wear=None, dimensions=2)
+    vertical = replace(alone, survey=Survey((0.0, l1), (0.0, DOGLEG)))
     run = simulate(vertical, length=SETTLED * l1, sample_interval=FINE * l1)
     if not find_rippling(run).ripples:
         return TransverseGrowth(nan, nan)
