@@ -25,9 +25,10 @@ PROGRAMS: dict[str, Any] = {
     "boreprop-view": boreprop_viz.cli,
 }
 NUMBERS = {"n": "[1…n]", "n-1": "[1…n−1]", "sections": "[1…]", "points": "[1…]", "sensors": "[1…]"}
+NUMBERS |= {"space n-1": "[1…n−1]", "space sensors": "[1…]"}
 ONLY = dict.fromkeys(("sections", "stepped"), "only with sections")
 ONLY |= dict.fromkeys(("points", "body"), "only with body_contact") | {"axial": "only with axial_load"}
-ONLY["sensors"] = "only with [[sensor]]"
+ONLY |= {"sensors": "only with [[sensor]]", "space sensors": "only with [[sensor]], in space"}
 
 
 def variables(role: str) -> str:

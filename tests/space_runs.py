@@ -37,11 +37,12 @@ class SpatialCase:
     force: float = 0.0
     toolface: float = 0.0
     reference: str = "gravity"
+    sensors: tuple[float, ...] = ()
 
     def begin(self, **options: float) -> SpaceDrilling:
         """The run before its first step."""
         return SpaceDrilling(
-            BottomHoleAssembly(self.s, self.y_star, self.Delta, self.w, 1 / 3),
+            BottomHoleAssembly(self.s, self.y_star, self.Delta, self.w, 1 / 3, sensor_positions=self.sensors),
             BitRock(1.0, self.epsilon, self.psi_star, self.walk),
             Survey(tuple(xi - self.stations[0] for xi in self.stations), self.inclination),
             self.azimuth,

@@ -42,3 +42,13 @@ def test_without_sensors_there_are_no_plots_of_them(case: Case) -> None:
         assert (SENSED.keys() <= scales.ranges.keys()) == bool(count)
         assert bool(SENSED.keys() & scales.ranges.keys()) == bool(count)
     assert PLOTS.keys() >= SENSED.keys()
+
+
+def test_in_space_a_sensor_has_an_azimuth(case: Case, tmp_path: Path) -> None:
+    bha = replace(case.bha, sensor_positions=(2.0, 5.0))
+    turned = replace(case, bha=bha, survey=replace(case.survey, azimuth=(0.5, 0.6, 0.7)))
+    run, path = simulate(turned, length=6.0, sample_interval=0.5), tmp_path / "run.rrd"
+    record(run, save=path)
+    shown = read(path, "plots/sensor_azimuth/sensor_azimuth_2", "Scalars:scalars")
+    azimuths = [shown[tick][0] for tick in sorted(shown)]
+    np.testing.assert_allclose(azimuths, np.degrees(run["sensor_azimuth[2]"]), rtol=1e-4)

@@ -166,6 +166,10 @@ PLOTS_IN_SPACE = {
     "stabilizer_force": replace(PLOTS["stabilizer_force"], title="Contact forces"),
     "rss_force": replace(PLOTS["rss_force"], title="RSS force"),
     "rss_toolface": Plot("Toolface", ("rss_toolface",), (RSS,)),
+    "sensor_inclination": PLOTS["sensor_inclination"],
+    "sensor_azimuth": Plot("Azimuth at the sensors", ("sensor_azimuth",), BY_SENSOR),
+    "sensor_bending_moment": PLOTS["sensor_bending_moment"],
+    "sensor_clearance": PLOTS["sensor_clearance"],
     "active_weight_on_bit": PLOTS["active_weight_on_bit"],
     "rate_of_penetration": PLOTS["rate_of_penetration"],
 }
@@ -173,6 +177,7 @@ TABS_IN_SPACE = (
     ("Hole", ("inclination", "azimuth", "build_rate")),
     ("Tilt", ("bit_tilt", "bit_lateral_force")),
     ("Forces", ("stabilizer_force", "rss_force", "rss_toolface")),
+    ("Sensors", ("sensor_inclination", "sensor_azimuth", "sensor_bending_moment", "sensor_clearance")),
     ("Drilling", ("active_weight_on_bit", "rate_of_penetration")),
 )
 TABS = (  # names of tabs and the plots in each

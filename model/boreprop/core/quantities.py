@@ -27,6 +27,7 @@ Size = Literal[
     "sensors",
     "space",
     "space n-1",
+    "space sensors",
     "column",
     "space column",
 ]  # "column": as long as its table
@@ -84,6 +85,7 @@ def counts(structure: Structure) -> dict[str, int]:
         "sensors": sensors,
         "space": space,
         "space n-1": space * (n - 1),
+        "space sensors": space * sensors,
         "space column": space,
     }
 
@@ -149,7 +151,7 @@ class Quantity:
     @property
     def is_list(self) -> bool:
         """Whether its values are numbered."""
-        return self.size in ("n", "n-1", "sections", "points", "sensors", "space n-1")
+        return self.size in ("n", "n-1", "sections", "points", "sensors", "space n-1", "space sensors")
 
     @property
     def acts(self) -> bool:
@@ -178,11 +180,9 @@ SHAPE = (
     *("section_length", "section_distributed_weight", "section_flexural_stiffness", "end_deflection"),
     *("body_point_position", "body_point_clearance"),
 )
-FORCE = ("rss_force", "weight_on_bit", "survey_file", *SHAPE)
+FORCE = ("rss_force", "rss_toolface", "toolface_reference", "weight_on_bit", "survey_file", *SHAPE)
 INSTRUMENT = ("sensor_bias", "sensor_noise", "sensor_seed")
-FORCE_AND_WEIGHT = (*FORCE, "active_weight_on_bit", "lateral_steering_resistance", "bit_tilt_limit")
-FORCE_IN_SPACE = (*FORCE, "rss_toolface", "toolface_reference")
-IN_SPACE = (*FORCE_AND_WEIGHT, "rss_toolface", "toolface_reference", "bit_walk_angle")
+FORCE_AND_WEIGHT = (*FORCE, "active_weight_on_bit", "lateral_steering_resistance", "bit_tilt_limit", "bit_walk_angle")
 
 QUANTITIES: tuple[Quantity, ...] = (
     Quantity("drilled_length", "output", "m", "ξ ℓ₁", "(17)", "length drilled since the start of the run", at_least=0.0, nominal=100.0, key="rss.drilled_length", field="schedule.drilled_length"),
@@ -213,20 +213,23 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("body_contact_position", "output", "m", "s", "", "where that force acts, from the bit; 0 if the body touches no wall", size="body", at_least=0.0, nominal=10.0, follows=FORCE),
     Quantity("wall_distance", "output", "m", "", "", "least distance of the body from the wall", size="body", nominal=1e-2, follows=FORCE),
     Quantity("bit_azimuth", "output", "rad", "", "", "azimuth of the bit axis, from north over east", size="space", follows=("survey_file",)),
-    Quantity("borehole_azimuth", "output", "rad", "", "", "azimuth of the borehole at the bit, from north over east", size="space", follows=IN_SPACE),
-    Quantity("bit_tilt_high", "output", "rad", "ψ", "", "part of the bit tilt to the high side, in a nearly vertical hole to north", size="space", nominal=0.01, follows=IN_SPACE),
-    Quantity("bit_tilt_right", "output", "rad", "ψ", "", "part of the bit tilt to the right of that, looking down the hole", size="space", nominal=0.01, follows=IN_SPACE),
-    Quantity("bit_lateral_force_high", "output", "N", "F_0", "", "part of the lateral force on the bit to the high side, in a nearly vertical hole to north", size="space", nominal=1e4, follows=FORCE_IN_SPACE),
-    Quantity("bit_lateral_force_right", "output", "N", "F_0", "", "part of the lateral force on the bit to the right of that, looking down the hole", size="space", nominal=1e4, follows=FORCE_IN_SPACE),
-    Quantity("stabilizer_force_high", "output", "N", "F_i", "", "part of the force of the wall on the stabilizer to the high side, in a nearly vertical hole to north", size="space n-1", nominal=1e4, follows=FORCE_IN_SPACE),
-    Quantity("stabilizer_force_right", "output", "N", "F_i", "", "part of the force of the wall on the stabilizer to the right of that, looking down the hole", size="space n-1", nominal=1e4, follows=FORCE_IN_SPACE),
-    Quantity("stabilizer_deflection_high", "output", "m", "δ_i", "", "part of the offset of the BHA from the borehole axis to the high side, in a nearly vertical hole to north", size="space n-1", nominal=1e-3, follows=FORCE_IN_SPACE),
-    Quantity("stabilizer_deflection_right", "output", "m", "δ_i", "", "part of the offset of the BHA from the borehole axis to the right of that, looking down the hole", size="space n-1", nominal=1e-3, follows=FORCE_IN_SPACE),
+    Quantity("borehole_azimuth", "output", "rad", "", "", "azimuth of the borehole at the bit, from north over east", size="space", follows=FORCE_AND_WEIGHT),
+    Quantity("bit_tilt_high", "output", "rad", "ψ", "", "part of the bit tilt to the high side, in a nearly vertical hole to north", size="space", nominal=0.01, follows=FORCE_AND_WEIGHT),
+    Quantity("bit_tilt_right", "output", "rad", "ψ", "", "part of the bit tilt to the right of that, looking down the hole", size="space", nominal=0.01, follows=FORCE_AND_WEIGHT),
+    Quantity("bit_lateral_force_high", "output", "N", "F_0", "", "part of the lateral force on the bit to the high side, in a nearly vertical hole to north", size="space", nominal=1e4, follows=FORCE),
+    Quantity("bit_lateral_force_right", "output", "N", "F_0", "", "part of the lateral force on the bit to the right of that, looking down the hole", size="space", nominal=1e4, follows=FORCE),
+    Quantity("stabilizer_force_high", "output", "N", "F_i", "", "part of the force of the wall on the stabilizer to the high side, in a nearly vertical hole to north", size="space n-1", nominal=1e4, follows=FORCE),
+    Quantity("stabilizer_force_right", "output", "N", "F_i", "", "part of the force of the wall on the stabilizer to the right of that, looking down the hole", size="space n-1", nominal=1e4, follows=FORCE),
+    Quantity("stabilizer_deflection_high", "output", "m", "δ_i", "", "part of the offset of the BHA from the borehole axis to the high side, in a nearly vertical hole to north", size="space n-1", nominal=1e-3, follows=FORCE),
+    Quantity("stabilizer_deflection_right", "output", "m", "δ_i", "", "part of the offset of the BHA from the borehole axis to the right of that, looking down the hole", size="space n-1", nominal=1e-3, follows=FORCE),
     Quantity("north", "output", "m", "", "", "position of the bit north of the start of the run", size="space", nominal=100.0),
     Quantity("east", "output", "m", "", "", "position of the bit east of the start of the run", size="space", nominal=100.0),
     Quantity("sensor_inclination", "output", "rad", "", "", "inclination of the BHA at the sensor; with an interval its last reading, with bias and noise", size="sensors", follows=(*FORCE, "sensor_position", *INSTRUMENT)),
     Quantity("sensor_bending_moment", "output", "N.m", "", "", "bending moment of the BHA at the sensor, positive as in a hole that builds; at the bit the moment on the bit", size="sensors", nominal=1e4, follows=(*FORCE, "sensor_position")),
     Quantity("sensor_clearance", "output", "m", "", "", "distance of the body at the sensor from the wall; negative beyond it", size="sensors", nominal=1e-2, follows=(*FORCE, "sensor_position", "sensor_body_clearance")),
+    Quantity("sensor_azimuth", "output", "rad", "", "", "azimuth of the BHA at the sensor, from north over east; with an interval its last reading, with noise", size="space sensors", follows=(*FORCE, "sensor_position", *INSTRUMENT)),
+    Quantity("sensor_bending_moment_high", "output", "N.m", "", "", "part of the bending moment at the sensor that bends the BHA to the high side, in a nearly vertical hole to north", size="space sensors", nominal=1e4, follows=(*FORCE, "sensor_position")),
+    Quantity("sensor_bending_moment_right", "output", "N.m", "", "", "part of the bending moment at the sensor that bends the BHA to the right of that, looking down the hole", size="space sensors", nominal=1e4, follows=(*FORCE, "sensor_position")),
     Quantity("displacement", "output", "m", "x", "", "horizontal position of the bit from the start of the run", nominal=100.0),
     Quantity("true_vertical_depth", "output", "m", "z", "", "depth of the bit below the start of the run", nominal=100.0),
     Quantity("eta_pi", "output", "", "ηΠ", "(9)", "lateral penetration stiffness of the rock over the BHA's bending stiffness", nominal=0.01, follows=("active_weight_on_bit", "lateral_steering_resistance", "flexural_stiffness", "stabilizer_position")),

@@ -5,9 +5,11 @@
 #include "body.h"
 #include "ground.h"
 
-/* The last reading of a sensor: how many there have been, and the inclination that it told. */
+enum { INCLINATION, AZIMUTH }; /* of an axis; the second in space only */
+
+/* The last reading of a sensor: how many there have been, and the inclination, and azimuth, that it told. */
 typedef struct {
-    double count, inclination;
+    double count, told[DIRECTIONS];
 } Reading;
 
 #define BLIND 1.0 /* ℓ₁: for how long the hole at a point of the body is not looked at, at most */

@@ -37,7 +37,7 @@ static inline Sensed sensed_gain(const Drilling *d, const Present *at, int i) {
     double line[PARTS];
     for (int k = 0; k < at->loads.count; k++) bending.F[support_at(&mode->contact, p->scaled.n, k)] = mode->F[k].rss;
     line_at(&p->modes.beam, &p->scaled, &bending, sensor->s, line);
-    Sensed gain = {sensor->interval > 0 ? 0.0 : -line[SLOPE_OF_BEAM], line[DEFLECTION], line[MOMENT]};
+    Sensed gain = {{sensor->interval > 0 ? 0.0 : -line[SLOPE_OF_BEAM]}, {line[DEFLECTION]}, {line[MOMENT]}};
     return gain;
 }
 
@@ -59,10 +59,10 @@ static inline double output_gain(const Drilling *d, const Present *at, Output wh
         case OUT_BIT_LATERAL_FORCE: return F_0 * at->F_star;
         case OUT_BIT_MOMENT: return -at->mode->M.rss * by_force * at->F_star * at->l1;
         case OUT_BOREHOLE_CURVATURE: return -psi / at->l1;
-        case OUT_SENSOR_INCLINATION: return sensed_gain(d, at, i).inclination * by_force;
-        case OUT_SENSOR_BENDING_MOMENT: return sensed_gain(d, at, i).moment * by_force * at->F_star * at->l1;
+        case OUT_SENSOR_INCLINATION: return sensed_gain(d, at, i).turn[0] * by_force;
+        case OUT_SENSOR_BENDING_MOMENT: return sensed_gain(d, at, i).moment[0] * by_force * at->F_star * at->l1;
         case OUT_SENSOR_CLEARANCE:
-            return (at->sensed[i].offset > 0 ? -1 : 1) * sensed_gain(d, at, i).offset * by_force * at->l1;
+            return (at->sensed[i].offset[0] > 0 ? -1 : 1) * sensed_gain(d, at, i).offset[0] * by_force * at->l1;
         case OUT_ETA_PI: return of_eta_pi;
         default: return 0.0; /* those that only drilling changes */
     }

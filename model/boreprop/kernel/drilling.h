@@ -126,10 +126,6 @@ static inline Status drilling_prepare(
         wrong(problem, ONLY_IN_THE_PLANE, Q_BODY_POINT_POSITION, 0, system->structure.points, NAN);
         return FAILED;
     }
-    if (DIRECTIONS > 1 && system->structure.sensors) {
-        wrong(problem, ONLY_IN_THE_PLANE, Q_SENSOR_POSITION, 0, system->structure.sensors, NAN);
-        return FAILED;
-    }
     if (!check_positive(Q_FORCE_SCALE, force_scale(system), problem)) return FAILED;
     Scaled scaled = scale(system);
     if (!check_finite(Q_SCALED_REACH, 0, scaled.s[scaled.n - 1], problem) ||
@@ -241,6 +237,7 @@ typedef struct {
     double l1, F_star, eta_pi, theta, Y, Theta, psi, F_0, F[MAX_PLACES], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
     double body_force, body_place, wall_distance; /* the largest force on the body and where it acts; the least gap */
     Sensed sensed[MAX_SENSORS];
+    double told[MAX_SENSORS][DIRECTIONS];
     Loads loads;
     const Mode *mode;
 } Present;
@@ -277,8 +274,9 @@ static inline Present present(Drilling *d) {
     position(now, path);
     at.x = path[0], at.z = path[1];
     find_body(d, &at);
-    for (int i = 0; i < p->scaled.sensors; i++)
-        at.sensed[i] = sensed(p, p->scaled.sensor[i].s, now->xi, state, at.mode, &at.loads);
+    if (!p->scaled.sensors) return at;
+    Bending bending = bending_of(at.mode, &at.loads, p->scaled.n);
+    find_sensed(p, state, &bending, at.sensed, at.told);
     return at;
 }
 
@@ -306,9 +304,9 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_BODY_CONTACT_FORCE: return at->body_force * F_star;
         case OUT_BODY_CONTACT_POSITION: return at->body_place * l1;
         case OUT_WALL_DISTANCE: return at->wall_distance * l1;
-        case OUT_SENSOR_INCLINATION: return told(&d->integrator, i, &at->sensed[i]);
-        case OUT_SENSOR_BENDING_MOMENT: return at->sensed[i].moment * F_star * l1;
-        case OUT_SENSOR_CLEARANCE: return (scaled->sensor[i].clearance - fabs(at->sensed[i].offset)) * l1;
+        case OUT_SENSOR_INCLINATION: return at->told[i][INCLINATION];
+        case OUT_SENSOR_BENDING_MOMENT: return at->sensed[i].moment[0] * F_star * l1;
+        case OUT_SENSOR_CLEARANCE: return (scaled->sensor[i].clearance - fabs(at->sensed[i].offset[0])) * l1;
         case OUT_DISPLACEMENT: return at->x * l1;
         case OUT_TRUE_VERTICAL_DEPTH: return at->z * l1;
         case OUT_ETA_PI: return at->eta_pi;
@@ -324,6 +322,9 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_STABILIZER_FORCE_RIGHT:
         case OUT_STABILIZER_DEFLECTION_HIGH:
         case OUT_STABILIZER_DEFLECTION_RIGHT:
+        case OUT_SENSOR_AZIMUTH:
+        case OUT_SENSOR_BENDING_MOMENT_HIGH:
+        case OUT_SENSOR_BENDING_MOMENT_RIGHT:
         case OUT_NORTH:
         case OUT_EAST: break;
     }

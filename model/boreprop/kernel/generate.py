@@ -45,6 +45,7 @@ SIZES = {
     "sensors": "EACH_SENSOR",
     "space": "IF_SPACE",
     "space n-1": "EACH_NON_IDEAL_IN_SPACE",
+    "space sensors": "EACH_SENSOR_IN_SPACE",
 }
 ROOMS = {
     "n": "[MAX_STABILIZERS]",

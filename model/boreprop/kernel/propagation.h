@@ -3,11 +3,7 @@
 #ifndef BOREPROP_PROPAGATION_H
 #define BOREPROP_PROPAGATION_H
 
-#ifdef SPACE
-#include "space_response.h"
-#else
-#include "response.h"
-#endif
+#include "integrator.h"
 
 /* Take over inputs where the bit is, in the state `x`: find the regime under them, and mark the jump of the direction of
    the hole, which was Θ so far. */

@@ -8,7 +8,7 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "d48a3ab0fd45d78f" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "642846b25e38849e" /* of this file, but for this line, and of problems.h */
 #define MOST_DRILLED 100000.0 /* m in a communication step */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: forces between closer ones are rounding errors */
 #define POINTS_ALONG_BHA 36 /* at which its distance from the hole is looked at */
@@ -16,7 +16,7 @@
 
 enum { MAX_STABILIZERS = 6, MAX_SECTIONS = 24, MAX_POINTS = 128 };
 enum { MAX_SENSORS = 8 };
-enum { PARAMETER_COUNT = 18, INPUT_COUNT = 10, OUTPUT_COUNT = 34 };
+enum { PARAMETER_COUNT = 18, INPUT_COUNT = 10, OUTPUT_COUNT = 37 };
 
 /* How a drilling system is made up, which says how many values each quantity has. */
 typedef struct {
@@ -67,7 +67,7 @@ typedef struct {
 } Inputs;
 
 /* How many values a quantity has. */
-typedef enum { ONE, EACH_STABILIZER, EACH_NON_IDEAL, IF_UNIFORM, EACH_SECTION, IF_STEPPED, IF_AXIAL, EACH_POINT, IF_POINTS, IF_LAYERED, EACH_SENSOR, IF_SPACE, EACH_NON_IDEAL_IN_SPACE } Size;
+typedef enum { ONE, EACH_STABILIZER, EACH_NON_IDEAL, IF_UNIFORM, EACH_SECTION, IF_STEPPED, IF_AXIAL, EACH_POINT, IF_POINTS, IF_LAYERED, EACH_SENSOR, IF_SPACE, EACH_NON_IDEAL_IN_SPACE, EACH_SENSOR_IN_SPACE } Size;
 
 /* A parameter or input, and its range: above < value, at_least <= value <= at_most. */
 typedef struct {
@@ -145,6 +145,9 @@ typedef enum {
     OUT_SENSOR_INCLINATION, /* rad: inclination of the BHA at the sensor; with an interval its last reading, with bias and noise */
     OUT_SENSOR_BENDING_MOMENT, /* N.m: bending moment of the BHA at the sensor, positive as in a hole that builds; at the bit the moment on the bit */
     OUT_SENSOR_CLEARANCE, /* m: distance of the body at the sensor from the wall; negative beyond it */
+    OUT_SENSOR_AZIMUTH, /* rad: azimuth of the BHA at the sensor, from north over east; with an interval its last reading, with noise */
+    OUT_SENSOR_BENDING_MOMENT_HIGH, /* N.m: part of the bending moment at the sensor that bends the BHA to the high side, in a nearly vertical hole to north */
+    OUT_SENSOR_BENDING_MOMENT_RIGHT, /* N.m: part of the bending moment at the sensor that bends the BHA to the right of that, looking down the hole */
     OUT_DISPLACEMENT, /* m: horizontal position of the bit from the start of the run */
     OUT_TRUE_VERTICAL_DEPTH, /* m: depth of the bit below the start of the run */
     OUT_ETA_PI, /* lateral penetration stiffness of the rock over the BHA's bending stiffness */
@@ -181,6 +184,9 @@ static const Size OUTPUT_SIZE[OUTPUT_COUNT] = {
     EACH_SENSOR, /* sensor_inclination */
     EACH_SENSOR, /* sensor_bending_moment */
     EACH_SENSOR, /* sensor_clearance */
+    EACH_SENSOR_IN_SPACE, /* sensor_azimuth */
+    EACH_SENSOR_IN_SPACE, /* sensor_bending_moment_high */
+    EACH_SENSOR_IN_SPACE, /* sensor_bending_moment_right */
     ONE, /* displacement */
     ONE, /* true_vertical_depth */
     ONE, /* eta_pi */
@@ -217,13 +223,16 @@ static const Name OUTPUT_NAME[OUTPUT_COUNT] = {
     Q_SENSOR_INCLINATION,
     Q_SENSOR_BENDING_MOMENT,
     Q_SENSOR_CLEARANCE,
+    Q_SENSOR_AZIMUTH,
+    Q_SENSOR_BENDING_MOMENT_HIGH,
+    Q_SENSOR_BENDING_MOMENT_RIGHT,
     Q_DISPLACEMENT,
     Q_TRUE_VERTICAL_DEPTH,
     Q_ETA_PI,
     Q_FORMATION,
 };
-static const int OUTPUT_IS_WHOLE[OUTPUT_COUNT] = { 0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1 };
-enum { MOST_PARAMETERS = 392, MOST_OUTPUTS = 88 }; /* values, of the largest assembly */
+static const int OUTPUT_IS_WHOLE[OUTPUT_COUNT] = { 0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1 };
+enum { MOST_PARAMETERS = 392, MOST_OUTPUTS = 112 }; /* values, of the largest assembly */
 
 /* How the integrator takes its steps: core/options.py says what each is. */
 typedef struct {

@@ -2,7 +2,7 @@
 #ifndef BOREPROP_RESPONSE_H
 #define BOREPROP_RESPONSE_H
 
-#include "integrator.h"
+#include "bit.h"
 
 /* What bends the beam where the bit is. */
 static inline Loads present_loads(const Integrator *p) {
@@ -15,6 +15,12 @@ static inline Loads present_loads(const Integrator *p) {
 static inline double inclination_under(Integrator *p, double theta, const Loads *loads, ScaledInputs inputs) {
     const Mode *mode = settle(&p->modes, loads, p->now.regime.contact);
     return theta - bit_tilt(row_value(&mode->F_0, loads), inputs.eta_pi, inputs.psi_star);
+}
+
+/* How the BHA is bent with the bit at `xi` in the state `x`. */
+static inline void bend(Integrator *p, double xi, const double x[COMPONENTS], Bending bending[DIRECTIONS]) {
+    Loads loads = loads_at(p, xi, x, force_at(&p->now, xi));
+    bending[0] = bending_of(settle(&p->modes, &loads, p->now.regime.contact), &loads, p->scaled.n);
 }
 
 /* The regime in the state `x`, and the direction of the hole there. */

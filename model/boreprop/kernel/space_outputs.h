@@ -7,6 +7,8 @@ typedef struct {
     double l1, F_star, eta_pi, path[AXES], T[AXES], earlier[DIRECTIONS], x[COMPONENTS];
     double high[DIRECTIONS]; /* the side from which parts of forces and tilt are counted, in (e₂, e₃) */
     Response is;
+    Sensed sensed[MAX_SENSORS];
+    double told[MAX_SENSORS][DIRECTIONS];
 } Present;
 
 #define NEARLY_VERTICAL 0.05233595624294383 /* sine of 3 degrees: up to here the high side says little */
@@ -38,6 +40,10 @@ static inline Present present(Drilling *d) {
         turned_row(at.is.frame.row[axis], back, turned);
         at.T[axis] = turned[AHEAD];
     }
+    if (!p->scaled.sensors) return at;
+    Bending bending[DIRECTIONS];
+    bend_under(p, &at.is, bending);
+    find_sensed(p, at.x, bending, at.sensed, at.told);
     return at;
 }
 
@@ -93,10 +99,14 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_BOREHOLE_CURVATURE: return size_of(turned) / l1;
         case OUT_BODY_CONTACT_FORCE: /* the body has no points in space */
         case OUT_BODY_CONTACT_POSITION:
-        case OUT_WALL_DISTANCE:
-        case OUT_SENSOR_INCLINATION: /* nor are there sensors */
-        case OUT_SENSOR_BENDING_MOMENT:
-        case OUT_SENSOR_CLEARANCE: break;
+        case OUT_WALL_DISTANCE: break;
+        case OUT_SENSOR_INCLINATION: return at->told[i][INCLINATION];
+        case OUT_SENSOR_AZIMUTH: return at->told[i][AZIMUTH];
+        case OUT_SENSOR_BENDING_MOMENT: return size_of(at->sensed[i].moment) * F_star * l1;
+        case OUT_SENSOR_BENDING_MOMENT_HIGH: return part_high(at, at->sensed[i].moment) * F_star * l1;
+        case OUT_SENSOR_BENDING_MOMENT_RIGHT: return part_right(at, at->sensed[i].moment) * F_star * l1;
+        case OUT_SENSOR_CLEARANCE:
+            return (d->integrator.scaled.sensor[i].clearance - size_of(at->sensed[i].offset)) * l1;
         case OUT_FORMATION: return d->integrator.now.layer;
         case OUT_NORTH: return at->path[NORTH] * l1;
         case OUT_EAST: return at->path[EAST] * l1;

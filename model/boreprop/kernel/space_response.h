@@ -2,7 +2,7 @@
 #ifndef BOREPROP_SPACE_RESPONSE_H
 #define BOREPROP_SPACE_RESPONSE_H
 
-#include "integrator.h"
+#include "bit.h"
 
 /* The regime in the state `x`, and the direction of the hole there. */
 typedef struct {
@@ -13,7 +13,7 @@ typedef struct {
     double delta[MAX_STABILIZERS][DIRECTIONS], e[MAX_STABILIZERS][DIRECTIONS];
 } Response;
 
-static inline Response respond(Integrator *p, const double x[COMPONENTS], ScaledInputs inputs) {
+static inline Response respond_at(Integrator *p, double xi, const double x[COMPONENTS], ScaledInputs inputs) {
     const State *now = &p->now;
     const Scaled *scaled = &p->scaled;
     const Beam *beam = &p->modes.beam;
@@ -23,10 +23,10 @@ static inline Response respond(Integrator *p, const double x[COMPONENTS], Scaled
     Regime free = {{{0}, 0, {0}}, 0};
     Response response = {0};
     Reply *at = &response.at;
-    make_law(&law, scaled, &now->places, &p->modes, free, inputs, now->xi);
-    hole_at_places(&now->hole, &now->places, now->xi, delayed);
+    make_law(&law, scaled, &now->places, &p->modes, free, inputs, xi);
+    hole_at_places(&now->hole, &now->places, xi, delayed);
     look_behind(&law, &delayed[0][0], DIRECTIONS, 1, &behind);
-    response.frame = turned_along(&now->step.frame, now->step.x, (now->xi - now->step.xi) / now->step.h);
+    response.frame = turned_along(&now->step.frame, now->step.x, (xi - now->step.xi) / now->step.h);
     View view = {{0}, {0}};
     memcpy(view.down, response.frame.row[DOWN], sizeof view.down);
     memcpy(view.north, response.frame.row[NORTH], sizeof view.north);
@@ -52,6 +52,25 @@ static inline Response respond(Integrator *p, const double x[COMPONENTS], Scaled
             response.e[i][d] = x[LATERAL + d] - delayed[i][d] - scaled->s[i] * x[ANGLE + d];
     }
     return response;
+}
+
+static inline Response respond(Integrator *p, const double x[COMPONENTS], ScaledInputs inputs) {
+    return respond_at(p, p->now.xi, x, inputs);
+}
+
+/* How the BHA is bent, in either direction, where the drilling system answers so. */
+static inline void bend_under(const Integrator *p, const Response *is, Bending bending[DIRECTIONS]) {
+    for (int d = 0; d < DIRECTIONS; d++) {
+        Bending nothing = {.F_rss = is->at.F_rss[d], .g = is->at.G[d], .M = is->at.M[d], .F_0 = is->at.F_0[d]};
+        bending[d] = nothing;
+        for (int i = 0; i < p->scaled.n - 1; i++) bending[d].F[i] = is->at.F[i][d];
+    }
+}
+
+/* The same with the bit at `xi` in the state `x`. */
+static inline void bend(Integrator *p, double xi, const double x[COMPONENTS], Bending bending[DIRECTIONS]) {
+    Response is = respond_at(p, xi, x, inputs_ahead(p->now.inputs, xi - p->now.inputs_xi));
+    bend_under(p, &is, bending);
 }
 
 #define A_LITTLE 1e-6 /* ℓ₁: over which the slope of Θ under ramps is taken */

@@ -114,7 +114,7 @@ static inline void pass_snapshot(Tape *tape, const Scaled *scaled, Snapshot *sna
     for (int i = 0; i < scaled->sensors; i++) {
         Reading *reading = &now->reading[i];
         reading->count = (double)pass_whole(tape, (Count)reading->count, 0, (Count)MOST_READINGS + 1);
-        pass(tape, 1, &reading->inclination);
+        pass(tape, DIRECTIONS, reading->told);
     }
     if (!scaled->points) return;
     pass(tape, NUMBERS_OF_INCLINATIONS, &now->inclinations.before.low);

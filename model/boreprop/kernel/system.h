@@ -58,6 +58,7 @@ static inline int value_count(Size size, Structure structure) {
         case EACH_NON_IDEAL_IN_SPACE: return structure.space ? structure.n - 1 : 0;
         case IF_LAYERED: return structure.layered;
         case EACH_SENSOR: return structure.sensors;
+        case EACH_SENSOR_IN_SPACE: return structure.space ? structure.sensors : 0;
     }
     return 0;
 }
@@ -65,7 +66,7 @@ static inline int value_count(Size size, Structure structure) {
 /* Whether the values of a quantity are numbered. */
 static inline int is_list(Size size) {
     return size == EACH_STABILIZER || size == EACH_NON_IDEAL || size == EACH_SECTION || size == EACH_POINT ||
-           size == EACH_SENSOR || size == EACH_NON_IDEAL_IN_SPACE;
+           size == EACH_SENSOR || size == EACH_NON_IDEAL_IN_SPACE || size == EACH_SENSOR_IN_SPACE;
 }
 
 /* Whether a structure is one that there is room for. */
