@@ -28,6 +28,7 @@ Size = Literal[
     "space",
     "space n-1",
     "space sensors",
+    "space body",
     "column",
     "space column",
 ]  # "column": as long as its table
@@ -86,6 +87,7 @@ def counts(structure: Structure) -> dict[str, int]:
         "space": space,
         "space n-1": space * (n - 1),
         "space sensors": space * sensors,
+        "space body": space * bool(points),
         "space column": space,
     }
 
@@ -212,6 +214,8 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("body_contact_force", "output", "N", "F_ℓ − F_u", "(7)", "largest force of the wall on the body between the stabilizers, positive from the lower wall", size="body", nominal=1e4, follows=FORCE),
     Quantity("body_contact_position", "output", "m", "s", "", "where that force acts, from the bit; 0 if the body touches no wall", size="body", at_least=0.0, nominal=10.0, follows=FORCE),
     Quantity("wall_distance", "output", "m", "", "", "least distance of the body from the wall", size="body", nominal=1e-2, follows=FORCE),
+    Quantity("body_contact_force_high", "output", "N", "", "", "part of that force to the high side, in a nearly vertical hole to north", size="space body", nominal=1e4, follows=FORCE),
+    Quantity("body_contact_force_right", "output", "N", "", "", "part of that force to the right of that, looking down the hole", size="space body", nominal=1e4, follows=FORCE),
     Quantity("bit_azimuth", "output", "rad", "", "", "azimuth of the bit axis, from north over east", size="space", follows=("survey_file",)),
     Quantity("borehole_azimuth", "output", "rad", "", "", "azimuth of the borehole at the bit, from north over east", size="space", follows=FORCE_AND_WEIGHT),
     Quantity("bit_tilt_high", "output", "rad", "ψ", "", "part of the bit tilt to the high side, in a nearly vertical hole to north", size="space", nominal=0.01, follows=FORCE_AND_WEIGHT),

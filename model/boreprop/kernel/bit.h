@@ -16,7 +16,7 @@ typedef struct {
 
 /* The inclinations of the hole behind the bit, over its reach and BLIND and somewhat beyond. */
 typedef struct {
-    Range before, latest;
+    Range before[DIRECTIONS], latest[DIRECTIONS];
     double since; /* where the latest begin */
 } Inclinations;
 
@@ -48,20 +48,21 @@ typedef struct {
 typedef struct {
     int near;  /* whether any is so near that it may have to be watched */
     int known; /* whether the distance of any is known */
-    double body[MAX_POINTS], gap[MAX_POINTS], change[MAX_POINTS];
+    double body[DIRECTIONS][MAX_POINTS], gap[MAX_POINTS], change[MAX_POINTS];
 } Surroundings;
 
 /* Copy what is known of the first `points` of them. */
 static inline void copy_around(Surroundings *to, const Surroundings *from, int points) {
     size_t size = (size_t)points * sizeof(double);
-    memcpy(to->body, from->body, size), memcpy(to->gap, from->gap, size), memcpy(to->change, from->change, size);
+    for (int d = 0; d < DIRECTIONS; d++) memcpy(to->body[d], from->body[d], size);
+    memcpy(to->gap, from->gap, size), memcpy(to->change, from->change, size);
     to->near = from->near, to->known = from->known;
 }
 
 /* Where the hole was at the points of the body, and where the bit, when it was looked at. Nothing but the time that a run
    takes depends on it. */
 typedef struct {
-    double Y[MAX_POINTS], at[MAX_POINTS];
+    double Y[DIRECTIONS][MAX_POINTS], at[MAX_POINTS];
 } Seen;
 
 /* The bit at the front of its hole, dimensionless. */
@@ -167,12 +168,15 @@ static inline Loads loads_at(const Integrator *p, double xi, const double x[COMP
     return loads;
 }
 
-/* The steering force with the bit at `xi`, ahead of where the inputs were taken over. */
-static inline double force_at(const State *now, double xi) {
-    return inputs_ahead(now->inputs, xi - now->inputs_xi).F_rss;
+/* The inputs with the bit at `xi`, ahead of where they were taken over. */
+static inline ScaledInputs inputs_at(const State *now, double xi) {
+    return inputs_ahead(now->inputs, xi - now->inputs_xi);
 }
 
 /* The inputs where the bit is. */
-static inline ScaledInputs inputs_here(const State *now) { return inputs_ahead(now->inputs, now->xi - now->inputs_xi); }
+static inline ScaledInputs inputs_here(const State *now) { return inputs_at(now, now->xi); }
+
+/* The steering force with the bit at `xi`. */
+static inline double force_at(const State *now, double xi) { return inputs_at(now, xi).F_rss; }
 
 #endif

@@ -11,13 +11,17 @@ static inline void contact_forces(const Mode *mode, const Loads *loads, double F
     for (int i = 0; i < loads->count; i++) F[i] = mode->contact.of[i] ? row_value(&mode->F[i], loads) : 0.0;
 }
 
-/* How far `count` supports from `first` on are from the bit's axis without a contact. */
-static inline void free_deflections(
-    const Beam *beam, double e_n, double F_rss, double g, int first, int count, double *v
-) {
-    const double *delta_e = beam->delta_e + first, *delta_rss = beam->delta_rss + first,
-                 *delta_g = beam->delta_g + first;
-    for (int k = 0; k < count; k++) v[k] = delta_e[k] * (e_n - beam->end) + delta_rss[k] * F_rss + delta_g[k] * g;
+/* What bends the BHA in one direction: the contact force at each place, e_n − δ_n, F_RSS, and g. */
+typedef struct {
+    double F[MAX_PLACES], end, F_rss, g;
+} Pull;
+
+/* How far the points of the body are from the bit's axis without a contact. */
+static inline void free_deflections(const Beam *beam, const Pull *pull, int points, double *v) {
+    const double *delta_e = beam->delta_e + beam->n, *delta_rss = beam->delta_rss + beam->n,
+                 *delta_g = beam->delta_g + beam->n;
+    double end = pull->end, F_rss = pull->F_rss, g = pull->g;
+    for (int k = 0; k < points; k++) v[k] = delta_e[k] * end + delta_rss[k] * F_rss + delta_g[k] * g;
 }
 
 /* Add what a force on support j moves the points of the body by. They follow each other up the beam, so that up to some

@@ -1,4 +1,4 @@
-/* Contact in space: a stabilizer i whose offset δ_i from the axis of the hole lies within a disc |δ_i| <= y*_i, and which
+/* Contact in space: a support i whose offset δ_i from the axis of the hole lies within a disc |δ_i| <= y*_i, and which
    the wall pushes towards the axis. F minimises ½ Fᵀ(K⁻¹ ⊗ I)F + q̃·F + Σ y*_i |F_i|, so it is unique.
 
    With k_i = K⁻¹_ii and v_i = δ_i − k_i F_i, the offset is the point of the disc that is nearest to v_i:
@@ -12,7 +12,7 @@
 #include "modes.h"
 
 enum { TOUCHES = -1 };                        /* the contact beyond the bound of a free offset, as `change` has it */
-enum { MOST_TOUCHING = 2 * MAX_STABILIZERS }; /* numbers: two for each stabilizer in contact */
+enum { MOST_TOUCHING = 2 * MAX_PLACES };     /* numbers: two for each support in contact */
 
 /* The direction of a vector whose length is known to be at least `least` while its regime holds: a function w of the
    square of the length. It is one over the length from REACHED of that on. Below, where a trial step goes too far, it stays
@@ -62,22 +62,24 @@ static inline int solve_touching(int size, int sides, double matrix[MOST_TOUCHIN
     return 1;
 }
 
-/* The supports of a contact problem: which of the non-ideal stabilizers touch, C, and what belongs to them. */
+/* The supports of a contact problem: the places of those that touch, C, and what belongs to them. */
 typedef struct {
-    int touching, C[MAX_STABILIZERS];
-    double k[MAX_STABILIZERS], y[MAX_STABILIZERS];  /* by number in C */
-    double K_inv[MAX_STABILIZERS][MAX_STABILIZERS]; /* of those in C */
+    int touching, C[MAX_PLACES], support[MAX_PLACES];
+    double k[MAX_PLACES], y[MAX_PLACES];  /* by number in C */
+    double K_inv[MAX_PLACES][MAX_PLACES]; /* of those in C */
 } Touching;
 
-static inline Touching touching_of(const Modes *modes, Contact contact) {
-    Touching touching = {0};
-    for (int i = 0; i < modes->beam.n - 1; i++)
-        if (contact.of[i]) touching.C[touching.touching++] = i;
-    for (int a = 0; a < touching.touching; a++) {
-        touching.y[a] = modes->y_star[touching.C[a]];
-        touching.k[a] = compliance(&modes->beam, touching.C[a], touching.C[a]);
-        for (int b = 0; b < touching.touching; b++)
-            touching.K_inv[a][b] = compliance(&modes->beam, touching.C[a], touching.C[b]);
+static inline Touching touching_of(const Modes *modes, const Contact *contact) {
+    Touching touching;
+    int n = modes->beam.n, m = 0;
+    for (int i = 0; i < place_count(*contact, n); i++)
+        if (contact->of[i]) touching.C[m] = i, touching.support[m++] = support_at(contact, n, i);
+    touching.touching = m;
+    for (int a = 0; a < m; a++) {
+        touching.y[a] = modes->y_star[touching.support[a]];
+        for (int b = 0; b < m; b++)
+            touching.K_inv[a][b] = compliance(&modes->beam, touching.support[a], touching.support[b]);
+        touching.k[a] = touching.K_inv[a][a];
     }
     return touching;
 }
@@ -93,11 +95,11 @@ enum { MOST_CORRECTIONS = 15, SMOOTHER = 14, MOST_HALVINGS = 40 };
 /* The minimum that F is, with |F_i| made smooth: √(|F_i|² + μ²), in forces times √k_i. */
 typedef struct {
     int count;
-    double C[MAX_STABILIZERS][MAX_STABILIZERS], root[MAX_STABILIZERS]; /* K⁻¹_ij/√(k_i k_j), √k_i */
-    double q[MAX_STABILIZERS][2], y[MAX_STABILIZERS], mu;
+    double C[MAX_PLACES][MAX_PLACES], root[MAX_PLACES]; /* K⁻¹_ij/√(k_i k_j), √k_i */
+    double q[MAX_PLACES][2], y[MAX_PLACES], mu;
 } Smooth;
 
-static inline double smooth_value(const Smooth *smooth, double u[MAX_STABILIZERS][2]) {
+static inline double smooth_value(const Smooth *smooth, double u[MAX_PLACES][2]) {
     double value = 0.0;
     for (int i = 0; i < smooth->count; i++) {
         for (int d = 0; d < 2; d++) {
@@ -111,9 +113,9 @@ static inline double smooth_value(const Smooth *smooth, double u[MAX_STABILIZERS
 }
 
 /* One step of Newton's method towards the minimum, shortened until it goes down; returns 0 where it does not. */
-static inline int go_down(const Smooth *smooth, double u[MAX_STABILIZERS][2]) {
+static inline int go_down(const Smooth *smooth, double u[MAX_PLACES][2]) {
     int count = smooth->count, size = 2 * count;
-    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1], value = smooth_value(smooth, u), next[MAX_STABILIZERS][2];
+    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1], value = smooth_value(smooth, u), next[MAX_PLACES][2];
     for (int i = 0; i < count; i++) {
         double length = sqrt(u[i][0] * u[i][0] + u[i][1] * u[i][1] + smooth->mu * smooth->mu);
         double w = smooth->y[i] / length;
@@ -143,9 +145,9 @@ static inline int go_down(const Smooth *smooth, double u[MAX_STABILIZERS][2]) {
 
 /* v near the solution for stabilizers that may touch, whatever the start: the minimum is followed while μ goes to zero. It
    is convex, so that Newton's method ends at it. */
-APART static void come_near(const Touching *of, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2]) {
+APART static void come_near(const Touching *of, double q[MAX_PLACES][2], double v[MAX_PLACES][2]) {
     Smooth smooth = {.count = of->touching};
-    double u[MAX_STABILIZERS][2] = {{0}};
+    double u[MAX_PLACES][2] = {{0}};
     for (int i = 0; i < smooth.count; i++) smooth.root[i] = sqrt(of->k[i]);
     for (int i = 0; i < smooth.count; i++) {
         smooth.y[i] = of->y[i] / smooth.root[i];
@@ -166,10 +168,10 @@ APART static void come_near(const Touching *of, double q[MAX_STABILIZERS][2], do
 
 /* What the wall takes of each v, and its derivative. */
 typedef struct {
-    double beyond[MAX_STABILIZERS][2], slope[MAX_STABILIZERS][2][2];
+    double beyond[MAX_PLACES][2], slope[MAX_PLACES][2][2];
 } Walls;
 
-static inline void find_walls(const Touching *of, double v[MAX_STABILIZERS][2], Walls *walls) {
+static inline void find_walls(const Touching *of, double v[MAX_PLACES][2], Walls *walls) {
     for (int a = 0; a < of->touching; a++) beyond_disc(v[a], of->y[a], walls->beyond[a], walls->slope[a]);
 }
 
@@ -188,7 +190,7 @@ static inline void fill_rows(
 
 /* Newton's method from the guess in `v`; returns 0 if it finds nothing. */
 static inline int correct_contacts(
-    const Touching *of, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2], Walls *walls
+    const Touching *of, double q[MAX_PLACES][2], double v[MAX_PLACES][2], Walls *walls
 ) {
     double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1], before = INFINITY;
     int m = of->touching, size = 2 * m, found = 0;
@@ -220,7 +222,7 @@ static inline int correct_contacts(
 /* The v of those that touch under their q̃, sought from a guess in `v`; returns 0 if none is found. Where `answer` is given,
    it becomes dF/dq̃, row by row, over the directions of each of those that touch. */
 static inline int solve_contacts(
-    const Touching *of, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2], double F[MAX_STABILIZERS][2],
+    const Touching *of, double q[MAX_PLACES][2], double v[MAX_PLACES][2], double F[MAX_PLACES][2],
     double answer[MOST_TOUCHING][MOST_TOUCHING]
 ) {
     int m = of->touching, size = 2 * m;
@@ -250,81 +252,102 @@ static inline int solve_contacts(
     return 1;
 }
 
-/* Whether v lies beyond the disc, so that the stabilizer touches; without clearance it always does. */
+/* Whether v lies beyond the disc, so that the support touches; without clearance it always does. */
 static inline int is_beyond(const double v[2], double y) { return y == 0.0 || hypot(v[0], v[1]) > y; }
 
-/* How far v is from a solution over all stabilizers, at most; gives where each ought to be for the others. */
+/* How far v is from a solution over all supports, at most; gives where each ought to be for the others. */
 static inline double off_balance(
-    const Modes *modes, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2], double wanted[MAX_STABILIZERS][2]
+    const Touching *all, double q[MAX_PLACES][2], double v[MAX_PLACES][2], double wanted[MAX_PLACES][2]
 ) {
-    int count = modes->beam.n - 1;
+    int count = all->touching;
     double off = 0.0;
     for (int i = 0; i < count; i++) memcpy(wanted[i], q[i], sizeof wanted[i]);
     for (int j = 0; j < count; j++) {
         double beyond[2], slope[2][2];
-        if (!is_beyond(v[j], modes->y_star[j])) continue;
-        beyond_disc(v[j], modes->y_star[j], beyond, slope);
+        if (!is_beyond(v[j], all->y[j])) continue;
+        beyond_disc(v[j], all->y[j], beyond, slope);
         for (int i = 0; i < count; i++)
-            for (int d = 0; d < 2 && i != j; d++)
-                wanted[i][d] -= compliance(&modes->beam, i, j) / compliance(&modes->beam, j, j) * beyond[d];
+            for (int d = 0; d < 2 && i != j; d++) wanted[i][d] -= all->K_inv[i][j] / all->k[j] * beyond[d];
     }
     for (int i = 0; i < count; i++)
         for (int d = 0; d < 2; d++) off = larger(off, fabs(wanted[i][d] - v[i][d]));
     return off;
 }
 
-/* One try to bring v to a solution: the forces of those that touch as it is, and where all stabilizers are under them.
+/* Those of all supports that lie beyond their discs, by their numbers among all. */
+static inline Touching touching_among(const Touching *all, double v[MAX_PLACES][2]) {
+    Touching of;
+    int m = 0;
+    for (int i = 0; i < all->touching; i++)
+        if (is_beyond(v[i], all->y[i])) of.C[m] = i, of.k[m] = all->k[i], of.y[m++] = all->y[i];
+    of.touching = m;
+    for (int a = 0; a < m; a++)
+        for (int b = 0; b < m; b++) of.K_inv[a][b] = all->K_inv[of.C[a]][of.C[b]];
+    return of;
+}
+
+/* One try to bring v to a solution: the forces of those that touch as it is, and where all supports are under them.
    Returns how far it then is from one; infinity if there are no such forces. */
 static inline double try_contacts(
-    const Modes *modes, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2], double tried[MAX_STABILIZERS][2]
+    const Touching *all, double q[MAX_PLACES][2], double v[MAX_PLACES][2], double tried[MAX_PLACES][2]
 ) {
-    Contact now = {{0}, 0, {0}};
-    double own[MAX_STABILIZERS][2], q_C[MAX_STABILIZERS][2], F[MAX_STABILIZERS][2], wanted[MAX_STABILIZERS][2];
-    int count = modes->beam.n - 1;
-    for (int i = 0; i < count; i++) now.of[i] = is_beyond(v[i], modes->y_star[i]) ? TOUCHES : 0;
-    Touching of = touching_of(modes, now);
+    double own[MAX_PLACES][2], q_C[MAX_PLACES][2], F[MAX_PLACES][2], wanted[MAX_PLACES][2];
+    int count = all->touching;
+    Touching of = touching_among(all, v);
     for (int a = 0; a < of.touching; a++)
         memcpy(own[a], v[of.C[a]], sizeof own[a]), memcpy(q_C[a], q[of.C[a]], sizeof q_C[a]);
     if (!solve_contacts(&of, q_C, own, F, NULL)) return INFINITY;
     for (int i = 0; i < count; i++) memcpy(tried[i], q[i], sizeof tried[i]);
     for (int a = 0; a < of.touching; a++)
         for (int i = 0; i < count; i++)
-            for (int d = 0; d < 2; d++) tried[i][d] += compliance(&modes->beam, i, of.C[a]) * F[a][d];
+            for (int d = 0; d < 2; d++) tried[i][d] += all->K_inv[i][of.C[a]] * F[a][d];
     for (int a = 0; a < of.touching; a++) memcpy(tried[of.C[a]], own[a], sizeof own[a]);
-    return off_balance(modes, q, tried, wanted);
+    return off_balance(all, q, tried, wanted);
 }
 
 enum { MOST_ROUNDS = 60 };
 
-/* The contacts that hold under q̃, with their v: Newton's method with the contacts as they are in the guess `v`, again while
+/* Bring v to the solution over all supports: Newton's method with the contacts as they are in the guess `v`, again while
    that brings it nearer; else from near the solution. */
-static inline Contact settle_discs(
-    const Modes *modes, double q[MAX_STABILIZERS][2], double v[MAX_STABILIZERS][2], Contact contact
-) {
-    int count = modes->beam.n - 1, came_near = 0;
-    Contact everywhere = contact;
-    memset(everywhere.of, TOUCHES, (size_t)count);
-    Touching all = touching_of(modes, everywhere);
-    double wanted[MAX_STABILIZERS][2], tried[MAX_STABILIZERS][2], best[MAX_STABILIZERS][2], scale = 0.0, least;
-    for (int i = 0; i < count; i++)
-        scale = larger(scale, larger(modes->y_star[i], larger(fabs(q[i][0]), fabs(q[i][1]))));
-    double off = off_balance(modes, q, v, wanted);
-    memcpy(best, v, sizeof best), least = off;
+static inline void settle_all(const Touching *all, double q[MAX_PLACES][2], double v[MAX_PLACES][2]) {
+    int count = all->touching, came_near = 0;
+    double wanted[MAX_PLACES][2], tried[MAX_PLACES][2], best[MAX_PLACES][2], scale = 0.0, least;
+    size_t size = (size_t)count * sizeof best[0];
+    for (int i = 0; i < count; i++) scale = larger(scale, larger(all->y[i], larger(fabs(q[i][0]), fabs(q[i][1]))));
+    double off = off_balance(all, q, v, wanted);
+    memcpy(best, v, size), least = off;
     for (int round = 0; round < MOST_ROUNDS && least > SAME_OFFSET * scale; round++) {
-        double next = try_contacts(modes, q, v, tried);
+        double next = try_contacts(all, q, v, tried);
         int nearer = next < off / 2;
-        if (nearer) off = next, memcpy(v, tried, sizeof tried);
-        else if (next < off) memcpy(v, tried, sizeof tried), off = next;
-        if (off < least) least = off, memcpy(best, v, sizeof best);
+        if (nearer) off = next, memcpy(v, tried, size);
+        else if (next < off) memcpy(v, tried, size), off = next;
+        if (off < least) least = off, memcpy(best, v, size);
         if (nearer) continue;
         if (came_near || least <= ROUNDING * scale) break;
         came_near = 1;
-        come_near(&all, q, v);
-        off = off_balance(modes, q, v, wanted);
-        if (off < least) least = off, memcpy(best, v, sizeof best);
+        come_near(all, q, v);
+        off = off_balance(all, q, v, wanted);
+        if (off < least) least = off, memcpy(best, v, size);
     }
-    memcpy(v, best, sizeof best);
-    for (int i = 0; i < count; i++) contact.of[i] = is_beyond(v[i], modes->y_star[i]) ? TOUCHES : 0;
+    memcpy(v, best, size);
+}
+
+/* The contacts that hold under q̃ among the supports that have places, with their v, sought from a guess of them. */
+static inline Contact settle_discs(
+    const Modes *modes, double q[MAX_PLACES][2], double v[MAX_PLACES][2], Contact contact
+) {
+    int n = modes->beam.n;
+    double q_all[MAX_PLACES][2], v_all[MAX_PLACES][2];
+    memset(contact.of, TOUCHES, (size_t)place_count(contact, n));
+    contact.of[n - 1] = 0;
+    Touching all = touching_of(modes, &contact);
+    for (int a = 0; a < all.touching; a++)
+        memcpy(q_all[a], q[all.C[a]], sizeof q_all[a]), memcpy(v_all[a], v[all.C[a]], sizeof v_all[a]);
+    settle_all(&all, q_all, v_all);
+    for (int a = 0; a < all.touching; a++) {
+        memcpy(v[all.C[a]], v_all[a], sizeof v_all[a]);
+        contact.of[all.C[a]] = is_beyond(v_all[a], all.y[a]) ? TOUCHES : 0;
+    }
     return contact;
 }
 

@@ -15,7 +15,7 @@
 /* A row of the beam without contacts on the state, in either direction:
    theta θ + Y Y + Σ_i delayed[i] Y(ξ−s_i) + g G + rss F_RSS + end times the high side. */
 typedef struct {
-    double theta, Y, delayed[MAX_STABILIZERS], g, rss, end;
+    double theta, Y, delayed[MAX_PLACES], g, rss, end;
 } Linear;
 
 static inline Linear linear_of(const Row *row, const Places *places) {
@@ -27,7 +27,7 @@ static inline Linear linear_of(const Row *row, const Places *places) {
     return linear;
 }
 
-/* While a regime holds, a value lies between `lower` and `upper`: of the stabilizer `part`, |v| − y* in contact, where it
+/* While a regime holds, a value lies between `lower` and `upper`: of the support at the place `part`, |v| − y* in contact, where it
    is k times the force, else |δ|; of the tilt, |F_0|/(ηΠ). */
 typedef struct {
     int part;
@@ -40,15 +40,16 @@ typedef struct {
 typedef struct {
     int count, n, saturated, axial, stands;
     const Modes *modes;
-    double s_1, s_n, y_star[MAX_STABILIZERS], walk_cosine, walk_sine;
+    Contact contact;
+    double s_1, s_n, y_star[MAX_PLACES], walk_cosine, walk_sine;
     ScaledInputs inputs;
     double inputs_xi; /* where the inputs are those that it was made under */
     double longest;   /* step under a changing ηΠ */
     Touching touching;
-    Linear q[MAX_STABILIZERS], M, F_0; /* without contacts */
+    Linear q[MAX_PLACES], M, F_0; /* without contacts */
     double relaxation;
     int bound_count;
-    Bound bounds[MAX_STABILIZERS];
+    Bound bounds[MAX_PLACES];
     double gains[MAX_PLACES];
 } Law;
 
@@ -60,9 +61,11 @@ static inline void find_gains(Law *law, const Mode *mode, const Places *places) 
     law->relaxation = 1 / fabs(rate * M.theta - (law->saturated ? 0.0 : F_0.Y / eta_pi));
     for (int i = 0; i < law->count; i++) {
         law->gains[i] = fabs(M.delayed[i] / M.theta) + fabs(F_0.delayed[i]) / eta_pi;
-        for (int k = 0; k < law->n - 1; k++) {
+        for (int k = 0; k < law->count; k++) {
+            if (k == law->n - 1) continue;
             Linear delta = linear_of(&mode->delta[k], places), F = linear_of(&mode->F[k], places);
-            double k_i = compliance(&law->modes->beam, k, k);
+            int support = support_at(&law->contact, law->n, k);
+            double k_i = compliance(&law->modes->beam, support, support);
             law->gains[i] = larger(law->gains[i], larger(fabs(delta.delayed[i]), k_i * fabs(F.delayed[i])));
         }
     }
@@ -79,23 +82,26 @@ static inline void make_law(
     Law *law, const Scaled *scaled, const Places *places, Modes *modes, Regime regime, ScaledInputs inputs,
     double inputs_xi
 ) {
-    Contact nothing = {{0}, 0, {0}};
+    Contact nothing = regime.contact;
+    memset(nothing.of, 0, sizeof nothing.of);
     const Mode *mode = mode_of(modes, nothing);
     double growth = fabs(inputs.eta_pi_slope / inputs.eta_pi);
     int n = scaled->n;
     law->count = places->count, law->n = n, law->axial = scaled->axial, law->saturated = regime.saturation != 0;
     law->stands = mode->stands;
-    law->modes = modes, law->inputs = inputs, law->inputs_xi = inputs_xi, law->bound_count = 0;
+    law->modes = modes, law->contact = regime.contact, law->inputs = inputs, law->inputs_xi = inputs_xi, law->bound_count = 0;
     law->s_1 = scaled->s[0], law->s_n = scaled->s[n - 1];
     law->walk_cosine = cos(inputs.walk), law->walk_sine = sin(inputs.walk);
     law->longest = growth == 0 ? INFINITY : LONGEST_RAMP / growth;
     law->M = linear_of(&mode->M, places), law->F_0 = linear_of(&mode->F_0, places);
-    law->touching = touching_of(modes, regime.contact);
-    for (int i = 0; i < n - 1; i++) {
-        law->q[i] = linear_of(&mode->delta[i], places), law->y_star[i] = modes->y_star[i];
-        if (modes->y_star[i] == 0.0) continue;
+    law->touching = touching_of(modes, &regime.contact);
+    for (int i = 0; i < law->count; i++) {
+        if (i == n - 1) continue;
+        law->q[i] = linear_of(&mode->delta[i], places);
+        law->y_star[i] = modes->y_star[support_at(&regime.contact, n, i)];
+        if (law->y_star[i] == 0.0) continue;
         if (regime.contact.of[i]) add_bound(law, i, 0.0, INFINITY);
-        else add_bound(law, i, -INFINITY, modes->y_star[i]);
+        else add_bound(law, i, -INFINITY, law->y_star[i]);
     }
     if (law->saturated) add_bound(law, n - 1, inputs.psi_star, INFINITY);
     else add_bound(law, n - 1, -INFINITY, inputs.psi_star);
@@ -148,7 +154,7 @@ static inline void row_slopes(
 
 /* What the hole behind adds to each row, q_i, M and F_0, in either direction. */
 typedef struct {
-    double q[MAX_STABILIZERS][2], M[2], F_0[2];
+    double q[MAX_PLACES][2], M[2], F_0[2];
 } Behind;
 
 static inline double delayed_part(const Linear *row, int count, const double *delayed, int stride) {
@@ -166,7 +172,7 @@ static inline int law_here(
     ScaledInputs inputs = inputs_ahead(law->inputs, ahead);
     int n = law->n, m = law->touching.touching;
     double a[2], eta_pi = at->eta_pi = inputs.eta_pi, by_F_0[2][2], answer[MOST_TOUCHING][MOST_TOUCHING];
-    double q_C[MAX_STABILIZERS][2], q_by[MOST_TOUCHING][COMPONENTS], M_by[2][COMPONENTS], F_0_by[2][COMPONENTS];
+    double q_C[MAX_PLACES][2], q_by[MOST_TOUCHING][COMPONENTS], M_by[2][COMPONENTS], F_0_by[2][COMPONENTS];
     for (int d = 0; d < 2; d++) a[d] = (x[LATERAL + d] - first[d]) / s_1 - x[ANGLE + d];
     Vector G = weight_across(view->down, a, law->axial, s_1), F_rss = pad_force(&inputs, view);
     Vector high = {{0.0, 0.0}, {{0}}, {{0}}};
@@ -175,14 +181,15 @@ static inline int law_here(
         at->G[d] = G.value[d], at->F_rss[d] = F_rss.value[d];
         at->M[d] = row_here(&law->M, x, d, &G, &F_rss, &high) + behind->M[d];
         at->F_0[d] = row_here(&law->F_0, x, d, &G, &F_rss, &high) + behind->F_0[d];
-        for (int i = 0; i < n - 1; i++) at->q[i][d] = row_here(&law->q[i], x, d, &G, &F_rss, &high) + behind->q[i][d];
+        for (int i = 0; i < law->count; i++)
+            if (i != n - 1) at->q[i][d] = row_here(&law->q[i], x, d, &G, &F_rss, &high) + behind->q[i][d];
         for (int k = 0; k < m; k++) q_C[k][d] = at->q[law->touching.C[k]][d];
     }
     if (m && !solve_contacts(&law->touching, q_C, at->v, at->F, slopes ? answer : NULL)) return 0;
     for (int k = 0; k < m; k++)
         for (int d = 0; d < 2; d++) {
-            at->M[d] += law->modes->beam.M_F[law->touching.C[k]] * at->F[k][d];
-            at->F_0[d] += law->modes->beam.F0_F[law->touching.C[k]] * at->F[k][d];
+            at->M[d] += law->modes->beam.M_F[law->touching.support[k]] * at->F[k][d];
+            at->F_0[d] += law->modes->beam.F0_F[law->touching.support[k]] * at->F[k][d];
         }
     tilt_under(law, eta_pi, inputs.psi_star, at->F_0, at->psi, by_F_0);
     double rate = 1 / (inputs.epsilon * eta_pi);
@@ -200,8 +207,8 @@ static inline int law_here(
             for (int c = 0; c < COMPONENTS; c++) {
                 double F_by = 0.0;
                 for (int j = 0; j < 2 * m; j++) F_by += answer[2 * k + d][j] * q_by[j][c];
-                M_by[d][c] += law->modes->beam.M_F[law->touching.C[k]] * F_by;
-                F_0_by[d][c] += law->modes->beam.F0_F[law->touching.C[k]] * F_by;
+                M_by[d][c] += law->modes->beam.M_F[law->touching.support[k]] * F_by;
+                F_0_by[d][c] += law->modes->beam.F0_F[law->touching.support[k]] * F_by;
             }
     for (int d = 0; d < 2; d++)
         for (int c = 0; c < COMPONENTS; c++) {
@@ -215,11 +222,12 @@ static inline int law_here(
 static inline void look_behind(const Law *law, const double *delayed, int place, int direction, Behind *behind) {
     for (int d = 0; d < 2; d++) {
         behind->M[d] = behind->F_0[d] = 0.0;
-        for (int i = 0; i < law->n - 1; i++) behind->q[i][d] = 0.0;
+        for (int i = 0; i < law->count; i++) behind->q[i][d] = 0.0;
         for (int j = 0; j < law->count; j++) {
             double Y_j = delayed[j * place + d * direction];
             behind->M[d] += law->M.delayed[j] * Y_j, behind->F_0[d] += law->F_0.delayed[j] * Y_j;
-            for (int i = 0; i < law->n - 1; i++) behind->q[i][d] += law->q[i].delayed[j] * Y_j;
+            for (int i = 0; i < law->count; i++)
+                if (i != law->n - 1) behind->q[i][d] += law->q[i].delayed[j] * Y_j;
         }
     }
 }

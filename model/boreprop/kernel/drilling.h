@@ -122,10 +122,6 @@ static inline Status drilling_prepare(
     Drilling *d, const System *system, Ground ground, Options options, void *memory, Count capacity, Problem *problem
 ) {
     if (!check_system(system, problem)) return FAILED;
-    if (DIRECTIONS > 1 && system->structure.points) {
-        wrong(problem, ONLY_IN_THE_PLANE, Q_BODY_POINT_POSITION, 0, system->structure.points, NAN);
-        return FAILED;
-    }
     if (!check_positive(Q_FORCE_SCALE, force_scale(system), problem)) return FAILED;
     Scaled scaled = scale(system);
     if (!check_finite(Q_SCALED_REACH, 0, scaled.s[scaled.n - 1], problem) ||
@@ -322,6 +318,8 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_STABILIZER_FORCE_RIGHT:
         case OUT_STABILIZER_DEFLECTION_HIGH:
         case OUT_STABILIZER_DEFLECTION_RIGHT:
+        case OUT_BODY_CONTACT_FORCE_HIGH:
+        case OUT_BODY_CONTACT_FORCE_RIGHT:
         case OUT_SENSOR_AZIMUTH:
         case OUT_SENSOR_BENDING_MOMENT_HIGH:
         case OUT_SENSOR_BENDING_MOMENT_RIGHT:

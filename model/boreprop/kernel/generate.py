@@ -46,6 +46,7 @@ SIZES = {
     "space": "IF_SPACE",
     "space n-1": "EACH_NON_IDEAL_IN_SPACE",
     "space sensors": "EACH_SENSOR_IN_SPACE",
+    "space body": "IF_POINTS_IN_SPACE",
 }
 ROOMS = {
     "n": "[MAX_STABILIZERS]",

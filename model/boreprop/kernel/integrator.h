@@ -7,7 +7,11 @@
 #define BOREPROP_INTEGRATOR_H
 
 #include "sensors.h"
-#include "surroundings.h"
+#ifdef SPACE
+#include "space_landing.h"
+#else
+#include "landing.h"
+#endif
 
 /* integrator.py gives the reasons for these numbers. */
 #define LOOK_BACK 1.0      /* ℓ₁: how far behind the bit Θ may be asked for */
@@ -52,9 +56,10 @@ static inline int leave(Integrator *p, const Step *last, double x[COMPONENTS]) {
     double xi = last->end;
     move_path(now, xi);
     step_state(last, xi, x);
-    double Y = x[LATERAL];
+    double before[COMPONENTS];
+    memcpy(before, x, sizeof before);
     keep_origin_near(now, x);
-    if (x[LATERAL] != Y) move_seen(p, x[LATERAL] - Y);
+    move_seen(p, before, x);
     forget(&now->hole, xi - LOOK_BACK - p->scaled.s[p->scaled.n - 1]);
     move_cursors(&now->hole, &now->places, xi);
     /* a step may have to stop half way to a kink: a kink too near for that counts as met here */
@@ -192,7 +197,7 @@ static inline Status find_step(
             plan->switches++;
             continue;
         }
-        if (DIRECTIONS == 1 && p->scaled.stepped && !plan->searched) {
+        if (lands(p) && !plan->searched) {
             plan->searched = 1, plan->switches = 0;
             if (touch_down(p, xi, x, problem) == DONE) continue;
         }
@@ -207,7 +212,7 @@ static inline Status find_step(
 static inline Status keep_clear(
     Integrator *p, const Step *last, int kink, const double x[COMPONENTS], Plan *plan, Trial *trial, Problem *problem
 ) {
-    double body[MAX_POINTS];
+    double body[DIRECTIONS][MAX_POINTS];
     for (;;) {
         find_body_after(p, trial, body);
         look_around(p, &trial->step, body);
@@ -220,7 +225,8 @@ static inline Status keep_clear(
         Status status = find_step(p, last->end, x, plan, trial, problem);
         if (status != DONE) return status;
     }
-    memcpy(p->around.body, body, (size_t)p->scaled.points * sizeof *body);
+    for (int d = 0; d < DIRECTIONS; d++)
+        memcpy(p->around.body[d], body[d], (size_t)p->scaled.points * sizeof *body[d]);
     note_inclinations(&p->now.inclinations, &trial->step, p->scaled.s[p->scaled.n - 1]);
     return DONE;
 }

@@ -16,7 +16,7 @@ static inline Status restart(
     now->step = standstill(&now->step, now->xi, x);
     p->exit_known = 0;
     bear(p, inputs.W);
-    if (DIRECTIONS == 1 && p->scaled.stepped && touch_down(p, now->xi, x, problem) != DONE) return FAILED;
+    if (lands(p) && touch_down(p, now->xi, x, problem) != DONE) return FAILED;
     Response at = respond(p, x, inputs);
     for (int d = 0; d < DIRECTIONS; d++) {
         if (!isfinite(at.Theta[d]) || !isfinite(at.F_0[d])) return failed(p, NOT_FINITE, now->xi, problem);
@@ -161,7 +161,7 @@ static inline Status begin(Integrator *p, const Survey *survey, ScaledInputs inp
     find_places(now, &p->scaled, now->xi);
     if (p->scaled.points) start_noting(now);
     if (restart(p, inputs, x, heading.angle, problem) != DONE) {
-        wrong(problem, NO_START, Q_PARAMETERS, 0, NAN, NAN);
+        if (problem->code == NOT_FINITE) wrong(problem, NO_START, Q_PARAMETERS, 0, NAN, NAN);
         return FAILED;
     }
     read_sensors(p, now->xi);

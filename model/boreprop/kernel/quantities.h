@@ -8,7 +8,7 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "642846b25e38849e" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "b7dc469186872bd5" /* of this file, but for this line, and of problems.h */
 #define MOST_DRILLED 100000.0 /* m in a communication step */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: forces between closer ones are rounding errors */
 #define POINTS_ALONG_BHA 36 /* at which its distance from the hole is looked at */
@@ -16,7 +16,7 @@
 
 enum { MAX_STABILIZERS = 6, MAX_SECTIONS = 24, MAX_POINTS = 128 };
 enum { MAX_SENSORS = 8 };
-enum { PARAMETER_COUNT = 18, INPUT_COUNT = 10, OUTPUT_COUNT = 37 };
+enum { PARAMETER_COUNT = 18, INPUT_COUNT = 10, OUTPUT_COUNT = 39 };
 
 /* How a drilling system is made up, which says how many values each quantity has. */
 typedef struct {
@@ -67,7 +67,7 @@ typedef struct {
 } Inputs;
 
 /* How many values a quantity has. */
-typedef enum { ONE, EACH_STABILIZER, EACH_NON_IDEAL, IF_UNIFORM, EACH_SECTION, IF_STEPPED, IF_AXIAL, EACH_POINT, IF_POINTS, IF_LAYERED, EACH_SENSOR, IF_SPACE, EACH_NON_IDEAL_IN_SPACE, EACH_SENSOR_IN_SPACE } Size;
+typedef enum { ONE, EACH_STABILIZER, EACH_NON_IDEAL, IF_UNIFORM, EACH_SECTION, IF_STEPPED, IF_AXIAL, EACH_POINT, IF_POINTS, IF_LAYERED, EACH_SENSOR, IF_SPACE, EACH_NON_IDEAL_IN_SPACE, EACH_SENSOR_IN_SPACE, IF_POINTS_IN_SPACE } Size;
 
 /* A parameter or input, and its range: above < value, at_least <= value <= at_most. */
 typedef struct {
@@ -130,6 +130,8 @@ typedef enum {
     OUT_BODY_CONTACT_FORCE, /* N: largest force of the wall on the body between the stabilizers, positive from the lower wall */
     OUT_BODY_CONTACT_POSITION, /* m: where that force acts, from the bit; 0 if the body touches no wall */
     OUT_WALL_DISTANCE, /* m: least distance of the body from the wall */
+    OUT_BODY_CONTACT_FORCE_HIGH, /* N: part of that force to the high side, in a nearly vertical hole to north */
+    OUT_BODY_CONTACT_FORCE_RIGHT, /* N: part of that force to the right of that, looking down the hole */
     OUT_BIT_AZIMUTH, /* rad: azimuth of the bit axis, from north over east */
     OUT_BOREHOLE_AZIMUTH, /* rad: azimuth of the borehole at the bit, from north over east */
     OUT_BIT_TILT_HIGH, /* rad: part of the bit tilt to the high side, in a nearly vertical hole to north */
@@ -169,6 +171,8 @@ static const Size OUTPUT_SIZE[OUTPUT_COUNT] = {
     IF_POINTS, /* body_contact_force */
     IF_POINTS, /* body_contact_position */
     IF_POINTS, /* wall_distance */
+    IF_POINTS_IN_SPACE, /* body_contact_force_high */
+    IF_POINTS_IN_SPACE, /* body_contact_force_right */
     IF_SPACE, /* bit_azimuth */
     IF_SPACE, /* borehole_azimuth */
     IF_SPACE, /* bit_tilt_high */
@@ -208,6 +212,8 @@ static const Name OUTPUT_NAME[OUTPUT_COUNT] = {
     Q_BODY_CONTACT_FORCE,
     Q_BODY_CONTACT_POSITION,
     Q_WALL_DISTANCE,
+    Q_BODY_CONTACT_FORCE_HIGH,
+    Q_BODY_CONTACT_FORCE_RIGHT,
     Q_BIT_AZIMUTH,
     Q_BOREHOLE_AZIMUTH,
     Q_BIT_TILT_HIGH,
@@ -231,8 +237,8 @@ static const Name OUTPUT_NAME[OUTPUT_COUNT] = {
     Q_ETA_PI,
     Q_FORMATION,
 };
-static const int OUTPUT_IS_WHOLE[OUTPUT_COUNT] = { 0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1 };
-enum { MOST_PARAMETERS = 392, MOST_OUTPUTS = 112 }; /* values, of the largest assembly */
+static const int OUTPUT_IS_WHOLE[OUTPUT_COUNT] = { 0, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1 };
+enum { MOST_PARAMETERS = 392, MOST_OUTPUTS = 114 }; /* values, of the largest assembly */
 
 /* How the integrator takes its steps: core/options.py says what each is. */
 typedef struct {

@@ -4,19 +4,17 @@
 
 #include "newton.h"
 
-/* How far a vector is. */
-static inline double size_of(const double a[2]) { return hypot(a[0], a[1]); }
-
 /* A bounded value, from what the law has said. */
 static inline double bounded_value(const Law *law, const Bound *bound, const Reply *at) {
     int i = bound->part;
-    if (i == law->n - 1) return size_of(at->F_0) / at->eta_pi;
+    if (i == law->n - 1) return length_of(at->F_0) / at->eta_pi;
     double delta[2] = {at->q[i][0], at->q[i][1]};
+    int support = support_at(&law->contact, law->n, i);
     for (int k = 0; k < law->touching.touching; k++) {
-        if (law->touching.C[k] == i) return size_of(at->v[k]) - law->y_star[i];
-        for (int d = 0; d < 2; d++) delta[d] += compliance(&law->modes->beam, i, law->touching.C[k]) * at->F[k][d];
+        if (law->touching.C[k] == i) return length_of(at->v[k]) - law->y_star[i];
+        for (int d = 0; d < 2; d++) delta[d] += compliance(&law->modes->beam, support, law->touching.support[k]) * at->F[k][d];
     }
-    return size_of(delta);
+    return length_of(delta);
 }
 
 /* A bounded value at one place of a trial step. */
@@ -69,7 +67,7 @@ static inline int turns_over(const Law *law, const Trial *trial, const double x[
     double turn[2];
     for (int d = 0; d < 2; d++)
         turn[d] = (x[LATERAL + d] - trial->delayed[law->n - 1][d][POINTS - 1]) / law->s_n - x[ANGLE + d];
-    return !(size_of(turn) <= RIGHT_ANGLE);
+    return !(length_of(turn) <= RIGHT_ANGLE);
 }
 
 #endif

@@ -7,6 +7,7 @@ typedef struct {
     double l1, F_star, eta_pi, path[AXES], T[AXES], earlier[DIRECTIONS], x[COMPONENTS];
     double high[DIRECTIONS]; /* the side from which parts of forces and tilt are counted, in (e₂, e₃) */
     Response is;
+    double body_force[DIRECTIONS], body_place, wall_distance; /* the largest force, and where it acts; the least gap */
     Sensed sensed[MAX_SENSORS];
     double told[MAX_SENSORS][DIRECTIONS];
 } Present;
@@ -18,8 +19,21 @@ static inline void high_side(const Frame *frame, double high[DIRECTIONS]) {
     const double *down = frame->row[DOWN], *north = frame->row[NORTH];
     int vertical = hypot(down[HIGH], down[RIGHT]) < NEARLY_VERTICAL;
     double to[DIRECTIONS] = {vertical ? north[HIGH] : -down[HIGH], vertical ? north[RIGHT] : -down[RIGHT]};
-    double size = size_of(to);
+    double size = length_of(to);
     for (int d = 0; d < DIRECTIONS; d++) high[d] = to[d] / size;
+}
+
+/* What the wall does to the body of the BHA. */
+static inline void find_body(Integrator *p, Present *at) {
+    double gap[MAX_POINTS] = {0};
+    at->body_force[0] = at->body_force[1] = at->body_place = 0.0, at->wall_distance = INFINITY;
+    if (!p->scaled.points) return;
+    for (int i = p->scaled.n; i < p->now.places.count; i++) {
+        if (length_of(at->is.at.F[i]) <= length_of(at->body_force)) continue;
+        memcpy(at->body_force, at->is.at.F[i], sizeof at->body_force), at->body_place = p->now.places.s[i];
+    }
+    find_gaps(p, gap);
+    for (int k = 0; k < p->scaled.points; k++) at->wall_distance = smaller(at->wall_distance, larger(gap[k], 0.0));
 }
 
 static inline Present present(Drilling *d) {
@@ -40,6 +54,7 @@ static inline Present present(Drilling *d) {
         turned_row(at.is.frame.row[axis], back, turned);
         at.T[axis] = turned[AHEAD];
     }
+    find_body(p, &at);
     if (!p->scaled.sensors) return at;
     Bending bending[DIRECTIONS];
     bend_under(p, &at.is, bending);
@@ -79,34 +94,36 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_BIT_AZIMUTH: return atan2(frame->row[EAST][AHEAD], frame->row[NORTH][AHEAD]);
         case OUT_BOREHOLE_INCLINATION: return atan2(hypot(at->T[NORTH], at->T[EAST]), at->T[DOWN]);
         case OUT_BOREHOLE_AZIMUTH: return atan2(at->T[EAST], at->T[NORTH]);
-        case OUT_BIT_TILT: return size_of(is->psi);
+        case OUT_BIT_TILT: return length_of(is->psi);
         case OUT_BIT_TILT_HIGH: return part_high(at, is->psi);
         case OUT_BIT_TILT_RIGHT: return part_right(at, is->psi);
         case OUT_AVERAGE_INCLINATION: /* λ_i (⟨Θ⟩_i − θ) = e_i − e_{i−1} */
             return mean_inclination(at, i ? at->is.e[i - 1] : nothing, at->is.e[i], lambda_(&d->integrator.scaled, i));
-        case OUT_STABILIZER_DEFLECTION: return size_of(at->is.delta[i]) * l1;
+        case OUT_STABILIZER_DEFLECTION: return length_of(at->is.delta[i]) * l1;
         case OUT_STABILIZER_DEFLECTION_HIGH: return part_high(at, at->is.delta[i]) * l1;
         case OUT_STABILIZER_DEFLECTION_RIGHT: return part_right(at, at->is.delta[i]) * l1;
-        case OUT_STABILIZER_FORCE: return size_of(is->F[i]) * F_star;
+        case OUT_STABILIZER_FORCE: return length_of(is->F[i]) * F_star;
         case OUT_STABILIZER_FORCE_HIGH: return part_high(at, is->F[i]) * F_star;
         case OUT_STABILIZER_FORCE_RIGHT: return part_right(at, is->F[i]) * F_star;
-        case OUT_STABILIZER_CONTACT: return size_of(is->F[i]) > 0;
+        case OUT_STABILIZER_CONTACT: return length_of(is->F[i]) > 0;
         case OUT_BIT_TILT_SATURATION: return at->is.regime.saturation;
-        case OUT_BIT_LATERAL_FORCE: return size_of(is->F_0) * F_star;
+        case OUT_BIT_LATERAL_FORCE: return length_of(is->F_0) * F_star;
         case OUT_BIT_LATERAL_FORCE_HIGH: return part_high(at, is->F_0) * F_star;
         case OUT_BIT_LATERAL_FORCE_RIGHT: return part_right(at, is->F_0) * F_star;
-        case OUT_BIT_MOMENT: return size_of(is->M) * F_star * l1;
-        case OUT_BOREHOLE_CURVATURE: return size_of(turned) / l1;
-        case OUT_BODY_CONTACT_FORCE: /* the body has no points in space */
-        case OUT_BODY_CONTACT_POSITION:
-        case OUT_WALL_DISTANCE: break;
+        case OUT_BIT_MOMENT: return length_of(is->M) * F_star * l1;
+        case OUT_BOREHOLE_CURVATURE: return length_of(turned) / l1;
+        case OUT_BODY_CONTACT_FORCE: return length_of(at->body_force) * F_star;
+        case OUT_BODY_CONTACT_FORCE_HIGH: return part_high(at, at->body_force) * F_star;
+        case OUT_BODY_CONTACT_FORCE_RIGHT: return part_right(at, at->body_force) * F_star;
+        case OUT_BODY_CONTACT_POSITION: return at->body_place * l1;
+        case OUT_WALL_DISTANCE: return at->wall_distance * l1;
         case OUT_SENSOR_INCLINATION: return at->told[i][INCLINATION];
         case OUT_SENSOR_AZIMUTH: return at->told[i][AZIMUTH];
-        case OUT_SENSOR_BENDING_MOMENT: return size_of(at->sensed[i].moment) * F_star * l1;
+        case OUT_SENSOR_BENDING_MOMENT: return length_of(at->sensed[i].moment) * F_star * l1;
         case OUT_SENSOR_BENDING_MOMENT_HIGH: return part_high(at, at->sensed[i].moment) * F_star * l1;
         case OUT_SENSOR_BENDING_MOMENT_RIGHT: return part_right(at, at->sensed[i].moment) * F_star * l1;
         case OUT_SENSOR_CLEARANCE:
-            return (d->integrator.scaled.sensor[i].clearance - size_of(at->sensed[i].offset)) * l1;
+            return (d->integrator.scaled.sensor[i].clearance - length_of(at->sensed[i].offset)) * l1;
         case OUT_FORMATION: return d->integrator.now.layer;
         case OUT_NORTH: return at->path[NORTH] * l1;
         case OUT_EAST: return at->path[EAST] * l1;

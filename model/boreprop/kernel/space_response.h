@@ -9,68 +9,99 @@ typedef struct {
     Regime regime;
     double Theta[DIRECTIONS], F_0[DIRECTIONS];
     Frame frame;
-    Reply at; /* with F and v by stabilizer */
-    double delta[MAX_STABILIZERS][DIRECTIONS], e[MAX_STABILIZERS][DIRECTIONS];
+    Reply at; /* with F and v by place */
+    double delta[MAX_PLACES][DIRECTIONS], e[MAX_PLACES][DIRECTIONS];
 } Response;
 
-static inline Response respond_at(Integrator *p, double xi, const double x[COMPONENTS], ScaledInputs inputs) {
+/* What it answers with the bit at `xi` in a step, in the state `x`, among the supports that have places. */
+static inline Response respond_at(
+    Integrator *p, const Step *step, double xi, const double x[COMPONENTS], ScaledInputs inputs
+) {
     const State *now = &p->now;
     const Scaled *scaled = &p->scaled;
     const Beam *beam = &p->modes.beam;
+    int n = scaled->n, places = now->places.count;
     double delayed[MAX_PLACES][DIRECTIONS], by[2][2];
     Law law;
     Behind behind;
-    Regime free = {{{0}, 0, {0}}, 0};
+    Regime free = {now->regime.contact, 0};
     Response response = {0};
     Reply *at = &response.at;
+    memset(free.contact.of, 0, sizeof free.contact.of);
     make_law(&law, scaled, &now->places, &p->modes, free, inputs, xi);
     hole_at_places(&now->hole, &now->places, xi, delayed);
     look_behind(&law, &delayed[0][0], DIRECTIONS, 1, &behind);
-    response.frame = turned_along(&now->step.frame, now->step.x, (xi - now->step.xi) / now->step.h);
+    response.frame = turned_along(&step->frame, step->x, (xi - step->xi) / step->h);
     View view = {{0}, {0}};
     memcpy(view.down, response.frame.row[DOWN], sizeof view.down);
     memcpy(view.north, response.frame.row[NORTH], sizeof view.north);
     law_here(&law, x, 0.0, &view, &behind, delayed[0], law.s_1, 0, at);
-    for (int i = 0; i < scaled->n - 1; i++) memcpy(at->v[i], at->q[i], sizeof at->v[i]);
+    memcpy(at->v, at->q, sizeof at->v), memcpy(response.delta, at->q, sizeof at->q);
     response.regime.contact = settle_discs(&p->modes, at->q, at->v, free.contact);
-    for (int i = 0; i < scaled->n - 1; i++) memcpy(response.delta[i], at->q[i], sizeof at->q[i]);
-    for (int j = 0; j < scaled->n - 1; j++) {
+    for (int j = 0; j < places; j++) {
+        int support = support_at(&free.contact, n, j);
         double beyond[2], slope[2][2];
         if (!response.regime.contact.of[j]) continue;
-        beyond_disc(at->v[j], p->modes.y_star[j], beyond, slope);
+        beyond_disc(at->v[j], p->modes.y_star[support], beyond, slope);
         for (int d = 0; d < DIRECTIONS; d++) {
-            double F = at->F[j][d] = -beyond[d] / compliance(beam, j, j);
-            at->M[d] += beam->M_F[j] * F, at->F_0[d] += beam->F0_F[j] * F;
-            for (int i = 0; i < scaled->n - 1; i++) response.delta[i][d] += compliance(beam, i, j) * F;
+            double F = at->F[j][d] = -beyond[d] / compliance(beam, support, support);
+            at->M[d] += beam->M_F[support] * F, at->F_0[d] += beam->F0_F[support] * F;
+            for (int i = 0; i < places; i++)
+                if (i != n - 1) response.delta[i][d] += compliance(beam, support_at(&free.contact, n, i), support) * F;
         }
     }
-    law.saturated = response.regime.saturation = size_of(at->F_0) / inputs.eta_pi > inputs.psi_star + ROUNDING;
+    law.saturated = response.regime.saturation = length_of(at->F_0) / inputs.eta_pi > inputs.psi_star + ROUNDING;
     tilt_under(&law, inputs.eta_pi, inputs.psi_star, at->F_0, at->psi, by);
     for (int d = 0; d < DIRECTIONS; d++) {
         response.Theta[d] = x[ANGLE + d] - at->psi[d], response.F_0[d] = at->F_0[d];
-        for (int i = 0; i < scaled->n; i++)
-            response.e[i][d] = x[LATERAL + d] - delayed[i][d] - scaled->s[i] * x[ANGLE + d];
+        for (int i = 0; i < places; i++)
+            response.e[i][d] = x[LATERAL + d] - delayed[i][d] - now->places.s[i] * x[ANGLE + d];
     }
     return response;
 }
 
 static inline Response respond(Integrator *p, const double x[COMPONENTS], ScaledInputs inputs) {
-    return respond_at(p, p->now.xi, x, inputs);
+    return respond_at(p, &p->now.step, p->now.xi, x, inputs);
 }
 
 /* How the BHA is bent, in either direction, where the drilling system answers so. */
 static inline void bend_under(const Integrator *p, const Response *is, Bending bending[DIRECTIONS]) {
+    const Contact *contact = &is->regime.contact;
     for (int d = 0; d < DIRECTIONS; d++) {
         Bending nothing = {.F_rss = is->at.F_rss[d], .g = is->at.G[d], .M = is->at.M[d], .F_0 = is->at.F_0[d]};
         bending[d] = nothing;
-        for (int i = 0; i < p->scaled.n - 1; i++) bending[d].F[i] = is->at.F[i][d];
+        for (int i = 0; i < place_count(*contact, p->scaled.n); i++)
+            if (contact->of[i]) bending[d].F[support_at(contact, p->scaled.n, i)] = is->at.F[i][d];
     }
 }
 
-/* The same with the bit at `xi` in the state `x`. */
+/* The same with the bit at `xi` in the state `x`, in the present step. */
 static inline void bend(Integrator *p, double xi, const double x[COMPONENTS], Bending bending[DIRECTIONS]) {
-    Response is = respond_at(p, xi, x, inputs_ahead(p->now.inputs, xi - p->now.inputs_xi));
+    Response is = respond_at(p, &p->now.step, xi, x, inputs_at(&p->now, xi));
     bend_under(p, &is, bending);
+}
+
+/* What bends it where the drilling system answers so. */
+static inline void pull_under(const Integrator *p, const Response *is, Pull pull[DIRECTIONS]) {
+    Vector high = side_of(is->frame.row[DOWN], -1.0);
+    for (int d = 0; d < DIRECTIONS; d++) {
+        for (int i = 0; i < MAX_PLACES; i++) pull[d].F[i] = is->at.F[i][d];
+        pull[d].end = is->e[p->scaled.n - 1][d] - p->modes.beam.end * high.value[d];
+        pull[d].F_rss = is->at.F_rss[d], pull[d].g = is->at.G[d];
+    }
+}
+
+/* The same with the bit at `xi` in the state `x`, in a step. */
+static inline void pull_at(
+    Integrator *p, const Step *step, double xi, const double x[COMPONENTS], Pull pull[DIRECTIONS]
+) {
+    Response is = respond_at(p, step, xi, x, inputs_at(&p->now, xi));
+    pull_under(p, &is, pull);
+}
+
+/* The same where a step ends that is being tried, in the state `x`. */
+static inline void pull_after(Integrator *p, const Trial *trial, const double x[COMPONENTS], Pull pull[DIRECTIONS]) {
+    pull_at(p, &trial->step, trial->step.end, x, pull);
 }
 
 #define A_LITTLE 1e-6 /* ℓ₁: over which the slope of Θ under ramps is taken */

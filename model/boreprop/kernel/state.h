@@ -117,8 +117,8 @@ static inline void pass_snapshot(Tape *tape, const Scaled *scaled, Snapshot *sna
         pass(tape, DIRECTIONS, reading->told);
     }
     if (!scaled->points) return;
-    pass(tape, NUMBERS_OF_INCLINATIONS, &now->inclinations.before.low);
-    pass(tape, scaled->points, snapshot->around.body);
+    pass(tape, NUMBERS_OF_INCLINATIONS, &now->inclinations.before[0].low);
+    for (int d = 0; d < DIRECTIONS; d++) pass(tape, scaled->points, snapshot->around.body[d]);
     pass(tape, scaled->points, snapshot->around.gap);
     pass(tape, scaled->points, snapshot->around.change);
 }

@@ -28,8 +28,8 @@ typedef struct {
 typedef struct {
     double rate[COMPONENTS], by[COMPONENTS][COMPONENTS]; /* θ⃗' and Θ⃗, and their derivatives by the state */
     double M[DIRECTIONS], F_0[DIRECTIONS], psi[DIRECTIONS], G[DIRECTIONS], F_rss[DIRECTIONS], eta_pi;
-    double q[MAX_STABILIZERS][DIRECTIONS]; /* of each stabilizer; the others by their number among those in contact */
-    double v[MAX_STABILIZERS][DIRECTIONS], F[MAX_STABILIZERS][DIRECTIONS];
+    double q[MAX_PLACES][DIRECTIONS]; /* of the support at each place; the others by number among those in contact */
+    double v[MAX_PLACES][DIRECTIONS], F[MAX_PLACES][DIRECTIONS];
 } Reply;
 #endif
 

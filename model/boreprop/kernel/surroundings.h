@@ -2,65 +2,75 @@
 #ifndef BOREPROP_SURROUNDINGS_H
 #define BOREPROP_SURROUNDINGS_H
 
-#include "bit.h"
+#ifdef SPACE
+#include "space_response.h"
+#else
+#include "response.h"
+#endif
 
 /* Where the hole is at a point of the body with the bit at `xi`. The hole ends where the step begins that is being tried;
    `nearer` is the piece at a point nearer to the bit, if one has been asked for. */
-static inline double hole_at_point(const Integrator *p, const Step *step, double xi, int k, const Piece **nearer) {
+static inline void hole_at_point(
+    const Integrator *p, const Step *step, double xi, int k, const Piece **nearer, double Y[DIRECTIONS]
+) {
     const Hole *hole = &p->now.hole;
     double at = xi - p->scaled.s[p->scaled.n + k];
-    if (at >= step->xi) return polynomial(step->x[LATERAL], (at - step->xi) * (1 / step->h));
-    if (!*nearer || (*nearer)->start > at) *nearer = piece(hole, find(hole, at));
-    return polynomial((*nearer)->x[LATERAL], (at - (*nearer)->start) * (*nearer)->rate);
+    int tried = at >= step->xi;
+    if (!tried && (!*nearer || (*nearer)->start > at)) *nearer = piece(hole, find(hole, at));
+    double t = tried ? (at - step->xi) * (1 / step->h) : (at - (*nearer)->start) * (*nearer)->rate;
+    for (int d = 0; d < DIRECTIONS; d++) Y[d] = polynomial((tried ? step->x : (*nearer)->x)[LATERAL + d], t);
 }
 
-/* Where the points of the body are, from the origin, with the bit in the state `x`, under loads. */
-static inline void find_body_under(Integrator *p, const double x[COMPONENTS], const Loads *loads, double *body) {
+/* How far a point of the body, which is at `body`, is from the wall, the hole being at Y. */
+static inline double gap_of(const Integrator *p, int k, double body[][MAX_POINTS], const double Y[DIRECTIONS]) {
+    double off[DIRECTIONS];
+    for (int d = 0; d < DIRECTIONS; d++) off[d] = body[d][k] - Y[d];
+    return p->scaled.y_star[p->scaled.n + k] - length_of(off);
+}
+
+/* Where the points of the body are, from the origin, with the bit in the state `x`, bent like this. */
+static inline void find_body_under(
+    const Integrator *p, const double x[COMPONENTS], const Pull pull[DIRECTIONS], double body[][MAX_POINTS]
+) {
     const Contact *contact = &p->now.regime.contact;
     const Beam *beam = &p->modes.beam;
     int n = p->scaled.n, points = p->scaled.points;
     const double *s = p->scaled.s + n;
-    double F[MAX_PLACES];
-    contact_forces(mode_of(&p->modes, *contact), loads, F);
-    free_deflections(beam, loads->e[n - 1], loads->F_rss, loads->g, n, points, body);
-    for (int i = 0; i < loads->count; i++)
-        if (F[i] != 0.0) add_push(beam, support_at(contact, n, i), F[i], points, body);
-    for (int k = 0; k < points; k++) body[k] += x[LATERAL] - s[k] * x[ANGLE];
+    for (int d = 0; d < DIRECTIONS; d++) {
+        free_deflections(beam, &pull[d], points, body[d]);
+        for (int i = 0; i < p->now.places.count; i++)
+            if (pull[d].F[i] != 0.0) add_push(beam, support_at(contact, n, i), pull[d].F[i], points, body[d]);
+        for (int k = 0; k < points; k++) body[d][k] += x[LATERAL + d] - s[k] * x[ANGLE + d];
+    }
 }
 
 /* The same where a step ends that is being tried. */
-static inline void find_body_after(Integrator *p, const Trial *trial, double *body) {
-    const Step *step = &trial->step;
-    const Places *places = &p->now.places;
+static inline void find_body_after(Integrator *p, const Trial *trial, double body[][MAX_POINTS]) {
     double x[COMPONENTS];
-    step_state(step, step->end, x);
-    Loads loads;
-    if (step->event != NONE) loads = loads_at(p, step->end, x, force_at(&p->now, step->end));
-    else { /* all of the trial, with its last point at the end */
-        loads.count = places->count, loads.F_rss = force_at(&p->now, step->end);
-        for (int i = 0; i < places->count; i++)
-            loads.e[i] = x[LATERAL] - trial->delayed[i][0][POINTS - 1] - places->s[i] * x[ANGLE];
-        loads.g = sin(p->scaled.axial ? x[ANGLE] : x[LATERAL] - trial->delayed[0][0][POINTS - 1]);
-    }
-    find_body_under(p, x, &loads, body);
+    Pull pull[DIRECTIONS];
+    step_state(&trial->step, trial->step.end, x);
+    pull_after(p, trial, x, pull);
+    find_body_under(p, x, pull, body);
 }
 
 /* The same with the bit at `xi` in a step. */
-static inline void find_body_at(Integrator *p, const Step *step, double xi, double *body) {
+static inline void find_body_at(Integrator *p, const Step *step, double xi, double body[][MAX_POINTS]) {
     double x[COMPONENTS];
+    Pull pull[DIRECTIONS];
     step_state(step, xi, x);
-    Loads loads = loads_at(p, xi, x, force_at(&p->now, xi));
-    find_body_under(p, x, &loads, body);
+    pull_at(p, step, xi, x, pull);
+    find_body_under(p, x, pull, body);
 }
 
 /* How far every point of the body is from the wall with the bit where it is. */
 static inline void find_gaps(Integrator *p, double gap[MAX_POINTS]) {
-    const double *y_star = p->scaled.y_star + p->scaled.n;
     const Piece *nearer = NULL;
-    double body[MAX_POINTS] = {0};
+    double body[DIRECTIONS][MAX_POINTS] = {{0}}, Y[DIRECTIONS];
     find_body_at(p, &p->now.step, p->now.xi, body);
-    for (int k = 0; k < p->scaled.points; k++)
-        gap[k] = y_star[k] - fabs(body[k] - hole_at_point(p, &p->now.step, p->now.xi, k, &nearer));
+    for (int k = 0; k < p->scaled.points; k++) {
+        hole_at_point(p, &p->now.step, p->now.xi, k, &nearer, Y);
+        gap[k] = gap_of(p, k, body, Y);
+    }
 }
 
 /* Widen a range of inclinations by those of a piece of hole, the slopes of its polynomial up to t: they lie between the
@@ -79,11 +89,13 @@ static inline void widen(Range *range, const double c[S + 1], double rate, doubl
 
 /* Note the inclinations of the hole over a step. */
 static inline void note_inclinations(Inclinations *noted, const Step *step, double reach) {
-    if (step->end - noted->since > reach + BLIND) {
+    int anew = step->end - noted->since > reach + BLIND;
+    if (anew) noted->since = step->xi;
+    for (int d = 0; d < DIRECTIONS; d++) {
         Range nothing = {INFINITY, -INFINITY};
-        noted->before = noted->latest, noted->latest = nothing, noted->since = step->xi;
+        if (anew) noted->before[d] = noted->latest[d], noted->latest[d] = nothing;
+        widen(&noted->latest[d], step->x[LATERAL + d], 1 / step->h, (step->end - step->xi) / step->h);
     }
-    widen(&noted->latest, step->x[LATERAL], 1 / step->h, (step->end - step->xi) / step->h);
 }
 
 /* Forget where the hole was seen. */
@@ -94,15 +106,20 @@ static inline void forget_seen(Integrator *p) {
 /* Note the inclinations of the existing hole. */
 static inline void start_noting(State *now) {
     const Hole *hole = &now->hole;
-    Range range = {INFINITY, -INFINITY};
-    for (Count k = hole->first; k < hole->end; k++)
-        widen(&range, piece(hole, k)->x[LATERAL], piece(hole, k)->rate, 1.0);
-    now->inclinations.before = now->inclinations.latest = range, now->inclinations.since = now->xi;
+    for (int d = 0; d < DIRECTIONS; d++) {
+        Range range = {INFINITY, -INFINITY};
+        for (Count k = hole->first; k < hole->end; k++)
+            widen(&range, piece(hole, k)->x[LATERAL + d], piece(hole, k)->rate, 1.0);
+        now->inclinations.before[d] = now->inclinations.latest[d] = range;
+    }
+    now->inclinations.since = now->xi;
 }
 
-/* Follow the origin of the lateral coordinates when it moves, so that they all change by `shift`. */
-static inline void move_seen(Integrator *p, double shift) {
-    for (int k = 0; k < p->scaled.points; k++) p->around.body[k] += shift;
+/* Follow the origin of the lateral coordinates when it moves, so that a state `before` becomes `x`. */
+static inline void move_seen(Integrator *p, const double before[COMPONENTS], const double x[COMPONENTS]) {
+    if (!memcmp(before, x, COMPONENTS * sizeof *x)) return;
+    for (int d = 0; d < DIRECTIONS; d++)
+        for (int k = 0; k < p->scaled.points; k++) p->around.body[d][k] += x[LATERAL + d] - before[LATERAL + d];
     forget_seen(p);
 }
 
@@ -122,28 +139,37 @@ static inline void clear_around(Integrator *p) {
 
 /* What is known of a step before the hole is looked at: that its inclination at the points is `middle`, give or take `half`. */
 typedef struct {
-    double middle, half, start, end;
+    double middle[DIRECTIONS], half, start, end;
 } Ahead;
 
 static inline Ahead ahead_of(const Inclinations *noted, const Step *step) {
-    double low = smaller(noted->before.low, noted->latest.low), high = larger(noted->before.high, noted->latest.high);
-    Ahead ahead = {(low + high) / 2, (high - low) / 2, step->xi, step->end};
+    Ahead ahead = {.start = step->xi, .end = step->end};
+    double half[DIRECTIONS];
+    for (int d = 0; d < DIRECTIONS; d++) {
+        const Range *before = &noted->before[d], *latest = &noted->latest[d];
+        double low = smaller(before->low, latest->low), high = larger(before->high, latest->high);
+        ahead.middle[d] = (low + high) / 2, half[d] = (high - low) / 2;
+    }
+    ahead.half = length_of(half);
     return ahead;
 }
 
 /* By how much every point of the body, which is at `body` at the end of a step, is farther from the wall than where it would
    be near, at least. Negative where the hole has not been seen for long. */
 static inline void find_margins(
-    const Integrator *p, const Ahead *ahead, const double *restrict body, double *restrict margin
+    const Integrator *p, const Ahead *ahead, double (*restrict body)[MAX_POINTS], double *restrict margin
 ) {
-    const double *restrict y_star = p->scaled.y_star + p->scaled.n, *restrict before = p->around.body;
-    const double *restrict Y = p->seen.Y, *restrict at = p->seen.at;
-    double middle = ahead->middle, half = ahead->half, end = ahead->end, h = end - ahead->start;
+    const double *restrict y_star = p->scaled.y_star + p->scaled.n, *restrict at = p->seen.at;
+    const double(*restrict before)[MAX_POINTS] = p->around.body, (*restrict Y)[MAX_POINTS] = p->seen.Y;
+    double half = ahead->half, end = ahead->end, h = end - ahead->start;
     int points = p->scaled.points;
     for (int k = 0; k < points; k++) {
-        double way = end - at[k];
-        double gap = y_star[k] - fabs(body[k] - Y[k] - middle * way) - half * way;
-        double change = fabs(body[k] - before[k] - middle * h) + half * h;
+        double way = end - at[k], off[DIRECTIONS], moved[DIRECTIONS];
+        for (int d = 0; d < DIRECTIONS; d++) {
+            off[d] = body[d][k] - Y[d][k] - ahead->middle[d] * way;
+            moved[d] = body[d][k] - before[d][k] - ahead->middle[d] * h;
+        }
+        double gap = y_star[k] - length_of(off) - half * way, change = length_of(moved) + half * h;
         margin[k] = smaller(gap - TURNING * change, BLIND - way);
     }
 }
@@ -151,19 +177,22 @@ static inline void find_margins(
 /* Look at the hole at a point of the body, which is at `body` at the end of a step: how far it is from the wall and how much
    that has changed along the step, unless it is far from it. Returns whether it may have been at the wall within the step. */
 static inline int look_at(
-    Integrator *p, const Step *step, const Ahead *ahead, int k, double body, const Piece **nearer
+    Integrator *p, const Step *step, const Ahead *ahead, int k, double body[][MAX_POINTS], const Piece **nearer
 ) {
     Seen *seen = &p->seen;
     Surroundings *around = &p->around;
-    double y_star = p->scaled.y_star[p->scaled.n + k], h = ahead->end - ahead->start;
-    double Y = hole_at_point(p, step, step->end, k, nearer), before = seen->Y[k], then = seen->at[k];
-    double gap = y_star - fabs(body - Y);
-    double most = fabs(body - around->body[k] - ahead->middle * h) + ahead->half * h;
+    double h = ahead->end - ahead->start, Y[DIRECTIONS], before[DIRECTIONS], moved[DIRECTIONS], then = seen->at[k];
+    hole_at_point(p, step, step->end, k, nearer, Y);
+    for (int d = 0; d < DIRECTIONS; d++) {
+        moved[d] = body[d][k] - around->body[d][k] - ahead->middle[d] * h;
+        before[d] = seen->Y[d][k], seen->Y[d][k] = Y[d];
+    }
+    double gap = gap_of(p, k, body, Y), most = length_of(moved) + ahead->half * h;
     const Piece *none = NULL;
-    seen->Y[k] = Y, seen->at[k] = step->end;
+    seen->at[k] = step->end;
     if (gap >= TURNING * most) return 0;
-    if (then != step->xi) before = hole_at_point(p, step, step->xi, k, &none);
-    double start = y_star - fabs(around->body[k] - before);
+    if (then != step->xi) hole_at_point(p, step, step->xi, k, &none, before);
+    double start = gap_of(p, k, around->body, before);
     around->gap[k] = gap, around->change[k] = fabs(gap - start);
     around->near |= gap < NEARBY * around->change[k];
     around->known = 1;
@@ -188,7 +217,7 @@ static inline double least(Arc arc) {
 }
 
 /* The least gap of a point within a step, along which it moves as `body`, piece by piece of the hole that it passes. */
-static inline double least_gap(const Integrator *p, const Step *step, int k, Arc body) {
+static inline double least_gap(const Integrator *p, const Step *step, int k, const Arc body[DIRECTIONS]) {
     const Hole *hole = &p->now.hole;
     double s = p->scaled.s[p->scaled.n + k], y_star = p->scaled.y_star[p->scaled.n + k], length = step->end - step->xi;
     double at = step->xi - s, end = step->end - s, lowest = INFINITY;
@@ -196,14 +225,17 @@ static inline double least_gap(const Integrator *p, const Step *step, int k, Arc
     Arc gap = {0.0, 0.0, 0.0};
     for (int first = 1; at < end; first = 0, own++) {
         double next = own + 1 < hole->end ? smaller(piece(hole, own + 1)->start, end) : end;
-        double middle = (at + next) / 2, places[] = {at, middle, next}, gaps[3];
+        double middle = (at + next) / 2, places[] = {at, middle, next}, gaps[3], off[DIRECTIONS];
         for (int i = 0; i < 3; i++) {
             if (i == 0 && !first) continue;
             const Piece *passed = piece(hole, own);
-            double Y = places[i] > step->xi
-                           ? polynomial(step->x[LATERAL], (places[i] - step->xi) * (1 / step->h))
-                           : polynomial(passed->x[LATERAL], (places[i] - passed->start) * passed->rate);
-            gaps[i] = y_star - fabs(along(body, (places[i] + s - step->xi) / length) - Y);
+            for (int d = 0; d < DIRECTIONS; d++) {
+                double Y = places[i] > step->xi
+                               ? polynomial(step->x[LATERAL + d], (places[i] - step->xi) * (1 / step->h))
+                               : polynomial(passed->x[LATERAL + d], (places[i] - passed->start) * passed->rate);
+                off[d] = along(body[d], (places[i] + s - step->xi) / length) - Y;
+            }
+            gaps[i] = y_star - length_of(off);
         }
         gap.start = first ? gaps[0] : gap.end, gap.middle = gaps[1], gap.end = gaps[2];
         lowest = smaller(lowest, least(gap));
@@ -213,20 +245,24 @@ static inline double least_gap(const Integrator *p, const Step *step, int k, Arc
 }
 
 /* See which of `count` points of the body, which were not at the wall at the ends of a step, have been there within it. */
-static inline void look_between(Integrator *p, const Step *step, int count, const int *turning, const double *body) {
+static inline void look_between(
+    Integrator *p, const Step *step, int count, const int *turning, double body[][MAX_POINTS]
+) {
     Surroundings *around = &p->around;
-    double middle[MAX_POINTS];
+    double middle[DIRECTIONS][MAX_POINTS];
     find_body_at(p, step, (step->xi + step->end) / 2, middle);
     for (int i = 0; i < count; i++) {
         int k = turning[i];
-        Arc arc = {around->body[k], middle[k], body[k]};
+        Arc arc[DIRECTIONS];
+        for (int d = 0; d < DIRECTIONS; d++)
+            arc[d].start = around->body[d][k], arc[d].middle = middle[d][k], arc[d].end = body[d][k];
         around->gap[k] = smaller(around->gap[k], least_gap(p, step, k, arc));
         around->near |= around->gap[k] < 0;
     }
 }
 
 /* See which points of the body are near the wall where a step ends that is being tried, with the points at `body`. */
-static inline void look_around(Integrator *p, const Step *step, const double *body) {
+static inline void look_around(Integrator *p, const Step *step, double body[][MAX_POINTS]) {
     const Contact *contact = &p->now.regime.contact;
     const Piece *nearer = NULL;
     double margin[MAX_POINTS];
@@ -235,7 +271,7 @@ static inline void look_around(Integrator *p, const Step *step, const double *bo
     if (p->around.known) clear_around(p);
     find_margins(p, &ahead, body, margin);
     for (int k = 0; k < p->scaled.points; k++) {
-        if (margin[k] >= 0 || !look_at(p, step, &ahead, k, body[k], &nearer)) continue;
+        if (margin[k] >= 0 || !look_at(p, step, &ahead, k, body, &nearer)) continue;
         if (place_of(contact, p->scaled.n, k) < 0) turning[count++] = k;
     }
     if (count) look_between(p, step, count, turning, body);
@@ -269,27 +305,6 @@ static inline int watch_beyond(Integrator *p, double xi) {
     }
     if (found) change_places(p, contact, xi);
     return found;
-}
-
-/* Find all contacts of a BHA whose body may touch the wall, with the bit at `xi`, where the last step ends, in the state
-   `x`. Points that are watched stay so. */
-static inline Status touch_down(Integrator *p, double xi, const double x[COMPONENTS], Problem *problem) {
-    int n = p->scaled.n, points = p->scaled.points;
-    const Contact *now = &p->now.regime.contact;
-    const Piece *nearer = NULL;
-    Bent bent = {.end = p->modes.beam.end};
-    Contact contact;
-    Loads loads = loads_at(p, xi, x, force_at(&p->now, xi));
-    bent.F_rss = loads.F_rss, bent.g = loads.g;
-    memcpy(bent.e, loads.e, (size_t)n * sizeof *bent.e);
-    for (int k = 0; k < points; k++)
-        bent.e[n + k] = x[LATERAL] - hole_at_point(p, &p->now.step, xi, k, &nearer) - p->scaled.s[n + k] * x[ANGLE];
-    if (!search(&p->modes, &bent, points, &contact))
-        return met(problem, TOO_CROWDED, MAX_WATCHED, xi * p->length_scale);
-    for (int k = 0; k < now->watched && contact.watched < MAX_WATCHED; k++)
-        if (place_of(&contact, n, now->point[k]) < 0) watch(&contact, n, now->point[k], 0);
-    change_places(p, contact, xi);
-    return DONE;
 }
 
 #endif

@@ -10,7 +10,7 @@
 /* What the wall may push: the stabilizers, of which it never pushes the last, and points of the body between them. */
 enum { MAX_SUPPORTS = MAX_STABILIZERS + MAX_POINTS };
 /* How many supports may touch a wall, or be near enough to it to be watched, at once. */
-enum { MAX_PLACES = SIZE, MAX_WATCHED = MAX_PLACES - MAX_STABILIZERS };
+enum { MAX_PLACES = SIZE / DIRECTIONS, MAX_WATCHED = MAX_PLACES - MAX_STABILIZERS };
 
 /* The places behind the bit where the hole has a say: how many, how far behind, and the least of these distances. */
 typedef struct {
@@ -55,6 +55,7 @@ static inline int value_count(Size size, Structure structure) {
         case EACH_POINT: return structure.points;
         case IF_POINTS: return structure.points > 0;
         case IF_SPACE: return structure.space;
+        case IF_POINTS_IN_SPACE: return structure.space && structure.points > 0;
         case EACH_NON_IDEAL_IN_SPACE: return structure.space ? structure.n - 1 : 0;
         case IF_LAYERED: return structure.layered;
         case EACH_SENSOR: return structure.sensors;

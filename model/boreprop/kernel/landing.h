@@ -1,0 +1,34 @@
+/* Where a BHA whose body may touch the wall comes to lie in the hole: all its contacts, in the plane. */
+#ifndef BOREPROP_LANDING_H
+#define BOREPROP_LANDING_H
+
+#include "surroundings.h"
+
+/* Whether contacts are searched for among all supports; those of a uniform beam follow from the last ones. */
+static inline int lands(const Integrator *p) { return p->scaled.stepped; }
+
+/* Find all contacts of a BHA whose body may touch the wall, with the bit at `xi`, where the last step ends, in the state
+   `x`. Points that are watched stay so. */
+static inline Status touch_down(Integrator *p, double xi, const double x[COMPONENTS], Problem *problem) {
+    int n = p->scaled.n, points = p->scaled.points;
+    const Contact *now = &p->now.regime.contact;
+    const Piece *nearer = NULL;
+    Bent bent = {.end = p->modes.beam.end};
+    Contact contact;
+    Loads loads = loads_at(p, xi, x, force_at(&p->now, xi));
+    bent.F_rss = loads.F_rss, bent.g = loads.g;
+    memcpy(bent.e, loads.e, (size_t)n * sizeof *bent.e);
+    for (int k = 0; k < points; k++) {
+        double Y[DIRECTIONS];
+        hole_at_point(p, &p->now.step, xi, k, &nearer, Y);
+        bent.e[n + k] = x[LATERAL] - Y[0] - p->scaled.s[n + k] * x[ANGLE];
+    }
+    if (!search(&p->modes, &bent, points, &contact))
+        return met(problem, TOO_CROWDED, MAX_WATCHED, xi * p->length_scale);
+    for (int k = 0; k < now->watched && contact.watched < MAX_WATCHED; k++)
+        if (place_of(&contact, n, now->point[k]) < 0) watch(&contact, n, now->point[k], 0);
+    change_places(p, contact, xi);
+    return DONE;
+}
+
+#endif
