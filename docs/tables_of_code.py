@@ -29,6 +29,7 @@ NUMBERS |= {"space n-1": "[1…n−1]", "space sensors": "[1…]"}
 ONLY = dict.fromkeys(("sections", "stepped"), "only with sections")
 ONLY |= dict.fromkeys(("points", "body"), "only with body_contact") | {"axial": "only with axial_load"}
 ONLY |= {"sensors": "only with [[sensor]]", "space sensors": "only with [[sensor]], in space"}
+ONLY["space body"] = "only with body_contact, in space"
 
 
 def variables(role: str) -> str:

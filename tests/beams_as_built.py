@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import accumulate
 from pathlib import Path
 from typing import Any
@@ -35,6 +36,19 @@ def reference_bha(name: str) -> BottomHoleAssembly:
         body_point_clearances=tuple((case["hole_diameter"] - diameter) / 2 for diameter in body),
         end_deflection=case["end_offset"],
         axial_load=case["axial"],
+    )
+
+
+def with_points(bha: BottomHoleAssembly, points: list[float], clearance: float) -> BottomHoleAssembly:
+    """The same with points of the body in one section."""
+    return replace(
+        bha,
+        section_lengths=(bha.stabilizer_positions[-1],),
+        section_distributed_weights=(bha.distributed_weight,),
+        section_flexural_stiffnesses=(bha.flexural_stiffness,),
+        section_outer_diameters=(0.0,),
+        body_point_positions=tuple(points),
+        body_point_clearances=(clearance,) * len(points),
     )
 
 

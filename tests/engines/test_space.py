@@ -342,11 +342,7 @@ def test_in_a_vertical_hole_the_frame_faces_where_the_last_bend_leads() -> None:
 
 
 def test_what_cannot_be_in_space_is_refused() -> None:
-    body: dict[str, Any] = {"body_point_positions": (0.5, 1.5), "body_point_clearances": (0.01, 0.01)}
-    bha = BottomHoleAssembly((1.0, 2.0), (1e-3,), 0.2, 1e-3, 1 / 3, **body)
     survey = Survey((0.0, 1.0), (0.1, 0.1))
-    with pytest.raises(ParameterError, match="body_point_position: must be left out where the hole may leave"):
-        SpaceDrilling(bha, BitRock(1.0, 0.1, 0.03), survey, active_weight_on_bit=0.01)
     plain = BottomHoleAssembly((1.0, 2.0), (1e-3,), 0.2, 1e-3, 1 / 3)
     with pytest.raises(ParameterError, match="azimuth: must hold 2 values, one a station, got 3"):
         SpaceDrilling(plain, BitRock(1.0, 0.1, 0.03), survey, (0.0, 0.1, 0.2), active_weight_on_bit=0.01)

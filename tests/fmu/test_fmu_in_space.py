@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from test_fmu_c_host import COMPILER
 
+from beams_as_built import with_points
 from boreprop.case.case import Case, InputSchedule, Schedule
 from boreprop.core.quantities import INPUTS, OUTPUTS, scalar_names
 from boreprop.core.survey import Survey
@@ -62,6 +63,20 @@ def test_an_fmu_drills_what_simulate_drills(
     for name in [*scalar_names(OUTPUTS, steered.structure), "rss_toolface", "bit_walk_angle"]:
         scale = max(1.0, float(np.abs(expected[name]).max()))
         np.testing.assert_allclose(run[name], expected[name], rtol=0, atol=1e-9 * scale, err_msg=name)
+
+
+def test_an_fmu_has_the_body_on_the_wall_that_simulate_has(
+    steered: Case, pack: Pack, command: Command, tmp_path: Path
+) -> None:
+    points = [0.5 + 0.5 * k for k in range(13) if k != 6]
+    case = replace(steered, bha=with_points(steered.bha, points, 8e-3), length=6.0)
+    done = command("boreprop-fmu", "run", pack(case, NATIVE), "--output", "run.csv", "--step", "0.7")
+    assert done.returncode == 0, done.stderr
+    run, expected = read_trajectory(tmp_path / "run.csv"), simulate(case, sample_interval=0.7)
+    for name in scalar_names(OUTPUTS, case.structure):
+        scale = max(1.0, float(np.abs(expected[name]).max()))
+        np.testing.assert_allclose(run[name], expected[name], rtol=0, atol=1e-9 * scale, err_msg=name)
+    assert (np.abs(run["body_contact_force_right"]) > 1.0).any()
 
 
 def test_its_description_has_the_table_s_variables(steered: Case, borehole: Path) -> None:

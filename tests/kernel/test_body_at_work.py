@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from beams_as_built import with_points
 from boreprop import paper_case
 from boreprop.arrays import Floats
 from boreprop.core.errors import CannotContinue, ParameterError
@@ -17,19 +18,6 @@ from boreprop.kernel.binding import NativeDrilling, lie
 
 pytestmark = pytest.mark.usefixtures("kernel")
 PAPER = paper_case()
-
-
-def with_points(bha: BottomHoleAssembly, points: list[float], clearance: float) -> BottomHoleAssembly:
-    """The same with points of the body in one section."""
-    return replace(
-        bha,
-        section_lengths=(bha.stabilizer_positions[-1],),
-        section_distributed_weights=(bha.distributed_weight,),
-        section_flexural_stiffnesses=(bha.flexural_stiffness,),
-        section_outer_diameters=(0.0,),
-        body_point_positions=tuple(points),
-        body_point_clearances=(clearance,) * len(points),
-    )
 
 
 def drilled(bha: BottomHoleAssembly, tilt_limit: float, largest_step: float) -> Floats:

@@ -1,4 +1,4 @@
-"""The body of a BHA on the wall in space: against the definition of the contact problem, the planar law, and symmetries."""
+"""The body of a BHA on the wall in space: by the contact problem as it is defined, the planar law, and symmetries."""
 
 from dataclasses import replace
 from math import cos, pi, sin
@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from beam_in_elements import Elements
-from beams_as_built import CASES, reference_bha
+from beams_as_built import CASES, reference_bha, with_points
 from boreprop import paper_case
 from boreprop.arrays import Floats
 from boreprop.core.errors import CannotContinue
@@ -21,7 +21,6 @@ from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop.kernel.binding import NativeDrilling
 from boreprop.kernel.space import SpaceDrilling
 from space_runs import Outputs, direction, pair, place
-from test_body_at_work import with_points
 
 pytestmark = pytest.mark.usefixtures("kernel")
 PAPER = paper_case()
@@ -82,7 +81,7 @@ def test_contacts_are_those_of_the_contact_problem(
     back = frame @ Rotation.from_rotvec(40.0 * np.array([kappa[1], -kappa[0], 0.0])).as_matrix()[:, 2]
     survey = Survey((0.0, 40.0), (float(np.arccos(back[2])), inclination))
     azimuths = (float(np.arctan2(back[1], back[0])), azimuth)
-    inputs = {"active_weight_on_bit": 8e3, "rss_force": force, "weight_on_bit": weight * axial}
+    inputs: dict[str, Any] = {"active_weight_on_bit": 8e3, "rss_force": force, "weight_on_bit": weight * axial}
     row = SpaceDrilling(bha, BitRock(20.0, 1.0, 0.02), survey, azimuths, rss_toolface=toolface, **inputs).outputs()
 
     s = np.array([*bha.stabilizer_positions[:-1], *bha.body_point_positions])

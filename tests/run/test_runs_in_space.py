@@ -3,6 +3,7 @@
 from dataclasses import replace
 from math import cos, pi, radians, sin
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +14,8 @@ from boreprop.analysis.plan import deviation_of, planned_hole
 from boreprop.analysis.stations import list_stations
 from boreprop.analysis.summary import summarize
 from boreprop.case.case import Case, InputSchedule, Schedule
+from boreprop.case.formations import Formation
+from boreprop.core.ground import Wear
 from boreprop.core.survey import Survey
 from boreprop.core.system import BottomHoleAssembly
 from boreprop.errors import InputError, ParameterError
@@ -38,8 +41,18 @@ def turning(inclined: Case) -> Trajectory:
     return simulate(inclined, sample_interval=0.25)
 
 
-def test_a_planar_case_in_space_is_the_planar_run(case: Case) -> None:
-    inclined = replace(case, survey=Survey((0.0, 30.0), (0.5, 0.5)), schedule=Schedule((0.0,), (3e3,)))
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {},
+        {"formations": tuple(Formation(None, eta, true_vertical_depth=z) for z, eta in ((2.0, 20.0), (9.0, 5.0)))},
+        {"wear": Wear(20.0, 400.0)},
+        {"inputs": InputSchedule((0.0, 8.0), (("stabilizer_clearance[1]", (1e-3, 5e-3)),))},
+    ],
+    ids=["alike", "layers", "wear", "clearances"],
+)
+def test_a_planar_case_in_space_is_the_planar_run(case: Case, changed: dict[str, Any]) -> None:
+    inclined = replace(case, survey=Survey((0.0, 30.0), (0.5, 0.5)), schedule=Schedule((0.0,), (3e3,)), **changed)
     plane = simulate(inclined, length=30.0, sample_interval=0.5, relative_tolerance=1e-9)
     space = simulate(inclined, length=30.0, sample_interval=0.5, relative_tolerance=1e-9, dimensions=3)
     assert space.case == replace(inclined, dimensions=3)
@@ -49,6 +62,10 @@ def test_a_planar_case_in_space_is_the_planar_run(case: Case) -> None:
         np.testing.assert_allclose(space[f"{name}_high"], plane[name], atol=1e-6 * np.abs(plane[name]).max())
         assert not space[f"{name}_right"].any()
     np.testing.assert_allclose(space["north"], plane["displacement"], atol=1e-6)
+    for name in {"formation", "eta_pi", "stabilizer_clearance[1]"} & set(plane):
+        np.testing.assert_allclose(space[name], plane[name], rtol=1e-9)
+    alike = simulate(replace(inclined, formations=(), wear=None, inputs=None), length=30.0, sample_interval=0.5)
+    assert (np.abs(alike["bit_inclination"] - plane["bit_inclination"]).max() > 1e-4) == bool(changed)
 
 
 def test_a_case_that_drills_in_the_plane_has_no_columns_of_space(case: Case) -> None:

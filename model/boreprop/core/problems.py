@@ -31,7 +31,6 @@ CONSTRAINTS = {
     "wrong count": ("must hold 1 to {limit} values", "{count}"),
     "out of reach": ("must reach the last stabilizer, {limit} m from the bit, together", "{value}"),
     "buckles": ("must be < {limit}, where the BHA buckles between its stabilizers", "{value}"),
-    "only in the plane": ("must be left out where the hole may leave its vertical plane", "{count} values"),
     "no station": ("must hold at least one station", "()"),
     "no start": ("must give a finite state where the run starts", "{value}"),
     "no state": ("must be a valid saved state of this system", "{count} numbers that are not"),

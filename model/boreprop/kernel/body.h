@@ -13,6 +13,7 @@ static inline void contact_forces(const Mode *mode, const Loads *loads, double F
 
 /* What bends the BHA in one direction: the contact force at each place, e_n − δ_n, F_RSS, and g. */
 typedef struct {
+    int count; /* of places */
     double F[MAX_PLACES], end, F_rss, g;
 } Pull;
 

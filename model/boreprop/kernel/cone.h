@@ -11,8 +11,8 @@
 
 #include "modes.h"
 
-enum { TOUCHES = -1 };                        /* the contact beyond the bound of a free offset, as `change` has it */
-enum { MOST_TOUCHING = 2 * MAX_PLACES };     /* numbers: two for each support in contact */
+enum { TOUCHES = -1 };                   /* the contact beyond the bound of a free offset, as `change` has it */
+enum { MOST_TOUCHING = 2 * MAX_PLACES }; /* numbers: two for each support in contact */
 
 /* The direction of a vector whose length is known to be at least `least` while its regime holds: a function w of the
    square of the length. It is one over the length from REACHED of that on. Below, where a trial step goes too far, it stays
@@ -189,9 +189,7 @@ static inline void fill_rows(
 }
 
 /* Newton's method from the guess in `v`; returns 0 if it finds nothing. */
-static inline int correct_contacts(
-    const Touching *of, double q[MAX_PLACES][2], double v[MAX_PLACES][2], Walls *walls
-) {
+static inline int correct_contacts(const Touching *of, double q[MAX_PLACES][2], double v[MAX_PLACES][2], Walls *walls) {
     double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1], before = INFINITY;
     int m = of->touching, size = 2 * m, found = 0;
     for (int correction = 0; correction < MOST_CORRECTIONS && !found; correction++) {
@@ -332,12 +330,32 @@ static inline void settle_all(const Touching *all, double q[MAX_PLACES][2], doub
     memcpy(v, best, size);
 }
 
-/* The contacts that hold under q̃ among the supports that have places, with their v, sought from a guess of them. */
+/* Guess each v: under the forces of those that touch in `contact`. Where the body touches, its points are many and near each
+   other, and nothing else is near the solution. */
+static inline void guess_under(
+    const Modes *modes, double q[MAX_PLACES][2], const Contact *contact, double v[MAX_PLACES][2]
+) {
+    double q_C[MAX_PLACES][2], v_C[MAX_PLACES][2], F[MAX_PLACES][2];
+    int n = modes->beam.n;
+    Touching held = touching_of(modes, contact);
+    for (int a = 0; a < held.touching; a++)
+        memcpy(q_C[a], q[held.C[a]], sizeof q_C[a]), memcpy(v_C[a], q_C[a], sizeof v_C[a]);
+    if (!solve_contacts(&held, q_C, v_C, F, NULL)) return;
+    for (int i = 0; i < place_count(*contact, n); i++)
+        for (int a = 0; a < held.touching && i != n - 1; a++)
+            for (int d = 0; d < 2; d++)
+                v[i][d] += compliance(&modes->beam, support_at(contact, n, i), held.support[a]) * F[a][d];
+    for (int a = 0; a < held.touching; a++) memcpy(v[held.C[a]], v_C[a], sizeof v_C[a]);
+}
+
+/* The contacts that hold under q̃ among the supports that have places, with their v, sought from those in `contact`. */
 static inline Contact settle_discs(
     const Modes *modes, double q[MAX_PLACES][2], double v[MAX_PLACES][2], Contact contact
 ) {
     int n = modes->beam.n;
     double q_all[MAX_PLACES][2], v_all[MAX_PLACES][2];
+    memcpy(v, q, (size_t)place_count(contact, n) * sizeof v[0]);
+    if (contact.watched) guess_under(modes, q, &contact, v);
     memset(contact.of, TOUCHES, (size_t)place_count(contact, n));
     contact.of[n - 1] = 0;
     Touching all = touching_of(modes, &contact);

@@ -89,7 +89,8 @@ static inline void make_law(
     int n = scaled->n;
     law->count = places->count, law->n = n, law->axial = scaled->axial, law->saturated = regime.saturation != 0;
     law->stands = mode->stands;
-    law->modes = modes, law->contact = regime.contact, law->inputs = inputs, law->inputs_xi = inputs_xi, law->bound_count = 0;
+    law->modes = modes, law->contact = regime.contact, law->inputs = inputs, law->inputs_xi = inputs_xi,
+    law->bound_count = 0;
     law->s_1 = scaled->s[0], law->s_n = scaled->s[n - 1];
     law->walk_cosine = cos(inputs.walk), law->walk_sine = sin(inputs.walk);
     law->longest = growth == 0 ? INFINITY : LONGEST_RAMP / growth;

@@ -225,8 +225,7 @@ static inline Status keep_clear(
         Status status = find_step(p, last->end, x, plan, trial, problem);
         if (status != DONE) return status;
     }
-    for (int d = 0; d < DIRECTIONS; d++)
-        memcpy(p->around.body[d], body[d], (size_t)p->scaled.points * sizeof *body[d]);
+    for (int d = 0; d < DIRECTIONS; d++) memcpy(p->around.body[d], body[d], (size_t)p->scaled.points * sizeof *body[d]);
     note_inclinations(&p->now.inclinations, &trial->step, p->scaled.s[p->scaled.n - 1]);
     return DONE;
 }

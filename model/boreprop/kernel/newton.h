@@ -178,7 +178,6 @@ static inline void guess_contacts(const Law *law, const double x[COMPONENTS], co
     memcpy(view.north, trial->step.frame.row[NORTH], sizeof view.north);
     const double first[2] = {trial->delayed[0][0][0], trial->delayed[0][1][0]};
     law_here(&without, x, trial->ahead[0], &view, &solving->behind[0], first, law->s_1, 0, &at);
-    memcpy(v, at.q, sizeof v);
     settle_discs(law->modes, at.q, v, law->contact);
     for (int point = 0; point < POINTS; point++)
         for (int k = 0; k < law->touching.touching; k++)

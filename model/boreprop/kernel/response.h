@@ -26,7 +26,8 @@ static inline void bend(Integrator *p, double xi, const double x[COMPONENTS], Be
 /* What bends it in the present regime with the bit at `xi` in the state `x`, in a step. */
 static inline void pull_under(Integrator *p, const Loads *loads, Pull pull[DIRECTIONS]) {
     contact_forces(mode_of(&p->modes, p->now.regime.contact), loads, pull->F);
-    pull->end = loads->e[p->scaled.n - 1] - p->modes.beam.end, pull->F_rss = loads->F_rss, pull->g = loads->g;
+    pull->count = loads->count, pull->F_rss = loads->F_rss, pull->g = loads->g;
+    pull->end = loads->e[p->scaled.n - 1] - p->modes.beam.end;
 }
 
 static inline void pull_at(

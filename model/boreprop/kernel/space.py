@@ -31,7 +31,7 @@ class SpaceDrilling(NativeDrilling):
     Raises
     ------
     ParameterError
-        If a value is out of range, or the body of the BHA has points that may touch the wall.
+        If a value is out of range.
     KernelError
         If the kernel cannot be used.
     """

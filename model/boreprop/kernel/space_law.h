@@ -12,7 +12,8 @@ static inline double bounded_value(const Law *law, const Bound *bound, const Rep
     int support = support_at(&law->contact, law->n, i);
     for (int k = 0; k < law->touching.touching; k++) {
         if (law->touching.C[k] == i) return length_of(at->v[k]) - law->y_star[i];
-        for (int d = 0; d < 2; d++) delta[d] += compliance(&law->modes->beam, support, law->touching.support[k]) * at->F[k][d];
+        for (int d = 0; d < 2; d++)
+            delta[d] += compliance(&law->modes->beam, support, law->touching.support[k]) * at->F[k][d];
     }
     return length_of(delta);
 }

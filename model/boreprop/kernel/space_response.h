@@ -36,8 +36,8 @@ static inline Response respond_at(
     memcpy(view.down, response.frame.row[DOWN], sizeof view.down);
     memcpy(view.north, response.frame.row[NORTH], sizeof view.north);
     law_here(&law, x, 0.0, &view, &behind, delayed[0], law.s_1, 0, at);
-    memcpy(at->v, at->q, sizeof at->v), memcpy(response.delta, at->q, sizeof at->q);
-    response.regime.contact = settle_discs(&p->modes, at->q, at->v, free.contact);
+    memcpy(response.delta, at->q, sizeof at->q);
+    response.regime.contact = settle_discs(&p->modes, at->q, at->v, now->regime.contact);
     for (int j = 0; j < places; j++) {
         int support = support_at(&free.contact, n, j);
         double beyond[2], slope[2][2];
@@ -85,7 +85,8 @@ static inline void bend(Integrator *p, double xi, const double x[COMPONENTS], Be
 static inline void pull_under(const Integrator *p, const Response *is, Pull pull[DIRECTIONS]) {
     Vector high = side_of(is->frame.row[DOWN], -1.0);
     for (int d = 0; d < DIRECTIONS; d++) {
-        for (int i = 0; i < MAX_PLACES; i++) pull[d].F[i] = is->at.F[i][d];
+        pull[d].count = place_count(is->regime.contact, p->scaled.n);
+        for (int i = 0; i < pull[d].count; i++) pull[d].F[i] = is->at.F[i][d];
         pull[d].end = is->e[p->scaled.n - 1][d] - p->modes.beam.end * high.value[d];
         pull[d].F_rss = is->at.F_rss[d], pull[d].g = is->at.G[d];
     }

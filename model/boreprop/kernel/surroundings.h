@@ -38,7 +38,7 @@ static inline void find_body_under(
     const double *s = p->scaled.s + n;
     for (int d = 0; d < DIRECTIONS; d++) {
         free_deflections(beam, &pull[d], points, body[d]);
-        for (int i = 0; i < p->now.places.count; i++)
+        for (int i = 0; i < pull[d].count; i++)
             if (pull[d].F[i] != 0.0) add_push(beam, support_at(contact, n, i), pull[d].F[i], points, body[d]);
         for (int k = 0; k < points; k++) body[d][k] += x[LATERAL + d] - s[k] * x[ANGLE + d];
     }
@@ -160,7 +160,7 @@ static inline void find_margins(
     const Integrator *p, const Ahead *ahead, double (*restrict body)[MAX_POINTS], double *restrict margin
 ) {
     const double *restrict y_star = p->scaled.y_star + p->scaled.n, *restrict at = p->seen.at;
-    const double(*restrict before)[MAX_POINTS] = p->around.body, (*restrict Y)[MAX_POINTS] = p->seen.Y;
+    const double (*restrict before)[MAX_POINTS] = p->around.body, (*restrict Y)[MAX_POINTS] = p->seen.Y;
     double half = ahead->half, end = ahead->end, h = end - ahead->start;
     int points = p->scaled.points;
     for (int k = 0; k < points; k++) {
