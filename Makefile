@@ -70,7 +70,7 @@ clean:
 	@echo 'Installing into .venv: a minute or two the first time'
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check uv || echo 'no uv: pip takes a minute longer'
-	HATCH_BUILD_NO_HOOKS=true; export HATCH_BUILD_NO_HOOKS; \
+	export HATCH_BUILD_NO_HOOKS=true UV_SYSTEM_CERTS=true; \
 	$(BIN)/uv pip install --quiet --python $(BIN)/python --editable ".[$*]" || \
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[$*]"
 	@touch $@
