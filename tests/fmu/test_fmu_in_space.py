@@ -31,7 +31,7 @@ host = partial(report, "fmu_host")
 
 @pytest.fixture(scope="module")
 def steered(case: Case) -> Case:
-    """The paper's case in a hole that turns, steered to sides, with sensors, and a bit that walks to the left, then right."""
+    """The paper's case in a hole that turns, steered to sides, with sensors; the bit walks to the left, then right."""
     return replace(
         case,
         bha=replace(case.bha, sensor_positions=(5.0, 2.0), sensor_intervals=(0.0, 3.3), sensor_noises=(0.0, 1e-3)),

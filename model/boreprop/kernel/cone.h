@@ -303,6 +303,13 @@ static inline double try_contacts(
     return off_balance(all, q, tried, wanted);
 }
 
+/* The largest number of some vectors. */
+static inline double largest_of(int count, double v[MAX_PLACES][2]) {
+    double largest = 0.0;
+    for (int i = 0; i < count; i++) largest = larger(largest, larger(fabs(v[i][0]), fabs(v[i][1])));
+    return largest;
+}
+
 enum { MOST_ROUNDS = 60 };
 
 /* Bring v to the solution over all supports: Newton's method with the contacts as they are in the guess `v`, again while
@@ -311,7 +318,8 @@ static inline void settle_all(const Touching *all, double q[MAX_PLACES][2], doub
     int count = all->touching, came_near = 0;
     double wanted[MAX_PLACES][2], tried[MAX_PLACES][2], best[MAX_PLACES][2], scale = 0.0, least;
     size_t size = (size_t)count * sizeof best[0];
-    for (int i = 0; i < count; i++) scale = larger(scale, larger(all->y[i], larger(fabs(q[i][0]), fabs(q[i][1]))));
+    for (int i = 0; i < count; i++) scale = larger(scale, all->y[i]);
+    scale = larger(scale, largest_of(count, q)); /* forces of neighbours may make v much larger */
     double off = off_balance(all, q, v, wanted);
     memcpy(best, v, size), least = off;
     for (int round = 0; round < MOST_ROUNDS && least > SAME_OFFSET * scale; round++) {
@@ -321,7 +329,7 @@ static inline void settle_all(const Touching *all, double q[MAX_PLACES][2], doub
         else if (next < off) memcpy(v, tried, size), off = next;
         if (off < least) least = off, memcpy(best, v, size);
         if (nearer) continue;
-        if (came_near || least <= ROUNDING * scale) break;
+        if (came_near || least <= ROUNDING * larger(scale, largest_of(count, best))) break;
         came_near = 1;
         come_near(all, q, v);
         off = off_balance(all, q, v, wanted);

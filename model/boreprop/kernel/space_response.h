@@ -102,7 +102,24 @@ static inline void pull_at(
 
 /* The same where a step ends that is being tried, in the state `x`. */
 static inline void pull_after(Integrator *p, const Trial *trial, const double x[COMPONENTS], Pull pull[DIRECTIONS]) {
-    pull_at(p, &trial->step, trial->step.end, x, pull);
+    const Step *step = &trial->step;
+    const Places *places = &p->now.places;
+    const Touching *touching = &present_law(p)->touching;
+    const Reply *end = &trial->at[POINTS - 1]; /* the last point is at the end */
+    int last = p->scaled.n - 1;
+    if (step->event != NONE) {
+        pull_at(p, step, step->end, x, pull);
+        return;
+    }
+    Frame frame = turned_along(&step->frame, step->x, 1.0);
+    Vector high = side_of(frame.row[DOWN], -1.0);
+    memset(pull, 0, DIRECTIONS * sizeof *pull);
+    for (int d = 0; d < DIRECTIONS; d++) {
+        double e_n = x[LATERAL + d] - trial->delayed[last][d][POINTS - 1] - places->s[last] * x[ANGLE + d];
+        pull[d].count = places->count, pull[d].F_rss = end->F_rss[d], pull[d].g = end->G[d];
+        pull[d].end = e_n - p->modes.beam.end * high.value[d];
+        for (int k = 0; k < touching->touching; k++) pull[d].F[touching->C[k]] = end->F[k][d];
+    }
 }
 
 #define A_LITTLE 1e-6 /* ℓ₁: over which the slope of Θ under ramps is taken */
