@@ -14,13 +14,12 @@ from boreprop.analysis.search import State
 from boreprop.analysis.summary import summarize
 from boreprop.arrays import Floats
 from boreprop.case.case import Case
-from boreprop.core.survey import Survey
 from boreprop.kernel.binding import available
 from boreprop.report.tables.summary import lines
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
 from near_bit import NEAR_BIT, near_bit_case
-from spirals import paper_spiral
+from spirals import disturbed, paper_spiral, trihedron
 
 drills = pytest.mark.skipif(not available(), reason="the kernel is not built")
 TO_A_SIDE = (Shape.RIGHT, Shape.LEFT)
@@ -74,17 +73,6 @@ class Made:
                 "true_vertical_depth": position[2],
             }
         )
-
-
-def trihedron(inclination: Floats, azimuth: Floats) -> tuple[Floats, Floats, Floats]:
-    """The high side, the right, and ahead, as north, east and down, shape (rows, 3) each."""
-    sin, cos, zero = np.sin(inclination), np.cos(inclination), np.zeros_like(inclination)
-    north, east = np.cos(azimuth), np.sin(azimuth)
-    return (
-        np.column_stack((cos * north, cos * east, -sin)),
-        np.column_stack((-east, north, zero)),
-        np.column_stack((sin * north, sin * east, cos)),
-    )
 
 
 @st.composite
@@ -161,18 +149,6 @@ def test_a_well_that_winds_over_hundreds_of_metres_does_not_spiral() -> None:
 
 
 # holes that are drilled
-
-
-def disturbed(case: Case, across_deg: float = 1e-2, inclination_deg: float = 0.0) -> Case:
-    """A case from a hole with a dogleg of half a degree over ℓ₁ and, across it, a small wave."""
-    l1, end = case.length_scale, case.bha.stabilizer_positions[-1]
-    s = np.linspace(0.0, end, 41)
-    up = np.radians(0.5 * np.maximum(s - end + l1, 0.0) / l1)
-    right = radians(across_deg) * np.sin(2 * pi * s / (1.386 * l1))
-    high_side, right_side, ahead = trihedron(np.full(41, radians(inclination_deg)), np.zeros(41))
-    T = ahead + up[:, None] * high_side + right[:, None] * right_side
-    inclination, azimuth = np.arctan2(np.hypot(T[:, 0], T[:, 1]), T[:, 2]), np.arctan2(T[:, 1], T[:, 0])
-    return replace(case, survey=Survey(tuple(s.tolist()), tuple(inclination.tolist()), tuple(azimuth.tolist())))
 
 
 def ends_in(case: Case, lengths: float) -> Rippling:

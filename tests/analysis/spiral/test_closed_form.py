@@ -11,7 +11,7 @@ from boreprop.analysis.spiral.closed_form import Search, Spiral, Winding, spiral
 from boreprop.analysis.spiral.turning import MU, OMEGA, theta
 from boreprop.case.case import Case
 from boreprop.core.errors import ParameterError
-from boreprop.core.system import BitRock, BottomHoleAssembly
+from boreprop.core.system import BitRock, BottomHoleAssembly, scale
 from reference.spatial import Drilling, System, tilted
 from spirals import paper_spiral
 
@@ -97,7 +97,7 @@ def test_a_spiral_is_a_steady_state_of_a_simulation_in_space() -> None:
         x = own.at(case.eta_pi).own
         assert x is not None
         found = own.winding(x)
-        direction = found.hole_inclination * np.exp(1j * x[OMEGA] * np.linspace(-own.scaled.s[-1], 0.0, STATIONS))
+        direction = found.hole_inclination * np.exp(1j * x[OMEGA] * np.linspace(-own.turning.s[-1], 0.0, STATIONS))
         bit = np.array([found.hole_inclination * theta(x)]).view(float)
         drilling = Drilling(existing(own, direction, tilted(bit)), 0.002)
         drilling.theta = bit
@@ -112,7 +112,8 @@ def test_a_spiral_is_a_steady_state_of_a_simulation_in_space() -> None:
 
 
 def existing(own: Search, direction: np.ndarray, frame: np.ndarray) -> System:
-    scaled, case = own.scaled, own.case
+    case = own.case
+    scaled = scale(case.bha, replace(case.bit, walk_angle=0.0))
     return System(
         s=scaled.s,
         y_star=scaled.y_star,
@@ -206,8 +207,8 @@ def test_random_systems_have_spirals_that_obey_the_laws(seed: int) -> None:
     own = search(case)
     x = own.at(case.eta_pi).own
     assert x is not None
-    touched, (e, G) = own.turning.contact(x), own.turning.loads(x)
-    delta = own.turning.q_e @ e + own.turning.q_g * G + own.turning.K_inv @ touched.F
+    touched = own.turning.contact(x)
+    delta = own.turning.bend(own.turning.offsets(x), theta(x)) + own.turning.beam.K_inv @ touched.F
     allowed = x[4] * own.turning.y
     assert (abs(delta) <= allowed * (1 + 1e-9)).all()
     np.testing.assert_allclose((delta.conj() * touched.F).real, -allowed * abs(touched.F), atol=1e-10)

@@ -42,7 +42,7 @@ def walk_chart(case: Case, walk_angle: ArrayLike, progress: Callable[[float], No
     limits, ends = [], []
     for angle in angles.tolist():
         search = Search(case, angle)
-        limit = critical(search.scaled, angle, longest_wave(case.bha) / case.length_scale)
+        limit = critical(search.turning.beam, angle, longest_wave(case.bha) / case.length_scale)
         limits.append(limit.eta_pi if limit else np.nan)
         ends.append(search.eta_pi_range(search.at(case.eta_pi).own)[1])
         progress(len(ends) / len(angles))
