@@ -13,6 +13,7 @@ from boreprop.analysis.spiral.turning import beam_of
 from boreprop.analysis.spiral.walking import walk_chart
 from boreprop.analysis.stability.roots import critical_eta_pi, find_roots
 from boreprop.case.paper import paper_case
+from boreprop.core.errors import ParameterError
 from spirals import paper_spiral
 
 BEAM = beam_of(paper_spiral())
@@ -71,3 +72,8 @@ def test_a_chart_has_the_limits_of_each_walk() -> None:
         assert chart.critical_eta_pi[k] == pytest.approx(found.critical.eta_pi)
         assert chart.largest_eta_pi[k] == pytest.approx(found.largest_eta_pi)
     assert (np.diff(chart.largest_eta_pi) > 0).all()
+
+
+def test_a_chart_of_too_little_weight_is_refused() -> None:
+    with pytest.raises(ParameterError, match=r"^eta_pi: must be >= 0.0001, got"):
+        walk_chart(paper_spiral(5e-5), [0.0])

@@ -6,6 +6,7 @@ whatever the hole of the case, and no force steers.
 """
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from math import exp, inf, isfinite, log, nan, pi
 from typing import NamedTuple
@@ -150,9 +151,15 @@ def spiral(case: Case, handedness: str | None = None) -> Spiral:
         raise ParameterError("handedness", "must be right or left", handedness)
     left = handedness == "left" if handedness else walk < 0
     side = HANDS[left] if walk or handedness else "either"
-    check_number("eta_pi", case.eta_pi, at_least=SMALLEST_ETA_PI)
-    try:
+    with solving(case):
         return Search(case, -walk if left else walk).found(side)
+
+
+@contextmanager
+def solving(case: Case) -> Iterator[None]:
+    """Turn the failure of an iteration into a `SpiralNotFound` that says what helps."""
+    try:
+        yield
     except ArithmeticError as error:
         where = f"the spiral at ηΠ = {case.eta_pi:.6g}"
         raise SpiralNotFound(f"{where}: {error}; use a slightly different active weight on bit") from error
@@ -162,6 +169,7 @@ class Search:
     """The spirals to the right of one drilling system."""
 
     def __init__(self, case: Case, walk: float) -> None:
+        check_number("eta_pi", case.eta_pi, at_least=SMALLEST_ETA_PI)
         self.case, self.walk, self.length_scale = case, walk, case.length_scale
         self.turning = Turning(beam_of(case), y_star_of(case), walk)
         self.psi_star, self.clearance = case.bit.tilt_limit, self.turning.widest
@@ -237,20 +245,29 @@ class Search:
 
     def eta_pi_range(self, x: Floats | None) -> tuple[float, float]:
         """The ηΠ between which there is a spiral, from x on if that is one; 0 for a least one below 1e-4."""
-        eta_pi = self.case.eta_pi
-        for _ in range(MOST_DIVISIONS):
-            if x is not None:
-                break
-            eta_pi /= LESS
-            x = self.at(eta_pi).own if eta_pi >= SMALLEST_ETA_PI else None
-        if x is None:
-            return nan, nan
-        fixed = at_limit(self.ratio) if self.clearance else keep(GAP, 0.0)
-        lowest, highest = (self.end(x, fixed, side) for side in (-1.0, 1.0))
+        x = self.elsewhere() if x is None else x
+        lowest, highest = (nan if x is None else self.end(x, side) for side in (-1.0, 1.0))
         return (0.0 if lowest < SMALLEST_ETA_PI else lowest), highest
 
-    def end(self, x: Floats, fixed: Condition, side: float) -> float:
-        """The ηΠ at which a curve of spirals ends, towards larger (side 1) or smaller ones (−1)."""
+    def largest_eta_pi(self) -> float:
+        """The largest ηΠ with a spiral, nan if none is found."""
+        own = self.at(self.case.eta_pi).own
+        x = self.elsewhere() if own is None else own
+        return nan if x is None else self.end(x, 1.0)
+
+    def elsewhere(self) -> Floats | None:
+        """A spiral at a smaller ηΠ than the case's."""
+        eta_pi = self.case.eta_pi
+        for _ in range(MOST_DIVISIONS):
+            eta_pi /= LESS
+            x = self.at(eta_pi).own if eta_pi >= SMALLEST_ETA_PI else None
+            if x is not None:
+                return x
+        return None
+
+    def end(self, x: Floats, side: float) -> float:
+        """The ηΠ at which the spirals end, from x on, towards larger (side 1) or smaller ones (−1)."""
+        fixed = at_limit(self.ratio) if self.clearance else keep(GAP, 0.0)
         last = x
         for point in follow(self.turning, x, fixed, LOG_ETA_PI, side):
             if point[MU] <= 0:

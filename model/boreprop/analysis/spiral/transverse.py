@@ -50,9 +50,33 @@ class TransverseGrowth:
 
 
 def transverse_growth(case: Case) -> TransverseGrowth:
-    """Compute how fast the planar ripple of a case, in a vertical hole with a dogleg, grows out of its plane.
+    """Compute how fast the planar ripple of a case grows out of its plane, by Floquet multipliers.
 
-    Errors are those of `simulate` and `beam_of`; a bit that walks has no planar ripple and is refused.
+    The ripple is drilled in a plane, from a vertical hole that ends with a dogleg of 0.5° over ℓ₁.
+
+    Parameters
+    ----------
+    case
+        The drilling system: BHA, bit and active weight on bit. Hole, force and length have no influence.
+
+    Returns
+    -------
+    TransverseGrowth
+        The growth of a small disturbance across the plane: > 0 if the hole leaves it and winds.
+
+    Raises
+    ------
+    ParameterError
+        If the bit walks, so that there is no planar ripple, the body may touch the wall, or the BHA buckles.
+    Stopped
+        If the case cannot be drilled.
+
+    Examples
+    --------
+    >>> from boreprop import paper_case, transverse_growth
+    >>> found = transverse_growth(paper_case())
+    >>> round(found.growth, 3), round(found.wavelength, 2)
+    (0.085, 5.07)
     """
     check_in_plane(case.bit)
     beam, l1 = beam_of(case), case.length_scale
