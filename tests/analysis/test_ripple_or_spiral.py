@@ -111,6 +111,30 @@ def test_any_ellipse_is_found_with_its_sense_through_drift_and_noise(hole: Made)
         assert min(off, pi - off) < 0.15
 
 
+@settings(max_examples=60)
+@given(
+    made(),
+    st.sampled_from((0.0, 0.3, 1.0)),
+    st.floats(0.0, 0.3),
+    st.floats(5.5, 40.0),
+    st.floats(-3.0, 3.0),
+    st.floats(0.0, 90.0),
+)
+def test_no_noise_makes_a_plane_wind_or_turns_a_spiral_round(
+    hole: Made, ratio: float, noise: float, waves: float, build: float, inclination: float
+) -> None:
+    """In short records, too, and near the vertical: what noise hides is unclear."""
+    ratio = ratio if hole.ratio >= 0 else -ratio
+    hole = replace(
+        hole, ratio=ratio, noise=noise * hole.major, waves=waves, build=build, walk=-build, inclination=inclination
+    )
+    found = find_rippling(hole.run())
+    if found.ripples:
+        assert found.ellipse is not None
+        true = TO_A_SIDE[ratio < 0] if ratio else Shape.PLANE
+        assert found.ellipse.shape in (true, Shape.UNCLEAR)
+
+
 @settings(max_examples=40)
 @given(made())
 def test_drift_and_noise_alone_are_no_wave_in_space(hole: Made) -> None:

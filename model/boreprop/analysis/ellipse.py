@@ -7,12 +7,13 @@ the hole winds to its side. If they are as large as each other, the ellipse is a
 
 from dataclasses import dataclass
 from enum import StrEnum
-from math import atan2, expm1, hypot, inf, nan, pi, radians, sqrt
+from math import atan2, expm1, inf, nan, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
 from ..arrays import Complexes, Floats
+from .hole_in_space import NEARLY_VERTICAL, inclination_of, sides
 from .search import AT_THE_END
 from .space import untwisted
 from .waves import mean_over, slope
@@ -20,11 +21,10 @@ from .waves import mean_over, slope
 NARROW = 0.1  # minor over major axis: a narrower ellipse counts as a line
 WIDE = 0.2  # the same: where all of the last waves are wider, and wind to one side, that is certain
 HARMONICS = 16  # of a wave that are looked at: what repeats may be a pattern of several turns
-CERTAIN = 3.0  # standard errors by which the hole must wind to one side
+CERTAIN = 4.0  # standard errors by which the hole must wind to one side: with 3 noise makes one plane in 800 wind
 FOLLOWED = 20  # waves at the end: in none may it wind to the other side, and from their differences comes the error
 SLOW = 0.02  # of a turn in a wave: a phase that drifts faster than this comes from irregular waves
 HALF = 0.5  # of their size at the end: smaller waves count as something else
-NEARLY_VERTICAL = radians(3.0)  # up to here the high side says little, and directions count from north
 
 
 class Shape(StrEnum):
@@ -146,7 +146,7 @@ def _shape(narrow: float, winding: Floats) -> Shape:
     late, changes = winding[-AT_THE_END:], np.diff(winding)
     error = np.sqrt(np.mean(changes**2) / 2 / len(late)) if len(changes) else inf
     other = -min(winding * np.sign(late.mean()))  # by how much it winds to the other side, at most
-    certain = abs(late.mean()) >= errors_from(len(changes)) * error or min(abs(late)) > WIDE and other < 0.0
+    certain = abs(late.mean()) >= errors_from(len(changes)) * error or (min(abs(late)) > WIDE and other < 0.0)
     if abs(late.mean()) < NARROW / 2 or not certain or other > NARROW:
         return Shape.UNCLEAR
     return Shape.RIGHT if late.mean() > 0 else Shape.LEFT
@@ -165,9 +165,7 @@ def errors_from(count: int) -> float:
 
 def _side(across: Floats, forward: Floats) -> tuple[float, bool]:
     """The side to which a vector across the hole is, from 0 to π, and whether it counts from north."""
-    north, east, down = forward.tolist()
-    sideways = hypot(north, east)
-    if atan2(sideways, down) < NEARLY_VERTICAL:
+    if inclination_of(forward) < NEARLY_VERTICAL:
         return atan2(across[1], across[0]) % pi, True
-    high = np.array([north * down, east * down, -(sideways**2)]) / sideways
-    return atan2(across @ np.cross(forward, high), across @ high) % pi, False
+    high, right = sides(forward)
+    return atan2(across @ right, across @ high) % pi, False

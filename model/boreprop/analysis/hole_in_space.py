@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from ..arrays import Floats
 from ..core.survey import Survey
 from ..run.trajectory import Trajectory
-from .hole import POINTS_BEHIND, Hole, HoleAxis
+from .hole import LEAST_SLOPE, MOST_STEPS, NEAREST, POINTS_BEHIND, Hole, HoleAxis
 
 STRAIGHT = 1e-6  # rad: a piece that turns by less is drawn straight, which is wrong by 1e-7 of its length at most
+NEARLY_VERTICAL = np.radians(3.0)  # up to here the high side says little, and directions count from north
 UPRIGHT = 1e-9  # a direction whose horizontal part is less has no azimuth
 
 
@@ -47,28 +48,59 @@ class SurveyInSpace:
     position: Floats
 
     @classmethod
-    def of(cls, survey: Survey) -> "SurveyInSpace":
-        """The hole of a survey, with the last station at the origin."""
-        length = np.asarray(survey.measured_depth) - survey.measured_depth[-1]
+    def of(cls, survey: Survey, start: float | None = None) -> "SurveyInSpace":
+        """The hole of a survey, which passes the origin at a measured depth `start`, m; without it at its end."""
+        length = np.asarray(survey.measured_depth) - (survey.measured_depth[-1] if start is None else start)
         azimuth = np.asarray(survey.azimuth) if survey.azimuth else np.zeros(length.size)
         hole = cls(length, directions(np.asarray(survey.inclination), azimuth), np.zeros((length.size, 3)))
         pieces = hole._from_station(np.arange(length.size - 1), np.diff(length))
         position = np.concatenate((np.zeros((1, 3)), np.cumsum(pieces, axis=0)))
-        return cls(length, hole.direction, position - position[-1])
+        placed = cls(length, hole.direction, position)
+        return cls(length, hole.direction, position - placed.at(np.zeros(1)))
 
     def at(self, length: Floats) -> Floats:
         """Positions at lengths, m, shape (..., 3)."""
-        station = np.clip(np.searchsorted(self.length, length, side="right") - 1, 0, None)
+        station = self._station(length)
         position: Floats = self.position[station] + self._from_station(station, length - self.length[station])
         return position
 
-    def _from_station(self, station: NDArray[np.intp], along: Floats) -> Floats:
-        """From stations to the places this far along, m, which the next station is not before."""
+    def direction_at(self, length: Floats) -> tuple[Floats, Floats]:
+        """Directions at lengths, m, and how they turn, 1/m, shape (..., 3) each."""
+        station = self._station(length)
+        start, end, apart, turn = self._arc(station, length - self.length[station])
+        own, rate = np.where(turn > 0.0, turn, 1.0)[..., None], (turn / apart)[..., None]
+        done = rate * (length - self.length[station])[..., None]
+        bent = (np.sin(own - done) * start + np.sin(done) * end) / np.sin(own)
+        turned = rate * (np.cos(done) * end - np.cos(own - done) * start) / np.sin(own)
+        return np.where(rate > 0.0, bent, start), np.where(rate > 0.0, turned, 0.0)
+
+    def nearest(self, position: Floats, near: Floats) -> Floats:
+        """The lengths at which this hole is nearest to some points, m, shape (m,), as `SurveyedHole.nearest`."""
+        length = near
+        for _ in range(MOST_STEPS):
+            away, (direction, turned) = position - self.at(length), self.direction_at(length)
+            slope = 1.0 - np.sum(away * turned, axis=-1)
+            step = np.sum(away * direction, axis=-1) / np.maximum(slope, LEAST_SLOPE)
+            length = length + step
+            if np.abs(step).max(initial=0.0) < NEAREST:
+                break
+        return length
+
+    def _station(self, length: Floats) -> NDArray[np.intp]:
+        """The last station at or before each length, the first one above it."""
+        return np.clip(np.searchsorted(self.length, length, side="right") - 1, 0, None)
+
+    def _arc(self, station: NDArray[np.intp], along: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """Direction at stations and at the next ones, the length between them, m, and the turn, rad: 0 if straight."""
         following = np.minimum(station + 1, self.length.size - 1)
         start, end = self.direction[station], self.direction[following]
         turn = angle_between(start, end)
-        turn[(turn < STRAIGHT) | (along < 0.0)] = 0.0
-        apart = np.where(turn > 0.0, self.length[following] - self.length[station], 1.0)
+        turn = np.where((turn < STRAIGHT) | (along < 0.0), 0.0, turn)
+        return start, end, np.where(turn > 0.0, self.length[following] - self.length[station], 1.0), turn
+
+    def _from_station(self, station: NDArray[np.intp], along: Floats) -> Floats:
+        """From stations to the places this far along, m, which the next station is not before."""
+        start, end, apart, turn = self._arc(station, along)
         straight = turn == 0.0
         own = np.where(straight, 1.0, turn)
         done = own * along / apart
@@ -117,3 +149,20 @@ def azimuth_of(direction: Floats) -> Floats:
     north, east = direction[..., 0], direction[..., 1]
     azimuth = np.mod(np.arctan2(east, north), 2 * np.pi)
     return np.where(np.hypot(north, east) > UPRIGHT, azimuth, np.nan)
+
+
+def sides(forward: Floats) -> tuple[Floats, Floats]:
+    """The high side and the right of directions, looking along them, shape (..., 3) each.
+
+    Within `NEARLY_VERTICAL` of the vertical they are the sides to the north and to the right of that.
+    """
+    vertical = inclination_of(forward) < NEARLY_VERTICAL
+    towards = np.where(vertical[..., None], (1.0, 0.0, 0.0), (0.0, 0.0, -1.0))
+    across = towards - np.sum(towards * forward, axis=-1, keepdims=True) * forward
+    high = across / np.linalg.norm(across, axis=-1, keepdims=True)
+    return high, np.cross(forward, high)
+
+
+def turned_to(azimuth: Floats, other: Floats) -> Floats:
+    """How far azimuths are from others, rad, from −π to π."""
+    return np.mod(azimuth - other + np.pi, 2 * np.pi) - np.pi

@@ -15,8 +15,8 @@ import numpy as np
 
 from ...arrays import Complexes, Floats
 from ...case.case import Case
+from ...core.errors import ParameterError
 from ...core.survey import Survey
-from ...core.system import check_in_plane
 from ...run.completion import case_of
 from ...run.simulate import simulate
 from ...run.trajectory import Trajectory
@@ -78,7 +78,9 @@ def transverse_growth(case: Case) -> TransverseGrowth:
     >>> round(found.growth, 3), round(found.wavelength, 2)
     (0.085, 5.07)
     """
-    check_in_plane(case.bit)
+    if case.bit.walk_angle:
+        constraint = "must be 0 for a ripple in a plane, which a bit that walks leaves at once; leave out --ripple"
+        raise ParameterError("bit_walk_angle", constraint, case.bit.walk_angle)
     beam, l1 = beam_of(case), case.length_scale
     alone = replace(case, schedule=type(case.schedule)(), inputs=None, formations=(), wear=None, dimensions=2)
     vertical = replace(alone, survey=Survey((0.0, l1), (0.0, DOGLEG)))

@@ -20,7 +20,10 @@ def headings(stations: Stations) -> tuple[str, ...]:
     named = [("MD", "m"), ("incl.", "rad"), ("TVD", "m"), ("displ.", "m"), ("DLS", "rad/m")]
     if stations.azimuth is not None:
         named[2:4] = [("azim.", "rad"), ("TVD", "m"), ("north", "m"), ("east", "m")]
-    if stations.deviation is not None:
+    if stations.deviation is not None and stations.azimuth is not None:
+        named[4:6] = []
+        named += [("off", "rad"), ("off", "rad"), ("high", "m"), ("right", "m")]
+    elif stations.deviation is not None:
         named += [("planned", "rad"), ("off plan", "rad"), ("off plan", "m")]
     return tuple(f"{name}\n({UNITS[unit].shown})" for name, unit in named)
 
@@ -37,7 +40,11 @@ def lines(stations: Stations) -> list[tuple[str, ...]]:
     if stations.azimuth is not None and stations.north is not None and stations.east is not None:
         columns[3:4] = [_cells("m", stations.north, ".2f"), _cells("m", stations.east, ".2f")]
         columns.insert(2, _cells("rad", stations.azimuth, ".1f"))
-    if (off := stations.deviation) is not None:
+    if (off := stations.deviation) is not None and off.azimuth is not None:
+        columns[4:6] = []
+        columns += [_cells("rad", angle, SIGNED) for angle in (off.inclination, off.azimuth)]
+        columns += [_cells("m", part, SIGNED) for part in (off.high, off.right) if part is not None]
+    elif off is not None:
         columns += [
             _cells("rad", off.planned_inclination),
             _cells("rad", off.inclination, SIGNED),
@@ -54,13 +61,19 @@ def caption(stations: Stations) -> str:
     """What the columns of `lines` mean."""
     over = UNITS["m"].text(stations.averaging_length, ".3g")
     in_plane = stations.azimuth is None
+    where = "TVD, displ.: vertical and horizontal" if in_plane else "TVD, north, east:"
+    if not in_plane and stations.deviation is not None:
+        where = "TVD: vertical"
     text = (
-        f"MD: measured depth. TVD, {'displ.: vertical and horizontal' if in_plane else 'north, east:'} distance "
-        "from the bit at the start. "
+        f"MD: measured depth. {where} distance from the bit at the start. "
         f"Inclinations{'' if in_plane else ' and azimuths'}: means over the last {over} of hole. "
         f"DLS: dogleg severity since the station before, at least over {over}."
     )
-    return text if stations.deviation is None else f"{text} Off plan: + to the high side of its nearest point."
+    if stations.deviation is None:
+        return text
+    if in_plane:
+        return f"{text} Off plan: + to the high side of its nearest point."
+    return f"{text} Off: inclination and azimuth less those of the plan. High, right: from its nearest point."
 
 
 def plan_lines(run: Trajectory, off: Deviation) -> list[tuple[str, str]]:
@@ -71,11 +84,19 @@ def plan_lines(run: Trajectory, off: Deviation) -> list[tuple[str, str]]:
     where = (
         "at the end" if last == len(measured_depth) - 1 else f"where it ends, {UNITS['m'].text(measured_depth[last])}"
     )
-    inclination = UNITS["rad"].text(off.inclination[last], SIGNED)
+    turned = [UNITS["rad"].text(angle[last], SIGNED) for angle in (off.inclination, off.azimuth) if angle is not None]
     return [
-        (f"off the plan {where}", f"{beside(off.distance[last])}, {inclination}"),
-        ("off the plan at most", f"{beside(off.distance[most])} at {UNITS['m'].text(measured_depth[most])}"),
+        (f"off the plan {where}", ", ".join([_away(off, int(last)), " and ".join(turned)])),
+        ("off the plan at most", f"{_away(off, int(most))} at {UNITS['m'].text(measured_depth[most])}"),
     ]
+
+
+def _away(off: Deviation, row: int) -> str:
+    """How far a row is from the plan, in words."""
+    if off.high is None or off.right is None:
+        return beside(off.distance[row])
+    high, right = off.high[row], off.right[row]
+    return f"{beside(high)}, {UNITS['m'].text(abs(right), '.2f')} {'right' if right > 0 else 'left'}"
 
 
 def beside(distance: float, digits: str = ".2f") -> str:
