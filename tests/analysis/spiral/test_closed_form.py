@@ -164,15 +164,10 @@ def existing(own: Search, direction: np.ndarray, frame: np.ndarray) -> System:
     )
 
 
-def test_the_opposite_walk_gives_the_mirror_image() -> None:
-    found, mirrored = spiral(paper_spiral(walk_deg=8.0), "left"), spiral(paper_spiral(walk_deg=-8.0), "right")
-    assert replace(mirrored, handedness="left") == found
-
-
-def test_a_bit_winds_to_the_side_to_which_it_walks() -> None:
-    assert spiral(paper_spiral(walk_deg=3.0)).handedness == "right"
-    assert spiral(paper_spiral(walk_deg=-3.0)).handedness == "left"
-    assert paper().handedness == "either"
+def test_a_bit_winds_to_the_side_to_which_it_walks_and_the_opposite_walk_gives_the_mirror_image() -> None:
+    right, left = spiral(paper_spiral(walk_deg=8.0)), spiral(paper_spiral(walk_deg=-8.0))
+    assert (right.handedness, left.handedness, paper().handedness) == ("right", "left", "either")
+    assert replace(left, handedness="right") == right
 
 
 def test_twice_the_clearance_and_tilt_limit_wind_twice_as_wide() -> None:

@@ -34,7 +34,7 @@ def test_the_critical_eta_pi_is_that_of_the_table(walk_deg: float) -> None:
     assert found is not None
     assert found.eta_pi == pytest.approx(right, abs=6e-7)
     assert 2 * pi / found.omega == pytest.approx(pitch, abs=6e-4)
-    other = spiral(paper_spiral(walk_deg=walk_deg), "left").critical
+    other = critical(BEAM, -radians(walk_deg), longest)
     assert other is not None
     assert other.eta_pi == pytest.approx(left, abs=6e-7)
 
