@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import repeat
 from math import ceil, floor, log10
 
 import numpy as np
@@ -22,6 +21,7 @@ from .scene import Array, Bounds, frame_bounds, round_down, section_bounds
 from .space_scales import SpaceScales, plan_bounds, section_azimuth
 from .style import (
     BY_SEVERITY,
+    DECIMALS,
     LANES,
     LANES_IN_SPACE,
     LANES_TITLE,
@@ -48,7 +48,7 @@ TILTS = 1.15  # tilt limits to either side in the plot of the tilt, so that a ti
 RIPPLES = 1.15  # ripples to either side in their plot
 WALLS_APART = 0.6  # lengths of the BHA at most, in the bit frame: the factor that enlarges them is rounded down
 CURVED = 0.4  # lengths of the BHA, at most, from the axis of the frame to the walls of a hole that curves
-ENLARGED = 0.07  # of the length of a run, which the enlarged hole in space lies from its trend at most
+ENLARGED = 0.08  # of the length of a run, which the enlarged hole in space lies from its trend at most
 THICKNESS = 0.2  # of the trend: the turns of a spiral do not touch
 LONGEST_IN_SPACE = 0.8  # of the radius of a disc: the longest arrow
 LONGEST_ARROW = 7  # parts into which the BHA is divided for the longest arrow to be one
@@ -92,6 +92,11 @@ class Scales:
         """A round measured depth, m, at the first row or above it by at most a tenth of the length of the run."""
         unit = 10.0 ** ceil(log10(max(self.length, 1.0) / 100.0))
         return unit * floor(((self.start or 0.0) + self.begin) / unit)
+
+    @property
+    def shown_length(self) -> float:
+        """Length of hole that strip and enlarged hole show, m, of a run of a single row, too."""
+        return max(self.length, 1.0)
 
     @property
     def along(self) -> str:
@@ -207,12 +212,13 @@ def choose_scales_in_space(runs: Sequence[Trajectory], *, whole: bool, positions
         section=space.on_section(positions),
         ends=list(map(find_rippling, runs)) if whole else [],
     )
-    ripple = max(map(largest_ripple, runs, repeat(seen.trend))) if whole else 0.0
-    ripple = ripple or seen.ripple[1] / SMALL_LENGTH.factor
+    ripple = seen.ripple[1] / SMALL_LENGTH.factor
+    if whole:  # at first it may be larger than in the end
+        ripple = max(ripple, *(RIPPLES * largest_ripple(run, seen.trend) for run in runs))
     space = replace(
         space,
         plan=plan_bounds(space.on_plan(positions), least=4 * max(case.bit_diameter for case in cases)),
-        lateral=max(1.0, first_digit(ENLARGED * seen.length / ripple)),
+        lateral=max(1.0, first_digit(ENLARGED * seen.shown_length / ripple)),
         thickness=THICKNESS * seen.trend,
         newtons=seen.newtons_per_metre
         * max(case.bha.stabilizer_positions[-1] for case in cases)
@@ -220,7 +226,7 @@ def choose_scales_in_space(runs: Sequence[Trajectory], *, whole: bool, positions
         / LONGEST_IN_SPACE,
         stabilizers=max(len(case.bha.stabilizer_clearances) for case in cases),
     )
-    size = RIPPLES * SMALL_LENGTH.factor * ripple
+    size = SMALL_LENGTH.factor * ripple
     return replace(
         seen,
         ripple=with_ticks(-size, size, MOST_STEPS_OF_RIPPLE),
@@ -306,7 +312,7 @@ def plot_ranges(
 
 def plot_range(plot: Plot, curves: Sequence[Array]) -> tuple[float, float]:
     """The range of a plot of some curves, in the unit shown."""
-    values = plot.unit.factor * np.concatenate(curves)
+    values = np.round(plot.unit.factor * np.concatenate(curves), DECIMALS)
     values = values[np.isfinite(values)] if np.isfinite(values).any() else np.zeros(1)
     low, high = float(values.min()), float(values.max())
     margin = max(MARGIN * (high - low), SMALLEST_SPAN * max(abs(low), abs(high))) or 1.0

@@ -194,9 +194,9 @@ class Bounds:
 
     @property
     def grid_step(self) -> float:
-        """The length between two lines of a grid in it, m."""
-        (left, right), (top, bottom) = self.x, self.y
-        return round_down(max(right - left, bottom - top) / 4)
+        """The length between two lines of a grid in it, m: the numbers at four of them fit beside each other."""
+        left, right = self.x
+        return round_up((right - left) / 4)
 
     def hold(self, position: Array) -> bool:
         """Whether all positions (N, 2) are shown."""
@@ -208,6 +208,12 @@ def round_down(value: float) -> float:
     """The largest of 1, 2 and 5 times powers of ten that is not above `value`."""
     power = 10.0 ** floor(log10(value))
     return max(step * power for step in (1, 2, 5) if step * power <= value)
+
+
+def round_up(value: float) -> float:
+    """The smallest of 1, 2 and 5 times powers of ten that is not below `value`."""
+    power = 10.0 ** floor(log10(value))
+    return min(step * power for step in (1, 2, 5, 10) if step * power >= value)
 
 
 def section_bounds(position: Array, around: float) -> Bounds:

@@ -179,13 +179,13 @@ def in_degrees(angle: float) -> str:
 
 
 def log_upright(track: Track, space: SpaceScales, discs: Discs) -> None:
-    """What is up the screen, where it changes; of the first run."""
-    if track.place:
+    """What is up the screen, where it changes."""
+    if not track.numbered:
         return
     words = np.array(discs.upright)
     changes = np.flatnonzero(np.append(True, words[1:] != words[:-1]))
     at = moments(discs.rows).where(changes)
-    place = space.discs[0] + np.array([-1.2, -1.45])
+    place = space.discs[0] + np.array([-1.2, -1.45 + 0.25 * track.place])
     send(
         track,
         "across/upright",

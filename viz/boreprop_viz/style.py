@@ -11,6 +11,7 @@ from boreprop.units import BUILD_LENGTH, SMALL_LENGTH, UNITS, Unit
 from .scene import Array
 
 Colour = tuple[int, int, int]
+DECIMALS = 4  # of the values of a curve
 # the colours of Okabe and Ito, which can be told apart with any colour vision, less their yellow: each of these shows
 # on white and on black
 ORANGE, SKY_BLUE, GREEN = (230, 159, 0), (86, 180, 233), (0, 158, 115)
