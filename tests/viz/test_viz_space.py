@@ -269,9 +269,38 @@ def test_runs_in_the_plane_and_in_space_are_not_drawn_together(case: Case, spira
         record({"flat": plane, "spiral": spiral}, save=tmp_path / "x.rrd")
 
 
-def test_a_plan_is_refused_since_it_lies_in_a_plane(spiral: Trajectory, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="plan: must come with runs in the plane"):
-        record(spiral, plan=Survey((0.0, 100.0), (0.0, 0.0)), save=tmp_path / "x.rrd")
+def test_a_plan_is_shown_from_all_sides_and_the_run_measured_against_it(turning: Trajectory, tmp_path: Path) -> None:
+    """A straight plan in the direction in which the hole starts, without azimuths."""
+    inclination, saved = math.radians(40.0), tmp_path / "plan.rrd"
+    record(turning, plan=Survey((0.0, 100.0), (inclination, inclination)), save=saved)
+    ahead = np.array([math.sin(inclination) * math.cos(AZIMUTH), math.sin(inclination) * math.sin(AZIMUTH)])
+    end = (100.0 - 7.32) * np.append(ahead, math.cos(inclination))
+    [path] = static(saved, "hole/plan", "LineStrips3D:strips")[0]
+    np.testing.assert_allclose(path[-1], end, atol=1e-4)
+    [path] = static(saved, "plan_view/plan", "LineStrips2D:strips")[0]
+    np.testing.assert_allclose(path[-1], (end[1], -end[0]), atol=1e-4)
+    bit = places(turning, np.array([40.0]))[0]
+    along = bit @ end / np.linalg.norm(end)
+    distance = math.sqrt(bit @ bit - along**2)
+    right = bit[1] * math.cos(AZIMUTH) - bit[0] * math.sin(AZIMUTH)
+    shown = {
+        curve: read(saved, f"plots/{curve}", "Scalars:scalars")[40_000][0]
+        for curve in (
+            "distance_from_plan/distance_from_plan",
+            "distance_from_plan/distance_from_plan_right",
+            "azimuth/0_plan",
+        )
+    }
+    assert list(shown.values()) == pytest.approx([distance, right, 70.0], abs=2e-4)
+    said = read(saved, "verdict", "TextDocument:text")[40_000][0]
+    assert f"; {distance:.1f} m off the plan, " in said
+    assert said.endswith(f", {abs(right):.1f} m {'right' if right > 0 else 'left'}")
+
+
+def test_a_run_of_a_single_row_is_drawn(turning: Trajectory, tmp_path: Path) -> None:
+    saved = tmp_path / "one.rrd"
+    record(replace(turning, columns={name: values[:1] for name, values in turning.columns.items()}), save=saved)
+    assert read(saved, "verdict", "TextDocument:text")[0][0].endswith("**run** no ripple")
 
 
 @pytest.mark.slow

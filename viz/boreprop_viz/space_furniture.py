@@ -21,18 +21,18 @@ from .furniture import (
     text_style,
 )
 from .scales import Scales
-from .scene import round_down
-from .space_entities import RIPPLE_EAST
+from .scene import Array, round_down
+from .space_entities import RIPPLE_EAST, projections
 from .space_scales import SpaceScales
 from .space_scene import PLAY, TILT, TOOLFACE, circle
 from .style import (
     BIT,
+    BLUE,
     BY_STABILIZER,
     FAINT,
     FURNITURE,
     GREY,
     HOLE,
-    PURPLE,
     RSS,
     STROKES,
     STROKES_IN_SPACE,
@@ -55,6 +55,8 @@ def log_furniture_in_space(rec: rr.RecordingStream, scales: Scales, space: Space
     """What is common to all runs and does not change."""
     log_stroke(rec, "vertical_section/grid", FURNITURE["vertical_section/grid"])
     log_stroke(rec, "plan_view/grid", FURNITURE["vertical_section/grid"])
+    for view in ("vertical_section", "plan_view"):
+        log_stroke(rec, f"{view}/plan", FURNITURE["vertical_section/plan"])
     for view in ("hole", "enlarged"):
         rec.log(view, rr.ViewCoordinates.FRD, static=True)  # north, east, down
     log_discs(rec, space, runs)
@@ -65,6 +67,18 @@ def log_furniture_in_space(rec: rr.RecordingStream, scales: Scales, space: Space
 def log_plan_grid(rec: rr.RecordingStream, space: SpaceScales) -> None:
     """Lines at round numbers of metres to north, up the screen, and to east."""
     log_grid(rec, space.plan, "plan_view", up=1.0, above=0.14)
+
+
+def log_plan_in_space(rec: rr.RecordingStream, space: SpaceScales, paths: list[Array]) -> None:
+    """The planned paths in all views that show places, each through points north, east and down, (N, 3)."""
+    plan = FURNITURE["vertical_section/plan"]
+    for view, project in projections(space).items():
+        shown = [project(path) for path in paths]
+        if view == "hole":
+            radii = rr.Radius.ui_points(plan.width / 2)
+            rec.log("hole/plan", rr.LineStrips3D(shown, colors=plan.colour, radii=radii), static=True)
+        else:
+            rec.log(f"{view}/plan", rr.LineStrips2D.from_fields(strips=shown), static=True)
 
 
 def log_discs(rec: rr.RecordingStream, space: SpaceScales, runs: list[Trajectory]) -> None:
@@ -159,7 +173,7 @@ def log_styles_in_space(track: Track) -> None:
         rec.log(track.entity(f"hole/{thing}"), spheres, static=True)
     log_styles_across(track, n)
     log_curve_styles(track)
-    for curve, side, colour in zip((RIPPLE, RIPPLE_EAST), ("north", "east"), track.shades((HOLE, PURPLE)), strict=True):
+    for curve, side, colour in zip((RIPPLE, RIPPLE_EAST), ("north", "east"), track.shades((HOLE, BLUE)), strict=True):
         log_curve_style(track, curve, f"to {side} (mm)", colour, 2.0)
     log_lane_styles(track)
 

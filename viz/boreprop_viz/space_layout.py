@@ -101,12 +101,20 @@ def enlarged(scales: Scales, space: SpaceScales, tracks: Sequence[Track]) -> rrb
 
 
 def whole_hole(tracks: Sequence[Track]) -> rrb.Spatial3DView:
-    """The hole at true scale, as far as the cursor."""
+    """The hole at true scale, as far as the cursor, around the bit."""
+    reach = max(track.case.bha.stabilizer_positions[-1] for track in tracks)
     return rrb.Spatial3DView(
         origin="hole",
         name="× 1",
         background=GROUND,
         line_grid=False,
+        eye_controls=rrb.EyeControls3D(
+            kind=rrb.Eye3DKind.Orbital,
+            position=1.2 * reach * np.array([-1.08, -0.51, -0.25]),
+            look_target=(0.0, 0.0, 0.0),
+            eye_up=UP,
+            tracking_entity=tracks[0].entity("hole/bit"),
+        ),
         overrides={track.entity(f"hole/{thing}"): so_far() for track in tracks for thing in ("drilled_hole", "tube")},
     )
 

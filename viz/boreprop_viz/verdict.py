@@ -180,7 +180,7 @@ class Verdict:
             self.plan = ""
         elif sure or not self.plan or abs(distance - self.off_plan) > max(NEAR, NOTICEABLE * abs(self.off_plan)):
             self.off_plan = distance
-            self.plan = f"; {beside(distance, '.1f')} of the plan" if abs(distance) > NEAR / 2 else "; on the plan"
+            self.plan = f"; {_beside_plan(recent)}" if abs(distance) > NEAR / 2 else "; on the plan"
 
     def _see_sag(self, recent: Trajectory) -> None:
         """Look whether the axis of the BHA leaves the hole in some rows, where the model does not hold."""
@@ -194,6 +194,18 @@ class Verdict:
             self.beyond = beyond
             by = rounded(beyond, SMALL_LENGTH)
             self.sag = f"; {at} behind the bit the axis of the BHA leaves the hole, by {by}: the model does not hold"
+
+
+def _beside_plan(rows: Trajectory) -> str:
+    """How far the hole is off its plan at the last of some rows, in words."""
+    distance = float(rows["distance_from_plan"][-1])
+    if "distance_from_plan_high" not in rows:
+        return f"{beside(distance, '.1f')} of the plan"
+    off = f"{UNITS['m'].text(distance, '.1f')} off the plan"
+    high, right = (float(rows[f"distance_from_plan_{side}"][-1]) for side in ("high", "right"))
+    if np.isnan(high):  # which a vertical plan does not have
+        return off
+    return f"{off}, {beside(high, '.1f')}, {beside(right, '.1f', ('right', 'left'))}"
 
 
 def _kind(wave: Rippling) -> Kind:

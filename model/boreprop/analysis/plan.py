@@ -50,10 +50,19 @@ def read_plan(path: str | Path, start: float) -> Survey:
     """
     plan = read_survey(path)
     try:
-        planned_hole(plan, start)
+        check_reach(plan, start)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
     return plan
+
+
+def check_reach(plan: Survey, start: float) -> None:
+    """Raise `InputError` if a plan does not include the measured depth `start`, m, at which drilling starts."""
+    first, last = plan.measured_depth[0], plan.measured_depth[-1]
+    if not first <= start <= last:
+        raise InputError(
+            f"measured_depth of the plan: must include {start:g} m, where drilling starts, got {first:g} to {last:g}"
+        )
 
 
 def planned_hole(plan: Survey, start: float) -> SurveyedHole:
@@ -62,12 +71,13 @@ def planned_hole(plan: Survey, start: float) -> SurveyedHole:
     Raises
     ------
     InputError
-        If the plan does not include the measured depth `start`, m, at which drilling starts.
+        If the plan does not include the measured depth `start`, m, at which drilling starts, or leaves its plane.
     """
-    first, last = plan.measured_depth[0], plan.measured_depth[-1]
-    if not first <= start <= last:
+    check_reach(plan, start)
+    if plan.turns:
         raise InputError(
-            f"measured_depth of the plan: must include {start:g} m, where drilling starts, got {first:g} to {last:g}"
+            "azimuth of the plan: must be the same everywhere for a run in the plane, got a plan that turns: "
+            "drill it in space (--dimensions 3)"
         )
     return SurveyedHole.of(plan, start)
 

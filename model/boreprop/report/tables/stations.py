@@ -78,6 +78,6 @@ def plan_lines(run: Trajectory, off: Deviation) -> list[tuple[str, str]]:
     ]
 
 
-def beside(distance: float, digits: str = ".2f") -> str:
-    """A distance from the plan, m, and its side, in words."""
-    return f"{UNITS['m'].text(abs(distance), digits)} {'high' if distance > 0 else 'low'}"
+def beside(distance: float, digits: str = ".2f", sides: tuple[str, str] = ("high", "low")) -> str:
+    """A distance from the plan, m, and its side, in words; the first of the sides is that where it is positive."""
+    return f"{UNITS['m'].text(abs(distance), digits)} {sides[0] if distance > 0 else sides[1]}"
