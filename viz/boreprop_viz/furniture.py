@@ -160,7 +160,7 @@ def log_grid(
     lines = [*points(x[:, None], np.array([top, bottom])), *points(np.array([left, right]), z[:, None])]
     rec.log(f"{view}/grid", rr.LineStrips2D.from_fields(strips=lines), static=True)
     left, right, bottom = 0.9 * left + 0.1 * right, 0.9 * right + 0.1 * left, (1 - above) * bottom + above * top
-    x, z = x[(x > left) & (x < right)], z[z < bottom - 0.055 * (bottom - top)]  # a line of text above the lowest
+    x, z = x[(x > left) & (x < right)], z[z < bottom - above * (bottom - top)]  # a line of text above the lowest
     log_labels(rec, f"{view}/grid/depth", points(left, z), [f"{metres(-up * value)} m" for value in z])
     log_labels(rec, f"{view}/grid/displacement", points(x, bottom), [f"{metres(value)} m" for value in x])
 

@@ -197,7 +197,7 @@ class Drawing:
                         flush(rec)
                         card.say(i, stream.send(stretch))
                         follow(stretch.rows)
-                        extremes.take(stretch.rows)
+                        extremes.take(scales.plotted(stretch.rows))
                         done += stretch.rows.row_count
                         progress(done)
         finally:

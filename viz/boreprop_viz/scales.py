@@ -114,6 +114,10 @@ class Scales:
         """What the lanes show."""
         return LANES_TITLE if self.space is None else LANES_TITLE_IN_SPACE
 
+    def plotted(self, rows: Trajectory) -> Trajectory:
+        """Rows as they are plotted."""
+        return rows if self.space is None else self.space.plotted(rows)
+
     def hold(self, rows: Trajectory) -> bool:
         """Whether vertical section and strip show the bit at all rows."""
         deepest = self.strip.start + rows["drilled_length"][-1]
@@ -226,11 +230,11 @@ def choose_scales_in_space(runs: Sequence[Trajectory], *, whole: bool, positions
         / LONGEST_IN_SPACE,
         stabilizers=max(len(case.bha.stabilizer_clearances) for case in cases),
     )
-    size = SMALL_LENGTH.factor * ripple
+    size, plotted = SMALL_LENGTH.factor * ripple, [space.plotted(run) for run in runs]
     return replace(
         seen,
         ripple=with_ticks(-size, size, MOST_STEPS_OF_RIPPLE),
-        ranges=plot_ranges(PLOTS_IN_SPACE, runs, whole) | {"bit_tilt": seen.ranges["bit_tilt"]},
+        ranges=plot_ranges(PLOTS_IN_SPACE, plotted, whole) | {"bit_tilt": seen.ranges["bit_tilt"]},
         plots=PLOTS_IN_SPACE,
         space=space,
     )
@@ -305,15 +309,18 @@ def lateral_room(run: Trajectory) -> float:
 def plot_ranges(
     plots: Mapping[str, Plot], runs: Sequence[Trajectory], whole: bool
 ) -> dict[str, tuple[float, float] | None]:
-    """The range of each plot for which some runs have curves; None if not all of their rows are there."""
+    """The range of each plot for which some runs have values; None if not all of their rows are there."""
     curves = {name: plot.curves(runs) for name, plot in plots.items()}
-    return {name: plot_range(plots[name], some) if whole else None for name, some in curves.items() if some}
+    if not whole:
+        return {name: None for name, some in curves.items() if some}
+    there = {name: some for name, some in curves.items() if any(np.isfinite(curve).any() for curve in some)}
+    return {name: plot_range(plots[name], some) for name, some in there.items()}
 
 
 def plot_range(plot: Plot, curves: Sequence[Array]) -> tuple[float, float]:
     """The range of a plot of some curves, in the unit shown."""
     values = np.round(plot.unit.factor * np.concatenate(curves), DECIMALS)
-    values = values[np.isfinite(values)] if np.isfinite(values).any() else np.zeros(1)
+    values = values[np.isfinite(values)]
     low, high = float(values.min()), float(values.max())
     margin = max(MARGIN * (high - low), SMALLEST_SPAN * max(abs(low), abs(high))) or 1.0
     return with_ticks(low - margin, high + margin)
@@ -327,7 +334,7 @@ class Extremes:
         self.found: dict[str, Array] = {}
 
     def take(self, rows: Trajectory) -> None:
-        """Look at the next rows of a run."""
+        """Look at the next rows of a run, as they are plotted."""
         for name, plot in self.plots.items():
             values = np.concatenate([self.found.get(name, np.empty(0)), *plot.curves([rows])])
             finite = values[np.isfinite(values)]
@@ -335,10 +342,12 @@ class Extremes:
                 self.found[name] = np.array([finite.min(), finite.max()])
 
     def complete(self, scales: Scales) -> Scales:
-        """The same scales with a range for each plot."""
-        ranges = dict(scales.ranges)
-        for name, found in self.found.items():
-            ranges[name] = ranges[name] or plot_range(self.plots[name], [found])
+        """The same scales with a range for each plot that has had a value."""
+        ranges: dict[str, tuple[float, float] | None] = {
+            name: span or plot_range(self.plots[name], [self.found[name]])
+            for name, span in scales.ranges.items()
+            if span or name in self.found
+        }
         return replace(scales, ranges=ranges)
 
 

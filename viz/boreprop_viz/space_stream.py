@@ -65,7 +65,7 @@ class SpaceStream:
         for log in (log_stabilizers_across, log_tilt_across, log_toolface, log_upright):
             log(self.track, self.space, discs)
         for log_curves in (log_plots, log_tilt_limits):
-            log_curves(self.track, stretch.rows)
+            log_curves(self.track, self.space.plotted(stretch.rows))
         self.rippled = log_ripple_in_space(self.track, self.space, stretch, rows, self.begin, self.rippled)
         log_modes(self.track, rows, stretch.rows.row_count)
         return self.verdict.follow(stretch.rows)
