@@ -25,10 +25,10 @@ from .space_scene import PLAY, TILT, TOOLFACE, Discs, Tube, circle, tube
 from .track import Moments, Track, arrivals, moments, send, send_curve, send_numbers, send_strips
 
 RIPPLE_EAST = f"{RIPPLE}_east"
-POINTS_OF_BHA = 16
+POINTS_OF_BHA = 8
 POINTS_IN_HALF = 20  # of the tube over half the length of the BHA
 PIECE, EVERY = AXIS_POINTS // 2, 2  # points of the ripple in a piece of the enlarged hole, and every how many is drawn
-POINTS_OF_BLADES = 36
+POINTS_OF_BLADES = 24
 Projection = Callable[[Array], Array]
 
 

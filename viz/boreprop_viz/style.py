@@ -162,17 +162,15 @@ PLOTS_IN_SPACE = {
     "distance_from_plan": Plot(
         "Distance from the plan: size, high, right",
         ("distance_from_plan", "distance_from_plan_high", "distance_from_plan_right"),
-        (WHITE, BIT, BLUE),
+        (GREY, BIT, BLUE),
     ),
     "inclination_less_plan": PLOTS["inclination_less_plan"],
     "azimuth_less_plan": Plot("Azimuth less that of the plan", ("azimuth_less_plan",), (HOLE,)),
-    "bit_tilt": Plot(
-        "Bit tilt: size, high, right", ("bit_tilt", "bit_tilt_high", "bit_tilt_right"), (WHITE, BIT, BLUE)
-    ),
+    "bit_tilt": Plot("Bit tilt: size, high, right", ("bit_tilt", "bit_tilt_high", "bit_tilt_right"), (GREY, BIT, BLUE)),
     "bit_lateral_force": Plot(
         "Bit side force: size, high, right",
         ("bit_lateral_force", "bit_lateral_force_high", "bit_lateral_force_right"),
-        (WHITE, BIT, BLUE),
+        (GREY, BIT, BLUE),
     ),
     "stabilizer_force": replace(PLOTS["stabilizer_force"], title="Contact forces"),
     "rss_force": replace(PLOTS["rss_force"], title="RSS force"),
