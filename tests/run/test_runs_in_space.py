@@ -9,20 +9,19 @@ import numpy as np
 import pytest
 
 from boreprop.analysis.comparison import compare
-from boreprop.analysis.hole import HoleAxis
 from boreprop.analysis.hole_in_space import SurveyInSpace
-from boreprop.analysis.plan import deviation_from, deviation_of, plan_of, planned_hole
+from boreprop.analysis.plan_in_space import DeviationInSpace, deviation_of, plan_of
 from boreprop.analysis.stations import list_stations
 from boreprop.analysis.summary import summarize
 from boreprop.case.case import Case, InputSchedule, Schedule
 from boreprop.core.survey import Survey
 from boreprop.core.system import BottomHoleAssembly
-from boreprop.errors import InputError, ParameterError
+from boreprop.errors import ParameterError
 from boreprop.run.completion import complete
 from boreprop.run.results import read_trajectory, write_trajectory
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
-from conftest import Command, assert_refused
+from conftest import Command
 from space_runs import SpatialCase
 
 SIDES = ("stabilizer_force", "stabilizer_deflection", "bit_tilt", "bit_lateral_force")
@@ -196,68 +195,18 @@ def test_a_survey_of_the_run_compares_by_its_inclination(turning: Trajectory) ->
     np.testing.assert_allclose(found.predicted, found.measured, atol=radians(3.0))
 
 
-def test_a_plan_without_azimuth_is_refused_for_a_run_in_space(turning: Trajectory) -> None:
-    with pytest.raises(InputError, match="azimuth_deg of the plan: must be given for a run in space"):
-        plan_of(turning, Survey((0.0, 100.0), (0.7, 0.7)))
-
-
 def test_a_run_is_not_off_a_plan_and_a_survey_of_its_own_rows(turning: Trajectory) -> None:
     columns = [30.0 + turning["drilled_length"]]
     columns += [turning[f"borehole_{name}"] for name in ("inclination", "azimuth")]
     own = Survey(*(tuple(column.tolist()) for column in columns))
     off, found = deviation_of(turning, plan_of(turning, own), 4.0), compare(turning, own)
-    assert off.azimuth is not None
+    assert isinstance(off, DeviationInSpace)
     assert found.high is not None
     assert found.right is not None
     for distance in (off.distance, found.high, found.right):
         assert np.abs(distance).max() < 0.01  # in a hole that ripples by more, and turns by metres to the right
     for angle in (off.azimuth[16:], off.inclination[16:]):
         assert np.abs(angle).max() < radians(0.1)
-
-
-def test_a_hole_beside_its_plan_is_as_far_to_each_side_as_it_is() -> None:
-    """A straight plan at 40° to the north-east, and a hole that goes on 3 m higher and 4 m further right."""
-    plan = SurveyInSpace.of(Survey((0.0, 500.0), (radians(40.0),) * 2, (radians(45.0),) * 2), 100.0)
-    high = np.array([cos(radians(40.0)) * sin(radians(45.0))] * 2 + [-sin(radians(40.0))])
-    right = np.array([-sin(radians(45.0)), cos(radians(45.0)), 0.0])
-    length = np.linspace(-50.0, 300.0, 8)
-    hole = HoleAxis(length, plan.at(length) + 3.0 * high + 4.0 * right)
-    found = deviation_from(plan, hole, length[1:], 5.0)
-    assert found.high is not None
-    assert found.right is not None
-    np.testing.assert_allclose(found.high, 3.0, atol=1e-9)
-    np.testing.assert_allclose(found.right, 4.0, atol=1e-9)
-    np.testing.assert_allclose(found.distance, 5.0, atol=1e-9)
-
-
-def test_in_a_plane_the_plan_in_space_is_the_planar_one() -> None:
-    depth, inclination = (0.0, 60.0, 110.0, 200.0, 310.0), (0.2, 0.3, 0.5, 0.4, 0.9)
-    plane = planned_hole(Survey(depth, inclination), 50.0)
-    space = SurveyInSpace.of(Survey(depth, inclination, (2.0,) * 5), 50.0)
-    length = np.linspace(-10.0, 250.0, 27)
-    x, z = (plane.at(length) + 9.0 * np.random.default_rng(1).uniform(-1.0, 1.0, (27, 2))).T
-    planar = deviation_from(plane, HoleAxis(length, np.column_stack((x, z))), length[1:], 1.0)
-    turned = HoleAxis(length, np.column_stack((x * cos(2.0), x * sin(2.0), z)))
-    found = deviation_from(space, turned, length[1:], 1.0)
-    assert found.high is not None
-    np.testing.assert_allclose(found.high, planar.distance, atol=1e-6)
-    np.testing.assert_allclose(found.distance, np.abs(planar.distance), atol=1e-6)
-    np.testing.assert_allclose(found.planned_inclination, planar.planned_inclination, atol=1e-6)
-
-
-def test_the_nearest_point_of_a_plan_in_space_is_where_it_is_nearest_of_all() -> None:
-    plan = SurveyInSpace.of(
-        Survey((0.0, 60.0, 110.0, 200.0, 270.0), (0.0, 0.1, 0.5, 0.3, 1.2), (0.0, 1.0, 1.5, 0.3, 0.5))
-    )
-    length = np.linspace(-250.0, -20.0, 60)
-    position = plan.at(length) + 9.0 * np.random.default_rng(3).uniform(-1.0, 1.0, (60, 3))
-    dense = plan.at(np.linspace(-290.0, 30.0, 32_001))
-    least = np.array([np.linalg.norm(dense - point, axis=1).min() for point in position])
-    nearest = np.linalg.norm(position - plan.at(plan.nearest(position, length)), axis=1)
-    np.testing.assert_allclose(nearest, least, atol=2e-5)
-    step = 1e-4
-    slope = (plan.at(length + step) - plan.at(length - step)) / (2 * step)
-    np.testing.assert_allclose(plan.direction_at(length)[0], slope, atol=1e-6)
 
 
 def test_summary_and_compare_tell_it_to_the_high_side_and_to_the_right(
@@ -280,9 +229,6 @@ def test_summary_and_compare_tell_it_to_the_high_side_and_to_the_right(
     assert compared["right"] == [pytest.approx(off_east * cos(azimuth) - off_north * sin(azimuth), abs=1e-6)]
     assert compared["azimuth_residual"] == [pytest.approx(radians(45.0) - azimuth)]
     assert max(map(len, command_here("boreprop", "compare", "run.csv", "plan.csv").stdout.splitlines())) <= 80
-    (tmp_path / "planar.csv").write_text("measured_depth,inclination_deg\n0,40\n120,40\n")
-    refused = command_here("boreprop", "summary", "run.csv", "--plan", "planar.csv")
-    assert_refused(refused, "azimuth_deg of the plan: must be given for a run in space")
 
 
 def test_the_python_engine_and_two_dimensions_are_refused(inclined: Case) -> None:

@@ -135,7 +135,7 @@ def _in_space(hole: HoleAxis, direction: Floats, measured: SurveyInSpace, length
     high, right = sides(direction)
     return {
         "predicted_azimuth": azimuth_of(direction),
-        "measured_azimuth": azimuth_of(measured.direction_at(length)[0]),
+        "measured_azimuth": azimuth_of(measured.turning_at(length)[0]),
         "high": np.sum(away * high, axis=-1),
         "right": np.sum(away * right, axis=-1),
     }

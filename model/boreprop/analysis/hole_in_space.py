@@ -3,7 +3,8 @@
 Positions are north, east and down of the bit at the start of the run; lengths are measured from there along the hole.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +12,9 @@ from numpy.typing import NDArray
 from ..arrays import Floats
 from ..core.survey import Survey
 from ..run.trajectory import Trajectory
-from .hole import LEAST_SLOPE, MOST_STEPS, NEAREST, POINTS_BEHIND, Hole, HoleAxis
+from .hole import POINTS_BEHIND, Hole, HoleAxis
 
-STRAIGHT = 1e-6  # rad: a piece that turns by less is drawn straight, which is wrong by 1e-7 of its length at most
+STRAIGHT = 1e-9  # rad: a piece that turns by less is straight, since rounding decides to which side it turns
 NEARLY_VERTICAL = np.radians(3.0)  # up to here the high side says little, and directions count from north
 UPRIGHT = 1e-9  # a direction whose horizontal part is less has no azimuth
 
@@ -49,14 +50,14 @@ class SurveyInSpace:
 
     @classmethod
     def of(cls, survey: Survey, start: float | None = None) -> "SurveyInSpace":
-        """The hole of a survey, which passes the origin at a measured depth `start`, m; without it at its end."""
-        length = np.asarray(survey.measured_depth) - (survey.measured_depth[-1] if start is None else start)
+        """The hole of a survey, at the origin where its measured depth is `start`, m; None: at its last station."""
+        depth = np.asarray(survey.measured_depth)
+        length = depth - (depth[-1] if start is None else start)
         azimuth = np.asarray(survey.azimuth) if survey.azimuth else np.zeros(length.size)
         hole = cls(length, directions(np.asarray(survey.inclination), azimuth), np.zeros((length.size, 3)))
         pieces = hole._from_station(np.arange(length.size - 1), np.diff(length))
-        position = np.concatenate((np.zeros((1, 3)), np.cumsum(pieces, axis=0)))
-        placed = cls(length, hole.direction, position)
-        return cls(length, hole.direction, position - placed.at(np.zeros(1)))
+        hole = replace(hole, position=np.concatenate((np.zeros((1, 3)), np.cumsum(pieces, axis=0))))
+        return replace(hole, position=hole.position - hole.at(np.array(0.0)))
 
     def at(self, length: Floats) -> Floats:
         """Positions at lengths, m, shape (..., 3)."""
@@ -64,49 +65,42 @@ class SurveyInSpace:
         position: Floats = self.position[station] + self._from_station(station, length - self.length[station])
         return position
 
-    def direction_at(self, length: Floats) -> tuple[Floats, Floats]:
-        """Directions at lengths, m, and how they turn, 1/m, shape (..., 3) each."""
+    def turning_at(self, length: Floats) -> tuple[Floats, Floats]:
+        """Directions at lengths, m, and by how much they change along the hole, 1/m, shape (..., 3) each."""
         station = self._station(length)
-        start, end, apart, turn = self._arc(station, length - self.length[station])
-        own, rate = np.where(turn > 0.0, turn, 1.0)[..., None], (turn / apart)[..., None]
-        done = rate * (length - self.length[station])[..., None]
-        bent = (np.sin(own - done) * start + np.sin(done) * end) / np.sin(own)
-        turned = rate * (np.cos(done) * end - np.cos(own - done) * start) / np.sin(own)
-        return np.where(rate > 0.0, bent, start), np.where(rate > 0.0, turned, 0.0)
+        start, side, curvature, turn = self._arc(station, length - self.length[station])
+        cosine, sine = np.cos(turn), np.sin(turn)
+        return cosine * start + sine * side, curvature * (cosine * side - sine * start)
 
-    def nearest(self, position: Floats, near: Floats) -> Floats:
-        """The lengths at which this hole is nearest to some points, m, shape (m,), as `SurveyedHole.nearest`."""
-        length = near
-        for _ in range(MOST_STEPS):
-            away, (direction, turned) = position - self.at(length), self.direction_at(length)
-            slope = 1.0 - np.sum(away * turned, axis=-1)
-            step = np.sum(away * direction, axis=-1) / np.maximum(slope, LEAST_SLOPE)
-            length = length + step
-            if np.abs(step).max(initial=0.0) < NEAREST:
-                break
-        return length
+    @cached_property
+    def _bends(self) -> tuple[Floats, Floats]:
+        """To which side the hole turns below each station, (N, 3), and its curvature there, 1/m, (N,)."""
+        start, end = self.direction[:-1], self.direction[1:]
+        turn = angle_between(start, end)
+        bent = turn > STRAIGHT
+        across = end - (start * end).sum(axis=-1, keepdims=True) * start
+        size = np.where(bent, np.linalg.norm(across, axis=-1), 1.0)
+        side = np.append(across / size[:, None], np.zeros((1, 3)), axis=0)
+        return side, np.append(np.where(bent, turn / np.diff(self.length), 0.0), 0.0)
 
     def _station(self, length: Floats) -> NDArray[np.intp]:
-        """The last station at or before each length, the first one above it."""
+        """The last station before each of some lengths, m, or the first one."""
         return np.clip(np.searchsorted(self.length, length, side="right") - 1, 0, None)
 
     def _arc(self, station: NDArray[np.intp], along: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Direction at stations and at the next ones, the length between them, m, and the turn, rad: 0 if straight."""
-        following = np.minimum(station + 1, self.length.size - 1)
-        start, end = self.direction[station], self.direction[following]
-        turn = angle_between(start, end)
-        turn = np.where((turn < STRAIGHT) | (along < 0.0), 0.0, turn)
-        return start, end, np.where(turn > 0.0, self.length[following] - self.length[station], 1.0), turn
+        """Of the arc below stations its direction there, the side to which it turns, its curvature, 1/m, and its turn.
+
+        The turn is that up to this far along, m, in rad. The shapes are (..., 3) twice and (..., 1) twice.
+        """
+        side, curvature = self._bends
+        bend = np.where(along < 0.0, 0.0, curvature[station])[..., None]
+        return self.direction[station], side[station], bend, bend * along[..., None]
 
     def _from_station(self, station: NDArray[np.intp], along: Floats) -> Floats:
         """From stations to the places this far along, m, which the next station is not before."""
-        start, end, apart, turn = self._arc(station, along)
-        straight = turn == 0.0
-        own = np.where(straight, 1.0, turn)
-        done = own * along / apart
-        of_start = np.where(straight, along, apart * (np.cos(own - done) - np.cos(own)) / (own * np.sin(own)))
-        of_end = np.where(straight, 0.0, apart * (1.0 - np.cos(done)) / (own * np.sin(own)))
-        way: Floats = of_start[..., None] * start + of_end[..., None] * end
+        start, side, _, turn = self._arc(station, along)
+        chord = along[..., None] * np.sinc(turn / (2 * np.pi))
+        way: Floats = chord * (np.cos(turn / 2) * start + np.sin(turn / 2) * side)
         return way
 
 
@@ -151,6 +145,11 @@ def azimuth_of(direction: Floats) -> Floats:
     return np.where(np.hypot(north, east) > UPRIGHT, azimuth, np.nan)
 
 
+def turned_to(azimuth: Floats, other: Floats) -> Floats:
+    """How far azimuths are from others, rad, from −π to π."""
+    return np.mod(azimuth - other + np.pi, 2 * np.pi) - np.pi
+
+
 def sides(forward: Floats) -> tuple[Floats, Floats]:
     """The high side and the right of directions, looking along them, shape (..., 3) each.
 
@@ -161,8 +160,3 @@ def sides(forward: Floats) -> tuple[Floats, Floats]:
     across = towards - np.sum(towards * forward, axis=-1, keepdims=True) * forward
     high = across / np.linalg.norm(across, axis=-1, keepdims=True)
     return high, np.cross(forward, high)
-
-
-def turned_to(azimuth: Floats, other: Floats) -> Floats:
-    """How far azimuths are from others, rad, from −π to π."""
-    return np.mod(azimuth - other + np.pi, 2 * np.pi) - np.pi

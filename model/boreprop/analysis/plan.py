@@ -13,19 +13,7 @@ from ..arrays import Floats
 from ..case.tables import read_survey
 from ..core.survey import Survey
 from ..errors import InputError
-from ..run.completion import case_of
-from ..run.trajectory import Trajectory
-from .hole import HoleAxis, SurveyedHole, chord_inclination, hole_of
-from .hole_in_space import (
-    SurveyInSpace,
-    azimuth_of,
-    chord_direction,
-    hole_in_space,
-    inclination_of,
-    is_in_space,
-    sides,
-    turned_to,
-)
+from .hole import HoleAxis, SurveyedHole, chord_inclination
 
 ROUNDING = 1e-6  # m of measured depth: a hole that goes on this little beyond its plan ends with it
 
@@ -37,31 +25,20 @@ class Deviation:
     Parameters
     ----------
     distance
-        Distance from the nearest point of the plan, m, positive to the high side of the plan, or, in space, never
-        negative, shape (m,).
+        Distance from the nearest point of the plan, m, positive to the high side of the plan, shape (m,).
     inclination
         Mean inclination of the hole less that of the plan, rad, shape (m,).
     planned_inclination
         Mean inclination of the plan, rad, shape (m,).
-    high, right
-        In space, the parts of the distance to the high side of the plan and to the right of it, looking down the hole,
-        m; where the plan is nearly vertical, to the north and to the right of that. None in a plane.
-    azimuth, planned_azimuth
-        In space, mean azimuth of the hole less that of the plan, and that of the plan, rad, nan where one of them is
-        vertical; None in a plane.
     """
 
     distance: Floats
     inclination: Floats
     planned_inclination: Floats
-    high: Floats | None = None
-    right: Floats | None = None
-    azimuth: Floats | None = None
-    planned_azimuth: Floats | None = None
 
 
 def read_plan(path: str | Path, start: float) -> Survey:
-    """Read a plan, a file like that of a survey, with azimuths for a run in space; errors name it.
+    """Read a plan, a file like that of a survey; errors name it.
 
     Raises
     ------
@@ -70,43 +47,13 @@ def read_plan(path: str | Path, start: float) -> Survey:
     """
     plan = read_survey(path)
     try:
-        check_start(plan, start)
+        check_reach(plan, start)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
     return plan
 
 
-def planned_hole(plan: Survey, start: float) -> SurveyedHole:
-    """The planned hole in its plane, moved so that it passes through the bit at the start of the run.
-
-    Raises
-    ------
-    InputError
-        If the plan does not include the measured depth `start`, m, at which drilling starts.
-    """
-    check_start(plan, start)
-    return SurveyedHole.of(plan, start)
-
-
-def plan_of(run: Trajectory, plan: Survey) -> SurveyedHole | SurveyInSpace:
-    """The planned hole of a run with its case, moved so that it passes through the bit at the start of the run.
-
-    Raises
-    ------
-    InputError
-        If the run lacks its case, the plan does not include the measured depth at which it starts, or the plan has no
-        azimuth for a run in space.
-    """
-    start = case_of(run).survey.measured_depth[-1]
-    if not is_in_space(run):
-        return planned_hole(plan, start)
-    check_start(plan, start)
-    if not plan.azimuth:
-        raise InputError("azimuth_deg of the plan: must be given for a run in space, got no such column")
-    return SurveyInSpace.of(plan, start)
-
-
-def check_start(plan: Survey, start: float) -> None:
+def check_reach(plan: Survey, start: float) -> None:
     """Raise `InputError` if a plan does not include the measured depth `start`, m, at which drilling starts."""
     first, last = plan.measured_depth[0], plan.measured_depth[-1]
     if not first <= start <= last:
@@ -115,13 +62,30 @@ def check_start(plan: Survey, start: float) -> None:
         )
 
 
-def deviation_from(plan: SurveyedHole | SurveyInSpace, hole: HoleAxis, length: Floats, over: float) -> Deviation:
+def planned_hole(plan: Survey, start: float) -> SurveyedHole:
+    """The planned hole, moved so that it passes through the bit at the start of the run.
+
+    Raises
+    ------
+    InputError
+        If the plan does not include the measured depth `start`, m, at which drilling starts, or leaves its plane.
+    """
+    check_reach(plan, start)
+    if plan.turns:
+        raise InputError(
+            "azimuth of the plan: must be the same everywhere for a run in the plane, got a plan that turns: "
+            "drill it in space (--dimensions 3)"
+        )
+    return SurveyedHole.of(plan, start)
+
+
+def deviation_from(plan: SurveyedHole, hole: HoleAxis, length: Floats, over: float) -> Deviation:
     """How far a hole is off its plan.
 
     Parameters
     ----------
     plan
-        The planned hole of the run, see `plan_of`.
+        The `planned_hole` of the run.
     hole
         The hole, from `over` metres behind the first of the lengths on.
     length
@@ -130,38 +94,12 @@ def deviation_from(plan: SurveyedHole | SurveyInSpace, hole: HoleAxis, length: F
         The length of hole over which inclinations, those of the plan too, are averaged, m. They are means over the
         `over` metres before each of the lengths, since the inclination at a point of a rippling hole says little.
     """
-    outside = (length < plan.length[0] - ROUNDING) | (length > plan.length[-1] + ROUNDING)
-    if isinstance(plan, SurveyInSpace):
-        columns = _in_space(plan, hole, length, over)
-    else:
-        position, planned = hole.at(length), chord_inclination(plan, length, over)
-        columns = {
-            "distance": plan.away(position, plan.nearest(position, length))[1],
-            "inclination": chord_inclination(hole, length, over) - planned,
-            "planned_inclination": planned,
-        }
-    return Deviation(**{name: np.where(outside, np.nan, column) for name, column in columns.items()})
-
-
-def _in_space(plan: SurveyInSpace, hole: HoleAxis, length: Floats, over: float) -> dict[str, Floats]:
-    """The columns of a `Deviation` in space."""
     position = hole.at(length)
-    nearest = plan.nearest(position, length)
-    away = position - plan.at(nearest)
-    high, right = sides(plan.direction_at(nearest)[0])
-    own, planned = (chord_direction(each, length, over) for each in (hole, plan))
-    return {
-        "distance": np.linalg.norm(away, axis=-1),
-        "inclination": inclination_of(own) - inclination_of(planned),
-        "planned_inclination": inclination_of(planned),
-        "high": np.sum(away * high, axis=-1),
-        "right": np.sum(away * right, axis=-1),
-        "azimuth": turned_to(azimuth_of(own), azimuth_of(planned)),
-        "planned_azimuth": azimuth_of(planned),
-    }
-
-
-def deviation_of(run: Trajectory, plan: SurveyedHole | SurveyInSpace, over: float) -> Deviation:
-    """How far each row of a run with its case is off its plan, see `deviation_from`."""
-    of_run = hole_in_space if is_in_space(run) else hole_of
-    return deviation_from(plan, of_run(run, case_of(run).survey, over), run["drilled_length"], over)
+    _, distance = plan.away(position, plan.nearest(position, length))
+    planned = chord_inclination(plan, length, over)
+    outside = (length < plan.length[0] - ROUNDING) | (length > plan.length[-1] + ROUNDING)
+    return Deviation(
+        distance=np.where(outside, np.nan, distance),
+        inclination=np.where(outside, np.nan, chord_inclination(hole, length, over) - planned),
+        planned_inclination=np.where(outside, np.nan, planned),
+    )

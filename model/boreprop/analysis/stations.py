@@ -18,7 +18,8 @@ from .hole_in_space import (
     inclination_of,
     is_in_space,
 )
-from .plan import Deviation, deviation_from
+from .plan import Deviation
+from .plan_in_space import DeviationInSpace, off_plan
 from .rippling import find_rippling
 from .summary import averaging_length
 
@@ -56,7 +57,7 @@ class Stations:
     true_vertical_depth: Floats
     displacement: Floats
     dogleg_severity: Floats
-    deviation: Deviation | None = None
+    deviation: Deviation | DeviationInSpace | None = None
     azimuth: Floats | None = None
     north: Floats | None = None
     east: Floats | None = None
@@ -80,7 +81,7 @@ def list_stations(
     spacing
         Measured depth from station to station, m.
     plan
-        The planned hole of the run, see `plan_of`.
+        The planned hole of the run, see `plan_in_space.plan_of`.
     averaged_over
         The length of hole over which inclinations are averaged, m; without it, that of `summarize`.
 
@@ -112,7 +113,7 @@ def list_stations(
         true_vertical_depth=position[:, 1],
         displacement=position[:, 0],
         dogleg_severity=np.abs(turn) / (length - before),
-        deviation=None if plan is None else deviation_from(plan, hole, length, over),
+        deviation=None if plan is None else off_plan(plan, hole, length, over),
     )
 
 
@@ -134,7 +135,7 @@ def _in_space(
         true_vertical_depth=position[:, 2],
         displacement=np.hypot(position[:, 0], position[:, 1]),
         dogleg_severity=angle_between(chord_direction(hole, before, over), direction) / (length - before),
-        deviation=None if plan is None else deviation_from(plan, hole, length, over),
+        deviation=None if plan is None else off_plan(plan, hole, length, over),
         azimuth=azimuth_of(direction),
         north=position[:, 0],
         east=position[:, 1],

@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from ..analysis.plan import deviation_of, plan_of, read_plan
+from ..analysis.plan import read_plan
+from ..analysis.plan_in_space import deviation_of, plan_of
 from ..analysis.stations import list_stations
 from ..analysis.summary import summarize
 from ..report.tables import stations as tables
@@ -44,8 +45,7 @@ def summary_command(
     off = None if plan is None else deviation_of(trajectory, plan, over)
     listed = None if stations is None else list_stations(trajectory, stations, plan, averaged_over=over)
     if as_json:
-        columns = {} if off is None else plain(off)
-        off_plan = {name: column[-1] for name, column in columns.items() if column is not None} or None
+        off_plan = None if off is None else {name: column[-1] for name, column in plain(off).items()}
         print_json(plain(summary) | {"off_plan": off_plan, "stations": listed})
         return
     print_table([*lines(summary), *([] if off is None else tables.plan_lines(trajectory, off))], (str(run_file), ""))

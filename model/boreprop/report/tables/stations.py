@@ -5,6 +5,7 @@ from math import isnan
 import numpy as np
 
 from ...analysis.plan import Deviation
+from ...analysis.plan_in_space import DeviationInSpace
 from ...analysis.stations import Stations
 from ...arrays import Floats
 from ...run.completion import case_of
@@ -12,7 +13,7 @@ from ...run.trajectory import Trajectory
 from ...units import UNITS
 
 SIGNED = "+z.2f"
-NONE = "–"  # below the end of the plan, or the azimuth of a vertical hole
+NONE = "–"  # below the end of the plan, or the azimuth or a side of a vertical hole
 
 
 def headings(stations: Stations) -> tuple[str, ...]:
@@ -40,10 +41,10 @@ def lines(stations: Stations) -> list[tuple[str, ...]]:
     if stations.azimuth is not None and stations.north is not None and stations.east is not None:
         columns[3:4] = [_cells("m", stations.north, ".2f"), _cells("m", stations.east, ".2f")]
         columns.insert(2, _cells("rad", stations.azimuth, ".1f"))
-    if (off := stations.deviation) is not None and off.azimuth is not None:
+    if isinstance(off := stations.deviation, DeviationInSpace):
         columns[4:6] = []
         columns += [_cells("rad", angle, SIGNED) for angle in (off.inclination, off.azimuth)]
-        columns += [_cells("m", part, SIGNED) for part in (off.high, off.right) if part is not None]
+        columns += [_cells("m", distance, SIGNED) for distance in (off.high, off.right)]
     elif off is not None:
         columns += [
             _cells("rad", off.planned_inclination),
@@ -76,7 +77,7 @@ def caption(stations: Stations) -> str:
     return f"{text} Off: inclination and azimuth less those of the plan. High, right: from its nearest point."
 
 
-def plan_lines(run: Trajectory, off: Deviation) -> list[tuple[str, str]]:
+def plan_lines(run: Trajectory, off: Deviation | DeviationInSpace) -> list[tuple[str, str]]:
     """Two lines for the summary of a run with its case: how far its rows are off the plan at the end, and at most."""
     measured_depth = case_of(run).survey.measured_depth[-1] + run["drilled_length"]
     known = np.flatnonzero(~np.isnan(off.distance))
@@ -84,21 +85,23 @@ def plan_lines(run: Trajectory, off: Deviation) -> list[tuple[str, str]]:
     where = (
         "at the end" if last == len(measured_depth) - 1 else f"where it ends, {UNITS['m'].text(measured_depth[last])}"
     )
-    turned = [UNITS["rad"].text(angle[last], SIGNED) for angle in (off.inclination, off.azimuth) if angle is not None]
+    angles = [off.inclination] if isinstance(off, Deviation) else [off.inclination, off.azimuth]
+    turned = [UNITS["rad"].text(angle[last], SIGNED) for angle in angles if not isnan(angle[last])]
     return [
         (f"off the plan {where}", ", ".join([_away(off, int(last)), " and ".join(turned)])),
         ("off the plan at most", f"{_away(off, int(most))} at {UNITS['m'].text(measured_depth[most])}"),
     ]
 
 
-def _away(off: Deviation, row: int) -> str:
-    """How far a row is from the plan, in words."""
-    if off.high is None or off.right is None:
+def _away(off: Deviation | DeviationInSpace, row: int) -> str:
+    """How far a row is from the plan, in words: where the plan is nearly vertical, without the sides."""
+    if isinstance(off, Deviation):
         return beside(off.distance[row])
-    high, right = off.high[row], off.right[row]
-    return f"{beside(high)}, {UNITS['m'].text(abs(right), '.2f')} {'right' if right > 0 else 'left'}"
+    if isnan(off.high[row]):
+        return UNITS["m"].text(off.distance[row], ".2f")
+    return f"{beside(off.high[row])}, {beside(off.right[row], sides=('right', 'left'))}"
 
 
-def beside(distance: float, digits: str = ".2f") -> str:
-    """A distance from the plan, m, and its side, in words."""
-    return f"{UNITS['m'].text(abs(distance), digits)} {'high' if distance > 0 else 'low'}"
+def beside(distance: float, digits: str = ".2f", sides: tuple[str, str] = ("high", "low")) -> str:
+    """A distance from the plan, m, and its side, in words; the first of the sides is that where it is positive."""
+    return f"{UNITS['m'].text(abs(distance), digits)} {sides[0] if distance > 0 else sides[1]}"
