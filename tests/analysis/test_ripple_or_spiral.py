@@ -115,7 +115,7 @@ def test_any_ellipse_is_found_with_its_sense_through_drift_and_noise(hole: Made)
 @given(
     made(),
     st.sampled_from((0.0, 0.3, 1.0)),
-    st.floats(0.0, 0.3),
+    st.floats(0.0, 0.2),
     st.floats(5.5, 40.0),
     st.floats(-3.0, 3.0),
     st.floats(0.0, 90.0),

@@ -279,7 +279,7 @@ def test_analyses_of_the_plane_take_its_azimuth_but_no_turn(
     (tmp_path / "case.toml").write_text(HOLE + f"azimuth_deg = {azimuth}\n")
     done = command("boreprop", "steering", "case.toml")
     assert (done.returncode == 2) == refused, done.stderr
-    assert ("azimuth: must be the same at all stations" in done.stderr) == refused
+    assert ("hole.azimuth_deg: must be the same at all stations" in done.stderr) == refused
 
 
 def test_a_direction_by_inclination_and_azimuth_starts_the_bit(turning: Trajectory) -> None:

@@ -79,7 +79,7 @@ def transverse_growth(case: Case) -> TransverseGrowth:
     (0.085, 5.07)
     """
     if case.bit.walk_angle:
-        constraint = "must be 0 for a ripple in a plane, which a bit that walks leaves at once; leave out --ripple"
+        constraint = "must be 0 for a ripple in a plane, which a bit that walks leaves at once"
         raise ParameterError("bit_walk_angle", constraint, case.bit.walk_angle)
     beam, l1 = beam_of(case), case.length_scale
     alone = replace(case, schedule=type(case.schedule)(), inputs=None, formations=(), wear=None, dimensions=2)
