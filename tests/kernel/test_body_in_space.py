@@ -44,7 +44,7 @@ def contact_problem(G: Floats, q: Floats, y: Floats) -> Floats:
     return F
 
 
-@settings(max_examples=30)
+@settings(max_examples=8)
 @given(
     force=st.floats(0.0, 6e4),
     toolface=st.floats(-pi, pi),
@@ -216,7 +216,7 @@ def test_outputs_do_not_depend_on_where_the_bit_stops_and_a_saved_state_goes_on_
     assert drill(other, [7.0, 9.0]) == drill(at_once, [7.0, 9.0])
 
 
-@settings(max_examples=10)
+@settings(max_examples=6)
 @given(
     points=st.lists(st.integers(1, 68), min_size=1, max_size=20, unique=True).map(sorted),
     clearance=st.floats(5e-3, 4e-2),
