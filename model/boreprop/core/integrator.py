@@ -16,7 +16,7 @@ from .errors import CannotContinue
 from .events import Event, first_event
 from .hole import Drilled, Hole
 from .inputs import Inputs
-from .kinks import MERGE, Kinks, harm_of
+from .kinks import MERGE, Kinks
 from .law import Law, Laws, bend
 from .modes import Loads, Mode, Modes, Regime, bit_tilt, saturation
 from .options import Options, Statistics
@@ -389,9 +389,7 @@ class Integrator:
     def _choose_length(self, law: Law, plan: Plan, xi: float) -> float:
         """Length of the next trial: as planned, but no kink lies within it, and none is left a short step ahead."""
         largest = min(self.options.largest_step, law.longest)
-        h = min(plan.h, largest)
-        harm = harm_of(h, self.options.theta_weight, self.inputs_xi > 0.0)
-        to_kink = self.kinks.next_kink(xi, 2 * h, law.gains, harm, self.options.relative_tolerance) - xi
+        h, to_kink = self.kinks.reach(xi, min(plan.h, largest), law.gains, self.options, self.inputs_xi > 0.0)
         longest = h if plan.repeated else min(STRETCH * h, largest)
         return h if to_kink >= 2 * h else to_kink if to_kink <= longest else to_kink / 2
 

@@ -134,9 +134,7 @@ static inline void find_places(State *now, const Scaled *scaled, double xi) {
         places->s[i] = scaled->s[support_at(contact, scaled->n, i)];
         places->nearest = smaller(places->nearest, places->s[i]);
         if (i < scaled->n) continue;
-        Count *ahead = &now->kinks.ahead[i];
-        for (*ahead = oldest; *ahead < now->kinks.end; ++*ahead)
-            if (kink(&now->kinks, *ahead)->xi + places->s[i] > xi + MERGE) break;
+        now->kinks.ahead[i] = kink_beyond(&now->kinks, oldest, xi + MERGE - places->s[i]);
         now->hole.cursor[i] = find(&now->hole, xi - places->s[i]);
     }
 }
