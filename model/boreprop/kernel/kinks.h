@@ -72,7 +72,7 @@ typedef struct {
 } Harm;
 
 /* Of a step of length `h`, where errors of θ have this weight. It is no more than what a kink changes over twice the step,
-   which counts where there are not many: before inputs change on the way, of a BHA whose body does not touch the wall.
+   which counts where there are not many: before inputs change on the way, while no point of the body is watched.
    Such runs keep their steps to the last bit. */
 static inline Harm harm_of(double h, double theta_weight, int many) {
     static const double factorial[] = {1, 1, 2, 6, 24};
