@@ -145,6 +145,8 @@ def test_more_contacts_than_there_is_room_for_are_too_crowded_and_not_buckling()
     bha = with_points(BottomHoleAssembly((20.0, 40.0), (0.0,), 0.5, 1500.0, 1e4), points, 0.01)
     with pytest.raises(CannotContinue, match="more than 58 supports touch the wall"):
         lie(bha, np.zeros((1, len(points) + 2)), np.zeros(1), np.ones(1))
+    with pytest.raises(CannotContinue, match="more than 58 supports touch the wall"):
+        NativeDrilling(bha, BitRock(10.0, 1.0, 0.02), Survey((0.0, 40.0), (1.5, 1.5)), active_weight_on_bit=2e4)
 
 
 def test_a_weight_that_grows_on_the_way_beyond_what_the_bha_bears_is_refused_with_the_limit() -> None:

@@ -165,7 +165,7 @@ static inline Status begin(Integrator *p, const Survey *survey, ScaledInputs inp
     find_places(now, &p->scaled, now->xi);
     if (p->scaled.points) start_noting(now);
     if (restart(p, inputs, x, heading.angle, problem) != DONE) {
-        wrong(problem, NO_START, Q_PARAMETERS, 0, NAN, NAN);
+        if (problem->code == NOT_FINITE) wrong(problem, NO_START, Q_PARAMETERS, 0, NAN, NAN);
         return FAILED;
     }
     read_sensors(p, now->xi);
