@@ -4,8 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from boreprop.analysis.ellipse import NEARLY_VERTICAL
-from boreprop.analysis.hole_in_space import positions_in_space
+from boreprop.analysis.hole_in_space import NEARLY_VERTICAL, positions_in_space
 from boreprop.run.trajectory import Trajectory
 
 from .scene import Array, Bounds

@@ -15,6 +15,7 @@ from ..run.trajectory import Trajectory
 from .hole import POINTS_BEHIND, Hole, HoleAxis
 
 STRAIGHT = 1e-9  # rad: a piece that turns by less is straight, since rounding decides to which side it turns
+NEARLY_VERTICAL = np.radians(3.0)  # up to here the high side says little, and directions count from north
 UPRIGHT = 1e-9  # a direction whose horizontal part is less has no azimuth
 
 
@@ -142,3 +143,20 @@ def azimuth_of(direction: Floats) -> Floats:
     north, east = direction[..., 0], direction[..., 1]
     azimuth = np.mod(np.arctan2(east, north), 2 * np.pi)
     return np.where(np.hypot(north, east) > UPRIGHT, azimuth, np.nan)
+
+
+def turned_to(azimuth: Floats, other: Floats) -> Floats:
+    """How far azimuths are from others, rad, from −π to π."""
+    return np.mod(azimuth - other + np.pi, 2 * np.pi) - np.pi
+
+
+def sides(forward: Floats) -> tuple[Floats, Floats]:
+    """The high side and the right of directions, looking along them, shape (..., 3) each.
+
+    Within `NEARLY_VERTICAL` of the vertical they are the sides to the north and to the right of that.
+    """
+    vertical = inclination_of(forward) < NEARLY_VERTICAL
+    towards = np.where(vertical[..., None], (1.0, 0.0, 0.0), (0.0, 0.0, -1.0))
+    across = towards - np.sum(towards * forward, axis=-1, keepdims=True) * forward
+    high = across / np.linalg.norm(across, axis=-1, keepdims=True)
+    return high, np.cross(forward, high)

@@ -13,10 +13,7 @@ from ..arrays import Floats
 from ..case.tables import read_survey
 from ..core.survey import Survey
 from ..errors import InputError
-from ..run.completion import case_of
-from ..run.trajectory import Trajectory
-from .hole import HoleAxis, SurveyedHole, chord_inclination, hole_of
-from .hole_in_space import is_in_space
+from .hole import HoleAxis, SurveyedHole, chord_inclination
 
 ROUNDING = 1e-6  # m of measured depth: a hole that goes on this little beyond its plan ends with it
 
@@ -106,23 +103,3 @@ def deviation_from(plan: SurveyedHole, hole: HoleAxis, length: Floats, over: flo
         inclination=np.where(outside, np.nan, chord_inclination(hole, length, over) - planned),
         planned_inclination=np.where(outside, np.nan, planned),
     )
-
-
-def check_in_plane_of_plan(run: Trajectory) -> None:
-    """Raise `InputError` if a run is in space, for a plan lies in a plane."""
-    if is_in_space(run):
-        raise InputError(
-            "plan: must be left out for a run in space, got one (--stations lists the run with its azimuth)"
-        )
-
-
-def deviation_of(run: Trajectory, plan: SurveyedHole, over: float) -> Deviation:
-    """How far each row of a run is off its plan, see `deviation_from`.
-
-    Raises
-    ------
-    InputError
-        If the run lacks its case, or is in space.
-    """
-    check_in_plane_of_plan(run)
-    return deviation_from(plan, hole_of(run, case_of(run).survey, over), run["drilled_length"], over)

@@ -11,10 +11,20 @@ from numpy.typing import NDArray
 
 from ..arrays import Floats
 from ..core.survey import Survey
-from .ellipse import NEARLY_VERTICAL
-from .hole import LEAST_SLOPE, MOST_STEPS, NEAREST, HoleAxis
-from .hole_in_space import SurveyInSpace, azimuth_of, chord_direction, inclination_of
-from .plan import ROUNDING, check_reach
+from ..run.completion import case_of
+from ..run.trajectory import Trajectory
+from .hole import LEAST_SLOPE, MOST_STEPS, NEAREST, HoleAxis, SurveyedHole, hole_of
+from .hole_in_space import (
+    NEARLY_VERTICAL,
+    SurveyInSpace,
+    azimuth_of,
+    chord_direction,
+    hole_in_space,
+    inclination_of,
+    is_in_space,
+    turned_to,
+)
+from .plan import ROUNDING, Deviation, check_reach, deviation_from, planned_hole
 
 
 @dataclass(frozen=True)
@@ -82,7 +92,7 @@ def deviation_in_space(plan: SurveyInSpace, hole: HoleAxis, length: Floats, over
     sine = np.linalg.norm(right, axis=-1)
     right = right / np.where(sine > np.sin(NEARLY_VERTICAL), sine, np.nan)[:, None]
     now, planned = chord_direction(hole, length, over), chord_direction(plan, length, over)
-    walked = np.mod(azimuth_of(now) - azimuth_of(planned) + np.pi, 2 * np.pi) - np.pi
+    walked = turned_to(azimuth_of(now), azimuth_of(planned))
     inclined = np.minimum(inclination_of(now), inclination_of(planned)) > NEARLY_VERTICAL
     reached = (length >= plan.length[0] - ROUNDING) & (length <= plan.length[-1] + ROUNDING)
 
@@ -98,3 +108,24 @@ def deviation_in_space(plan: SurveyInSpace, hole: HoleAxis, length: Floats, over
         planned_inclination=known(inclination_of(planned)),
         planned_azimuth=known(azimuth_of(planned), inclination_of(planned) > NEARLY_VERTICAL),
     )
+
+
+def plan_of(run: Trajectory, plan: Survey) -> SurveyedHole | SurveyInSpace:
+    """The planned hole of a run with its case, by `planned_in_space` of one in space, else by `planned_hole`."""
+    survey = case_of(run).survey
+    return planned_in_space(plan, survey) if is_in_space(run) else planned_hole(plan, survey.measured_depth[-1])
+
+
+def off_plan(
+    plan: SurveyedHole | SurveyInSpace, hole: HoleAxis, length: Floats, over: float
+) -> Deviation | DeviationInSpace:
+    """How far a hole is off its plan, by `deviation_in_space` of one in space, else by `deviation_from`."""
+    if isinstance(plan, SurveyInSpace):
+        return deviation_in_space(plan, hole, length, over)
+    return deviation_from(plan, hole, length, over)
+
+
+def deviation_of(run: Trajectory, plan: SurveyedHole | SurveyInSpace, over: float) -> Deviation | DeviationInSpace:
+    """How far each row of a run with its case is off its plan, see `off_plan`."""
+    of_run = hole_in_space if is_in_space(run) else hole_of
+    return off_plan(plan, of_run(run, case_of(run).survey, over), run["drilled_length"], over)
