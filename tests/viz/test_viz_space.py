@@ -295,6 +295,8 @@ def test_a_plan_is_shown_from_all_sides_and_the_run_measured_against_it(turning:
         )
     }
     assert list(shown.values()) == pytest.approx([distance, right, 70.0], abs=2e-4)
+    [[listed]] = static(saved, "stations", "TextDocument:text")
+    assert f"| {right:+.2f} |" in listed
     said = read(saved, "verdict", "TextDocument:text")[40_000][0]
     assert f"; {distance:.1f} m off the plan, " in said
     assert said.endswith(f", {abs(right):.1f} m {'right' if right > 0 else 'left'}")
