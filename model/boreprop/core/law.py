@@ -9,12 +9,12 @@ touch which wall, tilt saturated or not) only sin⟨Θ⟩_1 is not linear.
 from math import inf
 from typing import NamedTuple
 
-from .inputs import Inputs
+from .inputs import SAME, Inputs
 from .linear import dot, ratio, total
 from .modes import Loads, Mode, Modes, Regime, Row
 from .radau import Jacobian
 
-LONGEST_RAMP = 0.1  # by which share ηΠ changes within a step, at most: it then takes about six iterations
+LONGEST_RAMP = 0.1  # by which share ηΠ, χΠ or ψ* changes within a step, at most: it then takes about six iterations
 
 
 class Linear(NamedTuple):
@@ -115,18 +115,19 @@ class Law:
     def __init__(self, modes: Modes, regime: Regime, inputs: Inputs, xi: float) -> None:
         mode, eta_pi = modes[regime.contact], inputs.eta_pi
         self.s = modes.scaled.s  # the delays
-        self.xi, self.ramp = xi, inputs.ramp  # where it is made; whether inputs change
-        self.growth = inputs.eta_pi_slope / eta_pi  # of ηΠ per ξ, over ηΠ at `xi`
-        self.longest = LONGEST_RAMP / abs(self.growth) if self.growth else inf  # step under a changing ηΠ
+        self.xi, self.inputs = xi, inputs  # where it is made; the inputs there
+        self.changes = inputs.law_changes  # along the way
+        self.longest = LONGEST_RAMP / inputs.growth if self.changes else inf  # step of a law that changes
         self.bounds = [
             Bound(bound.part, Linear.of(bound.row, self.s, inputs, bound.scale), bound.lower, bound.upper)
             for bound in regime.bounds(modes, eta_pi, inputs.psi_star)
         ]
         psi = self.bounds[0].value  # without saturation
-        self.saturated, self._tilt = regime.saturation != 0, self.bounds[0].part
-        self.theta_rate = Linear.of(mode.M, self.s, inputs, ratio(1, inputs.epsilon * eta_pi))
+        self.saturation, self._tilt = regime.saturation, self.bounds[0].part
+        self.theta_rate = Linear.of(mode.M, self.s, inputs, ratio(1, inputs.chi_pi))
         if regime.saturation:
-            self.Theta = Linear(1.0, 0.0, (0.0,) * len(self.s), 0.0, -regime.saturation * inputs.psi_star)
+            side, nothing = regime.saturation, (0.0,) * len(self.s)
+            self.Theta = Linear(1.0, 0.0, nothing, 0.0, -side * inputs.psi_star, -side * inputs.psi_star_slope)
         else:
             less = tuple(-c for c in psi.delayed)
             self.Theta = Linear(1.0 - psi.theta, -psi.Y, less, -psi.g, -psi.constant, -psi.slope)
@@ -146,7 +147,7 @@ class Law:
     def frozen(
         self, theta: float, Y: float, delayed: list[list[float]], sines: list[float], aheads: list[float]
     ) -> tuple[list[float], list[float]]:
-        """θ' and Y' along a step with (θ, Y) frozen at its start, where ηΠ does not change."""
+        """θ' and Y' along a step with (θ, Y) frozen at its start, of a law that does not change."""
         rates = self.theta_rate.frozen(theta, Y, delayed, sines, aheads)
         return rates, self.Theta.frozen(theta, Y, delayed, sines, aheads)
 
@@ -158,23 +159,30 @@ class Law:
         sines: list[float],
         aheads: list[float],
     ) -> tuple[list[float], list[float]]:
-        """θ' and Y' along a step. M and F_0 are divided by ηΠ, which may change."""
+        """θ' and Y' along a step. M is divided by χΠ, F_0 by ηΠ, which may change."""
         rates = self.theta_rate.along(thetas, Ys, delayed, sines, aheads)
         Thetas = self.Theta.along(thetas, Ys, delayed, sines, aheads)
-        ratios = [self.eta_pi_ratio(ahead) for ahead in aheads]
-        rates = [rate * p for rate, p in zip(rates, ratios)]
-        if not self.saturated:
+        own = self.inputs
+        rates = [rate * own.chi_pi / own.chi_pi_at(ahead) for rate, ahead in zip(rates, aheads)]
+        if not self.saturation:
+            ratios = [own.eta_pi / own.eta_pi_at(ahead) for ahead in aheads]
             Thetas = [theta + p * (Theta - theta) for theta, Theta, p in zip(thetas, Thetas, ratios)]
         return rates, Thetas
 
-    def eta_pi_ratio(self, ahead: float) -> float:
-        """ηΠ at `xi` over that a length `ahead` of there."""
-        return 1 / (1 + self.growth * ahead)
+    def bounded_ratio(self, bound: Bound, ahead: float) -> float:
+        """By what a bounded value, as under the inputs at `xi`, is multiplied a length `ahead` of there.
+
+        F_0/(ηΠ) is bounded by the ψ* at `xi`: so it is multiplied by the ηΠψ* there over that ahead.
+        """
+        own = self.inputs
+        if not self.changes or bound.part != self._tilt:
+            return 1.0
+        return own.eta_pi * own.psi_star / (own.eta_pi_at(ahead) * own.psi_star_at(ahead))
 
     def bounded_at(self, bound: Bound, xi: float, theta: float, Y: float, delayed: list[float], sine: float) -> float:
         """The value that a bound is on, at one place."""
         value = bound.value.at(theta, Y, delayed, sine, xi - self.xi)
-        return value * self.eta_pi_ratio(xi - self.xi) if self.growth and bound.part == self._tilt else value
+        return value * self.bounded_ratio(bound, xi - self.xi)
 
     def bounded_along(
         self,
@@ -187,8 +195,8 @@ class Law:
     ) -> list[float]:
         """The value that a bound is on, along a step."""
         values = bound.value.along(thetas, Ys, delayed, sines, aheads)
-        if self.growth and bound.part == self._tilt:
-            values = [value * self.eta_pi_ratio(ahead) for value, ahead in zip(values, aheads)]
+        if self.changes:
+            values = [value * self.bounded_ratio(bound, ahead) for value, ahead in zip(values, aheads)]
         return values
 
 
@@ -208,10 +216,12 @@ class Laws:
 def bend(law: Law, mode: Mode, loads: Loads, before: Inputs, inputs: Inputs) -> float:
     """The jump of Θ' = θ' − ψ' where a slope of the inputs, or ε, changes; `law` is that beyond it."""
     jump = 0.0
-    if inputs.epsilon != before.epsilon:  # θ' = M/(εηΠ)
+    if abs(inputs.epsilon - before.epsilon) > SAME * before.epsilon:  # θ' = M/(εηΠ)
         jump = law.Theta.theta * mode.M(loads) / inputs.eta_pi * (1 / inputs.epsilon - 1 / before.epsilon)
     force, stiffness = inputs.F_rss_slope - before.F_rss_slope, inputs.eta_pi_slope - before.eta_pi_slope
-    if (force or stiffness) and not law.saturated:  # (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ
+    if law.saturation:
+        jump -= law.saturation * (inputs.psi_star_slope - before.psi_star_slope)
+    elif force or stiffness:  # (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ
         psi = mode.F_0(loads) / inputs.eta_pi
         jump -= (force * mode.F_0.rss - stiffness * psi) / inputs.eta_pi
     return jump

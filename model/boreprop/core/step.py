@@ -85,8 +85,8 @@ def try_step(law: Law, hole: Hole, xi: float, h: float, theta: float, Y: float, 
     average = Y - delayed[0][0]
     sine = Sine(average, sin(average), cos(average))
     J = law.jacobian(sine)
-    aheads = [xi - law.xi + t * h for t in radau.POINTS] if law.ramp else []
-    if law.growth:
+    aheads = [xi - law.xi + t * h for t in radau.POINTS] if law.inputs.ramp else []
+    if law.changes:
         return _try_ramp(law, J, Trial(Step(xi, h, (theta,), (Y,), xi + h), [], [], delayed, [], aheads, inf), options)
     frozen = sine.linear([Y - Y_1 for Y_1 in delayed[0]])
     allowed = (LESS_REST if law.xi > 0.0 else REST) * options.relative_tolerance * (abs(law.theta_rate.theta) + 1 / h)
@@ -132,7 +132,7 @@ def _error(
 
 
 def _try_ramp(law: Law, J: radau.Jacobian, trial: Trial, options: Options) -> Trial:
-    """A trial under a changing ηΠ, given its place and the delayed hole.
+    """A trial of a law that changes, given its place and the delayed hole.
 
     What the Jacobian, which is that at the start, neglects is added to the right-hand side until it is small. Where it
     does not become small, the error is made intolerable.

@@ -96,11 +96,11 @@ static inline double shortest_step(const Integrator *p, double xi) {
     return p->options.smallest_step * larger(1.0, xi);
 }
 
-/* The law of the next step. Under a changing ηΠ each step has its own, made where it starts. */
+/* The law of the next step. Where it changes along the way each step has its own, made where it starts. */
 static inline const Law *present_law(Integrator *p) {
     const State *now = &p->now;
     if (p->law_known) return &p->law;
-    double xi = now->inputs.eta_pi_slope == 0 ? now->inputs_xi : now->step.end;
+    double xi = law_changes(&now->inputs) ? now->step.end : now->inputs_xi;
     ScaledInputs inputs = inputs_ahead(now->inputs, xi - now->inputs_xi);
     make_law(&p->law, &p->scaled, &now->places, &p->modes, now->regime, inputs, xi);
     p->law_known = 1;

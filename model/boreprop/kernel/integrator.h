@@ -234,7 +234,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     if (!has_room(p)) return FULL;
     read_sensors(p, last.end);
     int kink = leave(p, &last, x);
-    if (now->inputs.eta_pi_slope != 0) p->law_known = 0;
+    if (law_changes(&now->inputs)) p->law_known = 0;
     Plan plan = first_plan(&last, kink, present_law(p), p->options.layers);
     Status status = find_step(p, last.end, x, &plan, &trial, problem);
     if (status == DONE && p->scaled.points) status = keep_clear(p, &last, kink, x, &plan, &trial, problem);
