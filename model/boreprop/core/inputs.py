@@ -1,12 +1,12 @@
 """The inputs of the integrator: what acts on the bit besides the hole, constant or changing along the way."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from math import sqrt
 from typing import NamedTuple, TypedDict, cast
 
 from .quantities import SLOPES
 
-SAME = 1e-12  # relative: ramps that differ by less at both ends of a way, and half way, differ by rounding
+SAME = 1e-12  # relative: what differs by less differs by rounding
 
 
 class Slopes(TypedDict, total=False):
@@ -96,8 +96,13 @@ class Inputs(NamedTuple):
         """Whether other inputs are the same along a way."""
         if not self.ramp and not other.ramp:
             return self == other
-        places = [(self.ahead(at)[:4], other.ahead(at)[:4]) for at in (0.0, way / 2, way)]
-        most = [SAME * max(map(abs, values)) for values in zip(*(theirs for _, theirs in places), strict=True)]
-        return all(
-            abs(a - b) <= limit for ours, theirs in places for a, b, limit in zip(ours, theirs, most, strict=True)
-        )
+        for (a, a_slope, a_curve), (b, b_slope, b_curve) in zip(self._ramps(), other._ramps(), strict=True):
+            end = b + way * (b_slope + way * b_curve)
+            off = abs(a - b) + way * (abs(a_slope - b_slope) + way * abs(a_curve - b_curve))
+            if not off <= SAME * max(abs(b), abs(end)):
+                return False
+        return True
+
+    def _ramps(self) -> Iterator[tuple[float, float, float]]:
+        """Each of them with its changes per ξ and per ξ²."""
+        return zip(self[:4], self[4:8], (0.0, self.eta_pi_curve, self.chi_pi_curve, 0.0), strict=True)

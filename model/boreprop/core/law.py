@@ -16,6 +16,8 @@ from .radau import Jacobian
 
 LONGEST_RAMP = 0.1  # by which share ηΠ, χΠ or ψ* changes within a step, at most: it then takes about six iterations
 
+Ratios = tuple[list[float], list[float]]  # of M/χΠ and of F_0/(ηΠ), at the points
+
 
 class Linear(NamedTuple):
     """A `Row` under given inputs, on the state.
@@ -158,31 +160,36 @@ class Law:
         delayed: list[list[float]],
         sines: list[float],
         aheads: list[float],
+        ratios: Ratios,
     ) -> tuple[list[float], list[float]]:
-        """θ' and Y' along a step. M is divided by χΠ, F_0 by ηΠ, which may change."""
+        """θ' and Y' along a step of a law that changes."""
         rates = self.theta_rate.along(thetas, Ys, delayed, sines, aheads)
         Thetas = self.Theta.along(thetas, Ys, delayed, sines, aheads)
+        rates = [rate * p for rate, p in zip(rates, ratios[0])]
+        return rates, [theta + p * (Theta - theta) for theta, Theta, p in zip(thetas, Thetas, ratios[1])]
+
+    def ratios_along(self, aheads: list[float]) -> Ratios:
+        """Of a law that changes, by what M/χΠ and F_0/(ηΠ) as under its inputs are multiplied along a step."""
         own = self.inputs
-        rates = [rate * own.chi_pi / own.chi_pi_at(ahead) for rate, ahead in zip(rates, aheads)]
-        if not self.saturation:
-            ratios = [own.eta_pi / own.eta_pi_at(ahead) for ahead in aheads]
-            Thetas = [theta + p * (Theta - theta) for theta, Theta, p in zip(thetas, Thetas, ratios)]
-        return rates, Thetas
+        eta = [1.0 if self.saturation else own.eta_pi / own.eta_pi_at(ahead) for ahead in aheads]
+        return [own.chi_pi / own.chi_pi_at(ahead) for ahead in aheads], eta
 
-    def bounded_ratio(self, bound: Bound, ahead: float) -> float:
-        """By what a bounded value, as under the inputs at `xi`, is multiplied a length `ahead` of there.
+    def tilt_ratio(self, ahead: float) -> float:
+        """By what F_0/(ηΠ), as under the inputs of a law that changes, is multiplied a length `ahead` of there.
 
-        F_0/(ηΠ) is bounded by the ψ* at `xi`: so it is multiplied by the ηΠψ* there over that ahead.
+        It is then bounded there as well by the ψ* of these inputs: it is their ηΠψ* over that ahead.
         """
         own = self.inputs
-        if not self.changes or bound.part != self._tilt:
-            return 1.0
         return own.eta_pi * own.psi_star / (own.eta_pi_at(ahead) * own.psi_star_at(ahead))
+
+    def _is_on_ramp(self, bound: Bound) -> bool:
+        """Whether a bounded value is to be multiplied by that."""
+        return self.changes and bound.part == self._tilt
 
     def bounded_at(self, bound: Bound, xi: float, theta: float, Y: float, delayed: list[float], sine: float) -> float:
         """The value that a bound is on, at one place."""
         value = bound.value.at(theta, Y, delayed, sine, xi - self.xi)
-        return value * self.bounded_ratio(bound, xi - self.xi)
+        return value * self.tilt_ratio(xi - self.xi) if self._is_on_ramp(bound) else value
 
     def bounded_along(
         self,
@@ -195,8 +202,8 @@ class Law:
     ) -> list[float]:
         """The value that a bound is on, along a step."""
         values = bound.value.along(thetas, Ys, delayed, sines, aheads)
-        if self.changes:
-            values = [value * self.bounded_ratio(bound, ahead) for value, ahead in zip(values, aheads)]
+        if self._is_on_ramp(bound):
+            values = [value * self.tilt_ratio(ahead) for value, ahead in zip(values, aheads)]
         return values
 
 

@@ -38,7 +38,7 @@ typedef struct {
 
 /* The right-hand side in one regime under given inputs, and the bounds within which it holds. */
 typedef struct {
-    int count, n, saturated, axial, stands;
+    int count, n, saturated, axial, stands, changes;
     const Modes *modes;
     double s_1, s_n, y_star[MAX_STABILIZERS], walk_cosine, walk_sine;
     ScaledInputs inputs;
@@ -87,7 +87,8 @@ static inline void make_law(
     law->modes = modes, law->inputs = inputs, law->inputs_xi = inputs_xi, law->bound_count = 0;
     law->s_1 = scaled->s[0], law->s_n = scaled->s[n - 1];
     law->walk_cosine = cos(inputs.walk), law->walk_sine = sin(inputs.walk);
-    law->longest = law_changes(&inputs) ? LONGEST_RAMP / growth_of(&inputs) : INFINITY;
+    law->changes = law_changes(&inputs);
+    law->longest = law->changes ? LONGEST_RAMP / growth_of(&inputs) : INFINITY;
     law->M = linear_of(&mode->M, places), law->F_0 = linear_of(&mode->F_0, places);
     law->touching = touching_of(modes, regime.contact);
     for (int i = 0; i < n - 1; i++) {
@@ -162,7 +163,7 @@ static inline int law_here(
     const Law *law, const double x[COMPONENTS], double ahead, const View *view, const Behind *behind,
     const double first[2], double s_1, int slopes, Reply *at
 ) {
-    ScaledInputs inputs = inputs_ahead(law->inputs, ahead);
+    ScaledInputs inputs = inputs_ahead(&law->inputs, ahead);
     int n = law->n, m = law->touching.touching;
     double a[2], eta_pi = at->eta_pi = inputs.eta_pi, by_F_0[2][2], answer[MOST_TOUCHING][MOST_TOUCHING];
     at->psi_star = inputs.psi_star;

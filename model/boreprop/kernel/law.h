@@ -120,13 +120,15 @@ static inline void make_law(
     find_gains(law);
 }
 
-/* By what a bounded value, as under the inputs of a law that changes, is multiplied a length `ahead` of where they were
-   taken over. F_0/(ηΠ) is bounded by the ψ* there: so it is multiplied by the ηΠψ* there over that ahead. */
-static inline double bounded_ratio(const Law *law, const Bound *bound, double ahead) {
+/* By what F_0/(ηΠ), as under the inputs of a law that changes, is multiplied a length `ahead` of where they were taken
+   over, to be bounded there as well by the ψ* of these: by their ηΠψ* over that ahead. */
+APART static double tilt_ratio(const Law *law, double ahead) {
     const ScaledInputs *own = &law->inputs;
-    if (bound->part != law->last) return 1.0;
     return own->eta_pi * own->psi_star / (eta_pi_at(own, ahead) * psi_star_at(own, ahead));
 }
+
+/* Whether a bounded value is to be multiplied by it. */
+static inline int is_on_ramp(const Law *law, const Bound *bound) { return law->changes && bound->part == law->last; }
 
 /* A bounded value at one place of a trial step. */
 static inline double law_at(
@@ -139,7 +141,7 @@ static inline double law_at(
     double value = f->theta * x[ANGLE] + f->Y * x[LATERAL] + f->g * sine + f->constant;
     for (int i = 0; i < law->count; i++) value += f->delayed[i] * delayed[i][0];
     value += f->slope * (xi - law->inputs_xi);
-    return law->changes ? value * bounded_ratio(law, bound, xi - law->inputs_xi) : value;
+    return is_on_ramp(law, bound) ? value * tilt_ratio(law, xi - law->inputs_xi) : value;
 }
 
 /* Add the terms of all places but the first, and that of a force which changes along the step. */
@@ -162,7 +164,8 @@ static inline void linear_along(const Linear *f, int count, const Trial *trial, 
 /* A bounded value at the points of a trial step. */
 static inline void law_along(const Law *law, const Bound *bound, const Trial *trial, double values[POINTS]) {
     linear_along(&bound->value, law->count, trial, values);
-    for (int k = 0; k < POINTS && law->changes; k++) values[k] *= bounded_ratio(law, bound, trial->ahead[k]);
+    if (!is_on_ramp(law, bound)) return;
+    for (int k = 0; k < POINTS; k++) values[k] *= tilt_ratio(law, trial->ahead[k]);
 }
 
 /* The same of a part of the right-hand side, with (θ, Y) frozen at the start of the step. */
@@ -224,15 +227,31 @@ static inline void sines_along(const Law *law, Trial *trial) {
     for (int k = 0; k < POINTS; k++) trial->sines[k] = sin(law->axial ? theta[k] : Y[k] - Y_1[k]);
 }
 
-/* θ' and Y' at the points of a trial step of a law that changes: M is divided by χΠ, F_0 by ηΠ. */
-static inline void rates_along(const Law *law, const Trial *trial, double theta_rate[POINTS], double Theta[POINTS]) {
-    const double *theta = trial->x[ANGLE], *ahead = trial->ahead;
+/* Of a law that changes, by what M/χΠ and F_0/(ηΠ) as under its inputs are multiplied at the points of a trial step. */
+typedef struct {
+    double M[POINTS], F_0[POINTS];
+} Ratios;
+
+static inline Ratios ratios_along(const Law *law, const Trial *trial) {
     const ScaledInputs *own = &law->inputs;
+    Ratios ratios;
+    for (int k = 0; k < POINTS; k++) {
+        ratios.M[k] = own->chi_pi / chi_pi_at(own, trial->ahead[k]);
+        ratios.F_0[k] = law->saturated ? 1.0 : own->eta_pi / eta_pi_at(own, trial->ahead[k]);
+    }
+    return ratios;
+}
+
+/* θ' and Y' at the points of a trial step of a law that changes. */
+static inline void rates_along(
+    const Law *law, const Ratios *ratios, const Trial *trial, double theta_rate[POINTS], double Theta[POINTS]
+) {
+    const double *theta = trial->x[ANGLE];
     linear_along(&law->theta_rate, law->count, trial, theta_rate);
     linear_along(&law->Theta, law->count, trial, Theta);
     for (int k = 0; k < POINTS; k++) {
-        theta_rate[k] *= own->chi_pi / chi_pi_at(own, ahead[k]);
-        if (!law->saturated) Theta[k] = theta[k] + own->eta_pi / eta_pi_at(own, ahead[k]) * (Theta[k] - theta[k]);
+        theta_rate[k] *= ratios->M[k];
+        Theta[k] = theta[k] + ratios->F_0[k] * (Theta[k] - theta[k]);
     }
 }
 
@@ -246,16 +265,17 @@ APART static int collocate_on_ramp(
 ) {
     double h = trial->step.h, *theta = trial->x[ANGLE], *Y = trial->x[LATERAL];
     double rate[POINTS], Theta[POINTS], allowed = REST * options->relative_tolerance;
+    Ratios ratios = ratios_along(law, trial);
     for (int k = 0; k < POINTS; k++) theta[k] = x[ANGLE], Y[k] = x[LATERAL];
     sines_along(law, trial);
-    rates_along(law, trial, f_theta, f_Y);
+    rates_along(law, &ratios, trial, f_theta, f_Y);
     for (int iteration = 0; iteration < RAMP_ITERATIONS; iteration++) {
         double off_theta = 0.0, off_Y = 0.0;
         collocate(h, J, f_theta, f_Y, parts_theta, parts_Y);
         radau_values(x[ANGLE], parts_theta, theta);
         radau_values(x[LATERAL], parts_Y, Y);
         sines_along(law, trial);
-        rates_along(law, trial, rate, Theta);
+        rates_along(law, &ratios, trial, rate, Theta);
         for (int k = 0; k < POINTS; k++) {
             double moved_theta = theta[k] - x[ANGLE], moved_Y = Y[k] - x[LATERAL];
             rate[k] -= f_theta[k] + J.theta_theta * moved_theta + J.theta_Y * moved_Y;

@@ -66,7 +66,7 @@ static inline double earlier_inclination(Integrator *p, double xi) {
     }
     double ahead = larger(xi - at->start, 0.0), x[COMPONENTS];
     for (int c = 0; c < COMPONENTS; c++) x[c] = polynomial(at->x[c], ahead * at->rate);
-    ScaledInputs inputs = inputs_ahead(at->inputs, ahead);
+    ScaledInputs inputs = inputs_ahead(&at->inputs, ahead);
     Loads loads = loads_at(p, at->start + ahead, x, inputs.F_rss);
     bear(p, inputs.W);
     double Theta = inclination_under(p, x[ANGLE], &loads, inputs);

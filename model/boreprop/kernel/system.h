@@ -187,7 +187,10 @@ typedef struct {
 #endif
 } ScaledInputs;
 
-/* ηΠ, χΠ and ψ* a length `ahead` of where inputs were taken over. */
+/* F_RSS, ηΠ, χΠ and ψ* a length `ahead` of where inputs were taken over. */
+static inline double F_rss_at(const ScaledInputs *inputs, double ahead) {
+    return inputs->F_rss + ahead * inputs->F_rss_slope;
+}
 static inline double eta_pi_at(const ScaledInputs *inputs, double ahead) {
     return inputs->eta_pi + ahead * (inputs->eta_pi_slope + ahead * inputs->eta_pi_curve);
 }
@@ -198,13 +201,28 @@ static inline double psi_star_at(const ScaledInputs *inputs, double ahead) {
     return inputs->psi_star + ahead * inputs->psi_star_slope;
 }
 
-/* The inputs a length `ahead` of where they were taken over. */
-static inline ScaledInputs inputs_ahead(ScaledInputs inputs, double ahead) {
-    inputs.F_rss += inputs.F_rss_slope * ahead;
-    inputs.eta_pi = eta_pi_at(&inputs, ahead), inputs.eta_pi_slope += 2 * ahead * inputs.eta_pi_curve;
-    inputs.chi_pi = chi_pi_at(&inputs, ahead), inputs.chi_pi_slope += 2 * ahead * inputs.chi_pi_curve;
-    inputs.psi_star = psi_star_at(&inputs, ahead);
-    return inputs;
+/* Whether more of the inputs changes along the way than the force, so that the law is another from place to place. */
+static inline int law_changes(const ScaledInputs *inputs) {
+    return inputs->eta_pi_slope != 0 || inputs->chi_pi_slope != 0 || inputs->psi_star_slope != 0 ||
+           inputs->eta_pi_curve != 0 || inputs->chi_pi_curve != 0;
+}
+
+/* Whether inputs change along the way. */
+static inline int are_ramps(const ScaledInputs *inputs) { return inputs->F_rss_slope != 0 || law_changes(inputs); }
+
+/* Let inputs be those a length `ahead` of where they were taken over. */
+static inline void go_ahead(ScaledInputs *inputs, double ahead) {
+    if (!are_ramps(inputs)) return;
+    inputs->F_rss = F_rss_at(inputs, ahead), inputs->psi_star = psi_star_at(inputs, ahead);
+    inputs->eta_pi = eta_pi_at(inputs, ahead), inputs->eta_pi_slope += 2 * ahead * inputs->eta_pi_curve;
+    inputs->chi_pi = chi_pi_at(inputs, ahead), inputs->chi_pi_slope += 2 * ahead * inputs->chi_pi_curve;
+}
+
+/* The inputs there. */
+static inline ScaledInputs inputs_ahead(const ScaledInputs *inputs, double ahead) {
+    ScaledInputs there = *inputs;
+    go_ahead(&there, ahead);
+    return there;
 }
 
 /* ε = χ/η. */
@@ -221,44 +239,36 @@ static inline int aims_anew(const ScaledInputs *inputs, const ScaledInputs *befo
 #endif
 }
 
-/* Whether more of the inputs changes along the way than the force, so that the law is another from place to place. */
-static inline int law_changes(const ScaledInputs *inputs) {
-    return inputs->eta_pi_slope != 0 || inputs->chi_pi_slope != 0 || inputs->psi_star_slope != 0 ||
-           inputs->eta_pi_curve != 0 || inputs->chi_pi_curve != 0;
-}
-
-/* Whether inputs change along the way. */
-static inline int are_ramps(const ScaledInputs *inputs) { return inputs->F_rss_slope != 0 || law_changes(inputs); }
-
 /* The largest share per ξ by which ηΠ, χΠ or ψ* changes, at first and at most on a short way. */
 static inline double growth_of(const ScaledInputs *inputs) {
-    double eta = fabs(inputs->eta_pi_slope / inputs->eta_pi) + sqrt(fabs(inputs->eta_pi_curve / inputs->eta_pi));
-    double chi = fabs(inputs->chi_pi_slope / inputs->chi_pi) + sqrt(fabs(inputs->chi_pi_curve / inputs->chi_pi));
+    double eta = fabs(inputs->eta_pi_slope / inputs->eta_pi), chi = fabs(inputs->chi_pi_slope / inputs->chi_pi);
+    if (inputs->eta_pi_curve != 0) eta += sqrt(fabs(inputs->eta_pi_curve / inputs->eta_pi));
+    if (inputs->chi_pi_curve != 0) chi += sqrt(fabs(inputs->chi_pi_curve / inputs->chi_pi));
     return larger(larger(eta, chi), fabs(inputs->psi_star_slope / inputs->psi_star));
 }
 
-#define SAME 1e-12 /* relative: ramps that differ by less at both ends of a way, and half way, differ by rounding */
+#define SAME 1e-12 /* relative: what differs by less differs by rounding */
 
 /* Whether ε is another, not by rounding. */
 static inline int turns_anew(const ScaledInputs *inputs, const ScaledInputs *before) {
     return fabs(epsilon(inputs) - epsilon(before)) > SAME * epsilon(before);
 }
 
+/* Whether ramps of one value are the same along a way. */
+static inline int same_ramp(
+    double a, double a_slope, double a_curve, double b, double b_slope, double b_curve, double way
+) {
+    double end = b + way * (b_slope + way * b_curve);
+    double off = fabs(a - b) + way * (fabs(a_slope - b_slope) + way * fabs(a_curve - b_curve));
+    return off <= SAME * larger(fabs(b), fabs(end));
+}
+
 /* Whether two sets of inputs, of which one is a ramp, are the same along a way. */
-static inline int same_ramps(ScaledInputs a, ScaledInputs b, double way) {
-    double off[4] = {0}, scale[4] = {0};
-    for (int k = 0; k <= 2; k++) {
-        ScaledInputs x = inputs_ahead(a, k * way / 2), y = inputs_ahead(b, k * way / 2);
-        double ours[4] = {x.F_rss, x.eta_pi, x.chi_pi, x.psi_star};
-        double theirs[4] = {y.F_rss, y.eta_pi, y.chi_pi, y.psi_star};
-        for (int i = 0; i < 4; i++) {
-            off[i] = larger(off[i], fabs(ours[i] - theirs[i]));
-            scale[i] = larger(scale[i], fabs(theirs[i]));
-        }
-    }
-    for (int i = 0; i < 4; i++)
-        if (!(off[i] <= SAME * scale[i])) return 0;
-    return 1;
+static inline int same_ramps(const ScaledInputs *a, const ScaledInputs *b, double way) {
+    return same_ramp(a->F_rss, a->F_rss_slope, 0.0, b->F_rss, b->F_rss_slope, 0.0, way) &&
+           same_ramp(a->eta_pi, a->eta_pi_slope, a->eta_pi_curve, b->eta_pi, b->eta_pi_slope, b->eta_pi_curve, way) &&
+           same_ramp(a->chi_pi, a->chi_pi_slope, a->chi_pi_curve, b->chi_pi, b->chi_pi_slope, b->chi_pi_curve, way) &&
+           same_ramp(a->psi_star, a->psi_star_slope, 0.0, b->psi_star, b->psi_star_slope, 0.0, way);
 }
 
 /* λ_i: distance from stabilizer i−1 (the bit) to stabilizer i, counted from 0 here. */
