@@ -20,8 +20,8 @@ HARDER = (1.0, 0.4, 2.5)  # factors on η
 COLUMNS = ("bit_inclination", "borehole_inclination", "bit_tilt", "stabilizer_force[1]", "displacement")
 
 
-def rock(case: Case, how: str = "held", **factors: tuple[float, ...]) -> Case:
-    """The case with properties of bit and rock that are so many times its own at `LENGTHS`, held or linear."""
+def rock(case: Case, **factors: tuple[float, ...]) -> Case:
+    """The case with properties of bit and rock that are so many times its own at `LENGTHS`."""
     own = {
         "lateral_steering_resistance": case.bit.lateral_steering_resistance,
         "angular_steering_resistance": case.bit.angular_steering_resistance,
@@ -29,12 +29,17 @@ def rock(case: Case, how: str = "held", **factors: tuple[float, ...]) -> Case:
         "active_weight_on_bit": case.active_weight_on_bit,
     }
     inputs = tuple((name, tuple(own[name] * factor for factor in row)) for name, row in factors.items())
-    return replace(case, inputs=InputSchedule(LENGTHS, inputs, how))
+    return replace(case, inputs=InputSchedule(LENGTHS, inputs))
 
 
-OTHERS = {"angular_steering_resistance": (1.0, 1.3, 0.7), "bit_tilt_limit": (1.0, 0.2, 0.6)}
-INTERBEDDED = rock(CASE, lateral_steering_resistance=HARDER, **OTHERS)
-GRADUAL = rock(CASE, "linear", lateral_steering_resistance=HARDER, **OTHERS)
+INTERBEDDED = rock(
+    CASE,
+    lateral_steering_resistance=HARDER,
+    angular_steering_resistance=(1.0, 1.3, 0.7),
+    bit_tilt_limit=(1.0, 0.2, 0.6),
+)
+assert INTERBEDDED.inputs is not None
+GRADUAL = replace(INTERBEDDED, inputs=replace(INTERBEDDED.inputs, interpolation="linear"))
 HELD_OR_LINEAR = pytest.mark.parametrize("case", [INTERBEDDED, GRADUAL], ids=["held", "linear"])
 
 

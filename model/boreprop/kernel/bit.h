@@ -166,11 +166,11 @@ static inline Loads loads_at(const Integrator *p, double xi, const double x[COMP
 }
 
 /* The steering force with the bit at `xi`, ahead of where the inputs were taken over. */
-static inline double force_at(const State *now, double xi) {
-    return F_rss_at(&now->inputs, xi - now->inputs_xi);
-}
+static inline double force_at(const State *now, double xi) { return F_rss_at(&now->inputs, xi - now->inputs_xi); }
 
 /* The inputs where the bit is. */
-static inline ScaledInputs inputs_here(const State *now) { return inputs_ahead(&now->inputs, now->xi - now->inputs_xi); }
+static inline ScaledInputs inputs_here(const State *now) {
+    return inputs_ahead(&now->inputs, now->xi - now->inputs_xi);
+}
 
 #endif
