@@ -304,7 +304,8 @@ def test_slopes_of_force_weight_and_rock_are_many_small_steps_of_them() -> None:
     ramp.advance(4.0, 2e-3, 0.3, rss_force_slope=1e-3, active_weight_on_bit_slope=0.02, **slope_of_rock, **aim)
     for start in np.arange(0.0, 4.0, 0.01):
         middle = start + 0.005
-        bit = BitRock(*np.add(own, np.multiply(slopes, middle)).tolist(), walk_angle=given.walk)
+        eta, chi, limit = np.add(own, np.multiply(slopes, middle)).tolist()
+        bit = BitRock(eta, chi, limit, given.walk)
         stairs.advance(start + 0.01, 2e-3 + 1e-3 * middle, 0.3 + 0.02 * middle, bit=bit, **aim)
     assert direction(stairs.outputs(), "bit") == pytest.approx(direction(ramp.outputs(), "bit"), abs=2e-6)
 
