@@ -11,6 +11,7 @@ from boreprop.case.case import Case, InputSchedule, Profile, Schedule
 from boreprop.case.paper import paper_case
 from boreprop.core.quantities import ACTING, IN_SPACE_ONLY, ROCK
 from boreprop.run.course import Course, acting, course_of
+from boreprop.run.ground import on_rows
 from boreprop.run.simulate import simulate
 
 
@@ -64,3 +65,10 @@ def test_a_run_has_a_column_for_each_input_that_its_case_schedules() -> None:
     assert run["rss_force"].tolist() == [0.0, 1e3, 1e3, 1e3, 1e3]
     assert run["active_weight_on_bit"].tolist() == [2e3, 3e3, 4e3, 4e3, 4e3]
     assert run["rate_of_penetration"].tolist() == [0.01, 0.01, 0.02, 0.02, 0.02]  # always held
+
+
+def test_rock_along_a_run_that_has_no_column_of_it_is_what_its_case_schedules() -> None:
+    lengths = np.array([0.0, 1.0, 4.0, 7.0])
+    schedule = InputSchedule((0.0, 4.0), (("bit_tilt_limit", (0.02, 0.01)),), "linear")
+    case = replace(paper_case(), inputs=schedule)
+    assert on_rows(case, {"drilled_length": lengths}, "bit_tilt_limit").tolist() == [0.02, 0.0175, 0.01, 0.01]
