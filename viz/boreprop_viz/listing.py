@@ -45,7 +45,7 @@ class Listing:
 
     def _log(self, source: Source, run: Trajectory, verdict: Verdict) -> None:
         start = source.case.survey.measured_depth[-1]
-        plan = None if self.plan is None else SurveyedHole.of(self.plan, start)
+        plan = None if self.plan is None or source.spatial else SurveyedHole.of(self.plan, start)
         over = averaging_length(source.case.bha, verdict.told)
         found = list_stations(run, BUILD_LENGTH, plan, averaged_over=over)
         heading = [[text.replace("\n", " ") for text in headings(found)], ["---:"] * len(headings(found))]
