@@ -237,7 +237,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     if (!has_room(p)) return FULL;
     read_sensors(p, last.end);
     int kink = leave(p, &last, x);
-    if (now->inputs.eta_pi_slope != 0) p->law_known = 0;
+    if (p->law.changes) p->law_known = 0;
     Plan plan = first_plan(&last, kink, present_law(p), p->options.layers);
     Status status = find_step(p, last.end, x, &plan, &trial, problem);
     if (status == DONE && p->scaled.points) status = keep_clear(p, &last, kink, x, &plan, &trial, problem);
@@ -249,7 +249,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
         larger(plan.h < plan.resumed ? plan.resumed : 0.0, plan.h * smaller(growth(trial.error), LARGEST_GROWTH));
     step_state(step, step->end, end);
     if (turns_over(present_law(p), &trial, end)) return failed(p, TURNS_OVER, step->end, problem);
-    append(&now->hole, step, inputs_ahead(now->inputs, last.end - now->inputs_xi));
+    append(&now->hole, step, &now->inputs, last.end - now->inputs_xi);
     if (kink <= SMOOTHEST_KINK)
         add_kink(&now->kinks, p->scaled.n, last.end, kink, step_jump(&last, step, kink, last.end));
     now->accepted++;
