@@ -295,9 +295,18 @@ def test_a_plan_is_shown_from_all_sides_and_the_run_measured_against_it(turning:
         )
     }
     assert list(shown.values()) == pytest.approx([distance, right, 70.0], abs=2e-4)
+    [[listed]] = static(saved, "stations", "TextDocument:text")
+    assert f"| {right:+.2f} |" in listed
     said = read(saved, "verdict", "TextDocument:text")[40_000][0]
     assert f"; {distance:.1f} m off the plan, " in said
     assert said.endswith(f", {abs(right):.1f} m {'right' if right > 0 else 'left'}")
+
+
+def test_a_plan_without_azimuths_is_refused_where_runs_start_in_different_directions(
+    spiral: Trajectory, turning: Trajectory, tmp_path: Path
+) -> None:
+    with pytest.raises(InputError, match=r"azimuth of the plan: must be given.*add a column azimuth_deg"):
+        record({"a": spiral, "b": turning}, plan=Survey((0.0, 100.0), (0.0, 0.1)), save=tmp_path / "x.rrd")
 
 
 def test_a_run_of_a_single_row_is_drawn(turning: Trajectory, tmp_path: Path) -> None:

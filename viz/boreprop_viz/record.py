@@ -206,7 +206,7 @@ class Drawing:
 
 
 def scales_in_space(sources: Sequence[Source], plan: Survey | None) -> Scales:
-    """The scales of runs in space; `InputError` if one of them is in the plane."""
+    """The scales of runs in space; `InputError` if one is in the plane, or a plan lies in no plane of all."""
     in_plane = [source.name for source in sources if not source.spatial]
     if in_plane:
         raise InputError(
@@ -214,6 +214,12 @@ def scales_in_space(sources: Sequence[Source], plan: Survey | None) -> Scales:
         )
     ahead = [source.likely_positions_in_space() for source in sources]
     if plan is not None:
+        azimuths = {source.case.survey.azimuth[-1:] or (0.0,) for source in sources}
+        if not plan.azimuth and len(azimuths) > 1:
+            raise InputError(
+                "azimuth of the plan: must be given with runs that start in different directions, got none: "
+                "add a column azimuth_deg"
+            )
         ahead += planned_paths(plan, sources)
     return choose_scales_in_space(
         [source.beginning for source in sources],

@@ -7,6 +7,16 @@
 /* Whether contacts are searched for among all supports; those of a uniform beam follow from the last ones. */
 static inline int lands(const Integrator *p) { return p->scaled.stepped; }
 
+/* Say what was in the way of contacts of a beam under an axial load, with the bit at `place`, m. */
+APART static Status no_contacts(
+    Code code, const Scaled *scaled, Axial axial, double force_scale, double tolerance, double place, Problem *problem
+) {
+    if (code != BUCKLES) return met(problem, code, code == TOO_CROWDED ? (double)MAX_WATCHED : tolerance, place);
+    double most = buckling_weight(scaled, axial.cosine) * force_scale;
+    wrong(problem, BUCKLES, Q_WEIGHT_ON_BIT, 0, axial.W * force_scale, most);
+    return FAILED;
+}
+
 /* Find all contacts of a BHA whose body may touch the wall, with the bit at `xi`, where the last step ends, in the state
    `x`. Points that are watched stay so. */
 static inline Status touch_down(Integrator *p, double xi, const double x[COMPONENTS], Problem *problem) {
@@ -23,8 +33,11 @@ static inline Status touch_down(Integrator *p, double xi, const double x[COMPONE
         hole_at_point(p, &p->now.step, xi, k, &nearer, Y);
         bent.e[n + k] = x[LATERAL] - Y[0] - p->scaled.s[n + k] * x[ANGLE];
     }
-    if (!search(&p->modes, &bent, points, &contact))
-        return met(problem, TOO_CROWDED, MAX_WATCHED, xi * p->length_scale);
+    Code code = search(&p->modes, &bent, points, &contact);
+    if (code) {
+        double tolerance = p->options.relative_tolerance, place = xi * p->length_scale;
+        return no_contacts(code, &p->scaled, p->modes.axial, p->force_scale, tolerance, place, problem);
+    }
     for (int k = 0; k < now->watched && contact.watched < MAX_WATCHED; k++)
         if (place_of(&contact, n, now->point[k]) < 0) watch(&contact, n, now->point[k], 0);
     change_places(p, contact, xi);

@@ -7,7 +7,7 @@
 /* A bounded value, from what the law has said. */
 static inline double bounded_value(const Law *law, const Bound *bound, const Reply *at) {
     int i = bound->part;
-    if (i == law->n - 1) return length_of(at->F_0) / at->eta_pi;
+    if (i == law->n - 1) return length_of(at->F_0) / at->eta_pi * (law->inputs.psi_star / at->psi_star);
     double delta[2] = {at->q[i][0], at->q[i][1]};
     int support = support_at(&law->contact, law->n, i);
     for (int k = 0; k < law->touching.touching; k++) {

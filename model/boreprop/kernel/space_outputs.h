@@ -4,8 +4,9 @@
 
 /* What the outputs are computed from: the state where the bit is. */
 typedef struct {
-    double l1, F_star, eta_pi, path[AXES], T[AXES], earlier[DIRECTIONS], x[COMPONENTS];
+    double l1, F_star, path[AXES], T[AXES], earlier[DIRECTIONS], x[COMPONENTS];
     double high[DIRECTIONS]; /* the side from which parts of forces and tilt are counted, in (e₂, e₃) */
+    ScaledInputs inputs;
     Response is;
     double body_force[DIRECTIONS], body_place, wall_distance; /* the largest force, and where it acts; the least gap */
     Sensed sensed[MAX_SENSORS];
@@ -41,9 +42,9 @@ static inline Present present(Drilling *d) {
     const State *now = &p->now;
     Present at;
     at.l1 = length_scale(&d->system), at.F_star = force_scale(&d->system);
-    at.eta_pi = inputs_here(now).eta_pi;
+    at.inputs = inputs_here(now);
     step_state(&now->step, now->xi, at.x);
-    at.is = respond(p, at.x, inputs_here(now));
+    at.is = respond(p, at.x, at.inputs);
     high_side(&at.is.frame, at.high);
     position(now, at.path);
     const Piece *own = piece(&now->hole, find(&now->hole, now->xi - 1.0));
@@ -129,7 +130,7 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_EAST: return at->path[EAST] * l1;
         case OUT_DISPLACEMENT: return hypot(at->path[NORTH], at->path[EAST]) * l1;
         case OUT_TRUE_VERTICAL_DEPTH: return at->path[DOWN] * l1;
-        case OUT_ETA_PI: return at->eta_pi;
+        case OUT_ETA_PI: return at->inputs.eta_pi;
     }
     return NAN;
 }

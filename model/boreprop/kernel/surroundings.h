@@ -293,7 +293,7 @@ static inline void choose_watched(Integrator *p, double xi) {
 }
 
 /* Watch every point that a trial step has brought through the wall unwatched, with the step to be tried again from `xi`;
-   returns how many there are, or −1 if there is no room. */
+   returns how many there are, or −1 if there is no room for all, and then none is. */
 static inline int watch_beyond(Integrator *p, double xi) {
     int n = p->scaled.n, found = 0;
     Contact contact = p->now.regime.contact;
