@@ -13,6 +13,7 @@ from boreprop.case.case import Case
 from boreprop.core.errors import ParameterError
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
+from boreprop.kernel.binding import available
 from boreprop.kernel.space import SpaceDrilling
 from reference.spatial import Drilling, System, tilted
 from spirals import paper_spiral
@@ -113,6 +114,7 @@ def test_a_spiral_is_a_steady_state_of_a_simulation_in_space() -> None:
         np.testing.assert_allclose(drilling.row().Theta, [turned.real, turned.imag], atol=1e-3 * found.hole_inclination)
 
 
+@pytest.mark.skipif(not available(), reason="the kernel is not built")
 @pytest.mark.parametrize("walk_deg", [0.0, 5.0])
 def test_a_simulation_that_starts_on_a_spiral_keeps_its_pitch_and_radius(walk_deg: float) -> None:
     """Its inclination is small, as the closed form takes it: a radius is less by a sixth of the square of that."""
