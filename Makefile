@@ -70,6 +70,9 @@ clean:
 		"Python 3.11 or later is needed, got " + v + "; name one: make PYTHON=python3.11 $(MAKECMDGOALS)")'
 	@echo 'Installing into .venv: a minute or two the first time'
 	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check uv || echo 'no uv: pip takes a minute longer'
+	export HATCH_BUILD_NO_HOOKS=true UV_SYSTEM_CERTS=true; \
+	$(BIN)/uv pip install --quiet --python $(BIN)/python --editable ".[$*]" || \
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[$*]"
 	@touch $@
 

@@ -1,30 +1,23 @@
-"""The wheels that are looked at: that for this machine, or with ``--wheels FOLDER`` all that `build_wheels.py` made.
+"""The archives that are looked at: with ``--wheels FOLDER`` all that `build_wheels.py` made there; else none.
 
-`target` is the platform of each, one after the other.
+`target` is the platform of each wheel, one after the other.
 """
 
-import os
-import subprocess
-import sys
 import zipfile
 from pathlib import Path
 
 import pytest
 
-from boreprop.kernel.compiler import PLATFORMS, host_platform
-from places import ROOT
-
-WHOLE = {"test_archives.py", "test_elsewhere.py", "test_installed.py"}  # minutes, which only `make wheels` takes
+from boreprop.kernel.compiler import PLATFORMS
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    return True if collection_path.name in WHOLE and not config.getoption("--wheels") else None
+    return True if collection_path.name == "wheels" and not config.getoption("--wheels") else None
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "target" in metafunc.fixturenames:
-        here = [name for name in [host_platform()] if name]
-        metafunc.parametrize("target", PLATFORMS if metafunc.config.getoption("--wheels") else here, scope="session")
+        metafunc.parametrize("target", PLATFORMS, scope="session")
 
 
 @pytest.fixture(scope="session")
@@ -34,18 +27,10 @@ def archives(request: pytest.FixtureRequest) -> Path:
 
 
 @pytest.fixture(scope="session")
-def wheel(request: pytest.FixtureRequest, target: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The wheel for a platform; without ziglang its tests are skipped."""
-    if request.config.getoption("--wheels"):
-        folder: Path = request.getfixturevalue("archives")
-        (found,) = folder.glob(f"*-{PLATFORMS[target].tag}.whl")
-        return found
-    pytest.importorskip("ziglang")
-    folder = tmp_path_factory.mktemp("wheel")
-    command = [sys.executable, "-m", "hatchling", "build", "--target", "wheel", "--directory", str(folder)]
-    subprocess.run(command, cwd=ROOT, env=os.environ | {"BOREPROP_PLATFORM": target}, check=True)
-    (made,) = folder.iterdir()
-    return made
+def wheel(archives: Path, target: str) -> Path:
+    """The wheel for a platform."""
+    (found,) = archives.glob(f"*-{PLATFORMS[target].tag}.whl")
+    return found
 
 
 @pytest.fixture(scope="session")

@@ -16,7 +16,7 @@ from hypothesis.internal.conjecture import providers
 
 from boreprop.case.case import Case
 from boreprop.case.file import load_case
-from boreprop.kernel import binding
+from boreprop.kernel import binding, compiler
 from boreprop.kernel.compiler import NoCompilerError, build_library, host_platform
 from boreprop_fmu.native.binaries import BINARIES, LAWS, binary_path, build_binaries, compile_binary, is_compiled
 from boreprop_fmu.pack.build import build_fmu
@@ -117,6 +117,12 @@ def binaries(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
         except NoCompilerError as error:
             pytest.skip(str(error))
     return BINARIES
+
+
+@pytest.fixture
+def compiling_quickly(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is compiled is not optimized: for tests of what is in a library, not of what it computes."""
+    monkeypatch.setattr(compiler, "FLAGS", tuple("-O0" if flag == "-O3" else flag for flag in compiler.FLAGS))
 
 
 @pytest.fixture(scope="session")

@@ -30,13 +30,14 @@ host = partial(report, "fmu_host")
 
 @pytest.fixture(scope="module")
 def steered(case: Case) -> Case:
-    """The paper's case in a hole that turns, steered to sides, with a bit that walks from a depth on."""
+    """The paper's case in a hole that turns, steered to sides, with a bit that walks to the left and from a depth on to the right."""
     return replace(
         case,
+        bit=replace(case.bit, walk_angle=radians(-3.0)),
         length=30.0,
         survey=Survey((0.0, 5.0, 12.0), (0.2, 0.25, 0.3), (0.1, 0.2, 0.4)),
         schedule=Schedule((0.0, 9.9, 17.0), (3e3, 6e3, 2e3), "held", (0.4, 1.7, -2.0), ("gravity", "north", "frame")),
-        inputs=InputSchedule((0.0, 5.0), (("bit_walk_angle", (0.0, radians(4.0))),)),
+        inputs=InputSchedule((0.0, 5.0), (("bit_walk_angle", (radians(-3.0), radians(4.0))),)),
     )
 
 

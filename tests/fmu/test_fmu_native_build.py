@@ -196,6 +196,7 @@ def test_the_command_says_what_is_inside_and_what_is_not(binaries: Path, command
     assert sorted(inside + missing) == sorted(PLATFORMS)
 
 
+@pytest.mark.usefixtures("compiling_quickly")
 def test_two_compilations_give_the_same_bytes(binaries: Path, tmp_path: Path) -> None:
     pytest.importorskip("ziglang")
     platform = str(host_platform())
@@ -203,6 +204,7 @@ def test_two_compilations_give_the_same_bytes(binaries: Path, tmp_path: Path) ->
     assert once == again
 
 
+@pytest.mark.usefixtures("compiling_quickly")
 def test_compiling_takes_away_what_is_of_other_sources(tmp_path: Path) -> None:
     stale = binary_path("win64", tmp_path)
     stale.parent.mkdir()

@@ -210,6 +210,7 @@ X86_64, ARM64 = 0x01000007, 0x0100000C
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("compiling_quickly")
 @pytest.mark.parametrize(("platform", "processors"), [("darwin64", [X86_64, ARM64]), ("aarch64-darwin", [ARM64])])
 def test_for_a_mac_it_exports_fmi_to_either_processor(unpack: Unpack, platform: str, processors: list[int]) -> None:
     folder = unpack_or_skip(unpack, platform)

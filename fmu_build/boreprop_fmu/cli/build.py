@@ -48,7 +48,7 @@ def build_command(
     case, chosen = open_case(case_file, in_plane=False), None if platforms is None else _chosen(platforms)
     if runtime != "python":
         _compile_missing(chosen or [])
-    if not case.in_space and (warning := steadily_outside(case)):
+    if warning := steadily_outside(case):
         console.warn(f"{case_file}: {warning}")
     build_fmu(case, output, runtime=runtime, name=name, platforms=chosen, binaries=BINARIES)
     with ZipFile(output) as archive:

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import sysconfig
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from hashlib import sha256
 from importlib.util import find_spec
@@ -168,11 +169,16 @@ def compile_library(
             environment["ZIG_GLOBAL_CACHE_DIR"] = str(draft / "cache")
         compiles = [["-c", str(path), "-o", f"{path.stem}.o"] for path in sources]
         link = ["-shared", *(f"{path.stem}.o" for path in sources), "-o", output.name, *compiler.links]
-        for task in (*compiles, link):
+
+        def run(task: list[str]) -> None:
             command = [*compiler.command, *flags, *task]
-            run = subprocess.run(command, cwd=draft, env=environment, capture_output=True, text=True, errors="replace")
-            if run.returncode:
-                raise CompilerError(f"{source}: must compile with {Path(command[0]).name}, got: {_gist(run.stderr)}")
+            done = subprocess.run(command, cwd=draft, env=environment, capture_output=True, text=True, errors="replace")
+            if done.returncode:
+                raise CompilerError(f"{source}: must compile with {Path(command[0]).name}, got: {_gist(done.stderr)}")
+
+        with ThreadPoolExecutor(len(compiles)) as pool:
+            list(pool.map(run, compiles))
+        run(link)
         os.replace(draft / output.name, output)
     return output
 

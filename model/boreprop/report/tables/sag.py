@@ -12,9 +12,9 @@ from ...units import UNITS, small_length
 def steadily_outside(case: Case) -> str:
     """The warning, if there is one, for drilling on steadily under the first force, at the inclination of the bit.
 
-    There is none where the wall bears the body of the BHA.
+    There is none where the wall bears the body of the BHA, nor in space, where the axis is not that of a plane.
     """
-    if case.bha.body_point_positions:
+    if case.bha.body_point_positions or case.in_space:
         return ""
     inclination = case.survey.inclination[-1]
     response = steady_response(case, case.schedule.rss_force[0], inclination)
