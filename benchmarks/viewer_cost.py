@@ -1,5 +1,5 @@
-"""What drawing costs: a long run into a file, and an FMU's run drawn while it is drilled or sent by a loop, beside the
-same one bare.
+"""What drawing costs, in the plane and in space: a long run into a file, and an FMU's run drawn while it is drilled or
+sent by a loop, beside the same one bare.
 
 python benchmarks/viewer_cost.py
 """
@@ -68,7 +68,7 @@ def main() -> None:
 
     with TemporaryDirectory() as name:
         folder = Path(name)
-        for case_name in ("paper_case", "build_section"):
+        for case_name in ("paper_case", "build_section", "spiral"):
             case = replace(load_case(CASES / f"{case_name}.toml"), length=LENGTH)
             write_trajectory(simulate(case, sample_interval=INTERVAL), folder / "run.csv")
             boreprop_view = Path(sysconfig.get_path("scripts"), "boreprop-view")

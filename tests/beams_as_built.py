@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import accumulate
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
+from boreprop.case.case import Case
 from boreprop.core.system import BottomHoleAssembly
 
 FOLDER = Path(__file__).parent / "reference_bha"
@@ -36,6 +38,19 @@ def reference_bha(name: str) -> BottomHoleAssembly:
         end_deflection=case["end_offset"],
         axial_load=case["axial"],
     )
+
+
+def in_sections(case: Case, lengths: tuple[float, ...], stiffnesses: tuple[float, ...]) -> Case:
+    """The case with a beam in sections of these stiffnesses."""
+    count = len(lengths)
+    bha = replace(
+        case.bha,
+        section_lengths=lengths,
+        section_flexural_stiffnesses=stiffnesses,
+        section_distributed_weights=(case.bha.distributed_weight,) * count,
+        section_outer_diameters=(0.0,) * count,
+    )
+    return replace(case, bha=bha)
 
 
 def rows(name: str) -> Iterator[dict[str, float]]:

@@ -40,6 +40,7 @@ pytest_plugins = ["built_wheels", "studies", "steering_cases", "native_fmu", "nu
 for name in ("CI", "COLUMNS", "FORCE_COLOR", "GITHUB_ACTIONS", "LINES", "NO_COLOR", "PY_COLORS", "TTY_COMPATIBLE"):
     os.environ.pop(name, None)
 os.environ.pop("SOURCE_DATE_EPOCH", None)  # and what an FMU says of its date
+os.environ["OPENBLAS_NUM_THREADS"] = "1"  # of the workers, each of which has a core: further threads would only wait
 
 
 # what commands are slow to import

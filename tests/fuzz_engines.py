@@ -1,6 +1,6 @@
 """Random drilling systems through both engines: none may fail numerically, and both must say the same.
 
-    python tests/fuzz_engines.py near-bit|wide|as-built [--cases N] [--minutes M] [--seed S] [--python K]
+    python tests/fuzz_engines.py SPACE [--cases N] [--minutes M] [--seed S] [--python K] [--processes P]
 
 The near-bit space is that of BHAs with a stabilizer 0.8 to 2 m behind the bit under a low weight, over 300 m, now and
 then over 8 km; the wide one is of all that the model takes, over 10 ℓ₁; the as-built one is of BHAs in sections whose
@@ -171,7 +171,7 @@ class Finding:
     """What became of one case."""
 
     number: int
-    stopped: str | None  # why the native engine stopped
+    stopped: str | None  # the code of why the native engine stopped
     fault: str | None = None  # what is wrong
     rows: int = 0  # compared with Python
     uncompared: int = 0  # rows beyond the place where a hair decides
@@ -182,13 +182,15 @@ def examine(space: str, seed: int, number: int, compared: bool) -> Finding:
     case, tolerance = draw(space, seed, number)
     try:
         run, failure = drilled(case, tolerance, "native", case.length / 10)
-        found = Finding(number, run.stopped)
+        found = Finding(number, failure.code if failure else None)
         if failure and failure.code not in EXPLAINED:
             found.fault = str(failure)
         elif not all(np.isfinite(column).all() for column in run.columns.values()):
             found.fault = "a column is not finite"
-        if (compared or run.stopped) and case.bha.structure.is_of_the_paper and not found.fault:
-            compare(case if run.stopped else replace(case, length=min(COMPARED, case.length)), tolerance, found)
+        if (compared or failure) and case.bha.structure.is_of_the_paper and not found.fault:
+            compare(case if failure else replace(case, length=min(COMPARED, case.length)), tolerance, found)
+    except CannotContinue as error:  # where the run starts
+        return Finding(number, error.problem.code, None if error.problem.code in EXPLAINED else str(error))
     except Exception as error:  # whatever it is, it is what is looked for
         return Finding(number, None, f"{type(error).__name__}: {error}")
     return found
@@ -251,12 +253,14 @@ def same_end(one: CannotContinue | None, other: CannotContinue | None) -> bool:
     return one.code == other.code and abs(one.place - other.place) <= AGREEMENT * max(one.place, 1.0)
 
 
-def findings(space: str, seed: int, numbers: Iterator[int], python: int, until: float) -> Iterator[Finding]:
-    """What becomes of the cases, as it is known, on two processes, until all are done or the time is over."""
-    with ProcessPoolExecutor(2) as pool:
+def findings(
+    space: str, seed: int, numbers: Iterator[int], python: int, until: float, processes: int
+) -> Iterator[Finding]:
+    """What becomes of the cases, as it is known, until all are done or the time is over."""
+    with ProcessPoolExecutor(processes) as pool:
         running: set[Future[list[Finding]]] = set()
         while True:
-            while len(running) < 4 and monotonic() < until and (batch := list(islice(numbers, BATCH))):
+            while len(running) < 2 * processes and monotonic() < until and (batch := list(islice(numbers, BATCH))):
                 running.add(pool.submit(examine_all, space, seed, batch, python))
             if not running:
                 return
@@ -287,22 +291,27 @@ def main() -> int:
     parser.add_argument("--minutes", type=float, default=float("inf"), help="start no case after so many")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--python", type=int, default=100, help="how many, the first, Python runs too")
+    parser.add_argument("--processes", type=int, default=2)
     given = parser.parse_args()
     if given.cases is None and given.minutes == float("inf"):
         parser.error("must be given --cases or --minutes")
     numbers = count() if given.cases is None else iter(range(given.cases))
     totals: Counter[str] = Counter()
-    for found in findings(given.space, given.seed, numbers, given.python, monotonic() + 60 * given.minutes):
+    stops: Counter[str] = Counter()
+    until = monotonic() + 60 * given.minutes
+    for found in findings(given.space, given.seed, numbers, given.python, until, given.processes):
         totals["cases"] += 1
         totals["failures"] += found.fault is not None
-        totals["turned over"] += found.stopped is not None and found.fault is None
+        if found.stopped and not found.fault:
+            stops[found.stopped] += 1
         totals["compared"] += found.rows > 0
         totals["cut short"] += found.uncompared > 0
         if found.fault:
             report(given.space, given.seed, found)
     print(
         f"{given.space}, seed {given.seed}: {totals['cases']} cases, {totals['failures']} failures; "
-        f"the bit turned over in {totals['turned over']}; {totals['compared']} in Python too, "
+        f"stopped: {', '.join(f'{code} {count}' for code, count in stops.most_common()) or 'none'}; "
+        f"{totals['compared']} in Python too, "
         f"{totals['cut short']} of them up to where a hair decides"
     )
     return 1 if totals["failures"] else 0

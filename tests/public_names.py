@@ -16,7 +16,9 @@ ANALYSES = (
     "stability_chart",
     "steady_response",
     "summarize",
+    "transverse_growth",
     "vary",
+    "walk_chart",
 )
 """Functions that take a case or a run first."""
 EXPLAINED = (*ANALYSES, "Trajectory", "load_case", "paper_case", "read_trajectory", "study")

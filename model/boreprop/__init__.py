@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from .analysis.hysteresis import hysteresis as hysteresis
     from .analysis.rippling import find_rippling as find_rippling
     from .analysis.spiral.closed_form import spiral as spiral
+    from .analysis.spiral.transverse import transverse_growth as transverse_growth
+    from .analysis.spiral.walking import walk_chart as walk_chart
     from .analysis.stability.chart import stability_chart as stability_chart
     from .analysis.stability.roots import critical_eta_pi as critical_eta_pi
     from .analysis.stability.roots import find_roots as find_roots
@@ -77,7 +79,9 @@ _HOMES = {  # public name → module
     "steady_response": "analysis.steering",
     "study": "analysis.study.compute",
     "summarize": "analysis.summary",
+    "transverse_growth": "analysis.spiral.transverse",
     "vary": "analysis.study.design",
+    "walk_chart": "analysis.spiral.walking",
     "write_trajectory": "run.results",
 }
 __all__ = [*_HOMES, "__version__"]

@@ -102,3 +102,8 @@ def test_a_hole_as_planned_is_not_off_its_plan_and_below_the_plan_nothing_is_sai
 def test_a_plan_that_does_not_include_the_start_is_refused() -> None:
     with pytest.raises(InputError, match=r"must include 90 m, where drilling starts, got 100 to 260"):
         planned_hole(Survey((100.0, 260.0), (0.1, 0.5)), start=90.0)
+
+
+def test_a_plan_that_turns_is_refused_in_the_plane() -> None:
+    with pytest.raises(InputError, match=r"must be the same everywhere for a run in the plane.*--dimensions 3"):
+        planned_hole(Survey((100.0, 260.0), (0.1, 0.5), (0.0, 0.5)), start=150.0)

@@ -5,6 +5,7 @@ from math import pi
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -69,6 +70,12 @@ def test_a_case_written_reads_back_the_same(case: Case) -> None:
         bit=replace(bit, tilt_limit=case.bit.tilt_limit),
         survey=replace(survey, inclination=case.survey.inclination),
     )
+
+
+def test_a_case_made_with_numpy_is_written_like_another(case: Case) -> None:
+    bit = replace(case.bit, walk_angle=np.radians(2.0), tilt_limit=np.float64(0.02))
+    made = replace(case, bit=bit, active_weight_on_bit=np.float64(2e3))
+    assert parse_case(dump_case(made), SOURCE) == made
 
 
 @given(st.integers(-180_000_000, 180_000_000))

@@ -57,4 +57,4 @@ def test_a_command_says_so_in_one_line(command_here: Command, tmp_path: Path) ->
     (tmp_path / "walks.toml").write_text(with_walk("10.0"), encoding="utf-8")
     done = command_here("boreprop", "steering", "walks.toml")
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
-    assert "bit_walk_angle: must be 0" in done.stderr
+    assert "bit.walk_angle_deg: must be 0" in done.stderr

@@ -51,18 +51,21 @@ def test_commands_that_take_the_papers_beam_refuse_others_in_one_line(case_file:
 
 
 @pytest.mark.parametrize("case_file", ["sections and axial load"], indirect=True)
-def test_roots_and_stability_take_sections_and_axial_load(case_file: Path, command_here: Command) -> None:
+def test_roots_stability_and_spiral_take_sections_and_axial_load(case_file: Path, command_here: Command) -> None:
     roots = command_here("boreprop", "roots", case_file, "--all", "--json")
     assert [mode["verdict"] for mode in json.loads(roots.stdout)] == ["stable", "drift"]
     stability = command_here(
         "boreprop", "stability", case_file, "--eta-pi", "0.01:0.3:4", "--lambda2", "0.5:1.5:3", "--output", "chart.png"
     )
     assert stability.returncode == 0, stability.stderr
+    spiral = command_here("boreprop", "spiral", case_file, "--json")
+    assert json.loads(spiral.stdout)["straight_growth"] < 0
 
 
 @pytest.mark.parametrize("case_file", ["all"], indirect=True)
-def test_roots_and_stability_refuse_body_contact_in_one_line(case_file: Path, command_here: Command) -> None:
-    for name, *options in (("roots",), ("roots", "--contact", "1"), ("stability", "--output", "chart.png")):
+def test_roots_stability_and_spiral_refuse_body_contact_in_one_line(case_file: Path, command_here: Command) -> None:
+    commands = ("roots",), ("roots", "--contact", "1"), ("stability", "--output", "chart.png"), ("spiral",)
+    for name, *options in commands:
         assert_refused(command_here("boreprop", name, case_file, *options), "bha.body_contact", "simulate")
 
 

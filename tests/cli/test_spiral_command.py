@@ -8,7 +8,7 @@ from matplotlib.image import imread
 
 from boreprop.analysis.spiral.closed_form import spiral
 from boreprop.case.file import load_case
-from conftest import Command
+from conftest import Command, assert_refused
 from places import EXAMPLES
 
 
@@ -67,6 +67,12 @@ def test_it_draws_a_chart_over_the_walk_angle(command_here: Command, tmp_path: P
     assert done.returncode == 0
     assert "chart.png: up to which ηΠ holes spiral" in done.stdout
     assert imread(tmp_path / "chart.png")[..., :3].std() > 0.05
+
+
+def test_the_ripple_of_a_bit_that_walks_is_refused(command_here: Command, walking: Path) -> None:
+    assert_refused(
+        command_here("boreprop", "spiral", walking, "--ripple"), "--ripple: must be left out for a bit that walks"
+    )
 
 
 def test_a_wrong_picture_is_refused(command_here: Command, tmp_path: Path, paper_case: Path) -> None:

@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from boreprop.analysis.plan import deviation_of, planned_hole
+from boreprop.analysis.plan import planned_hole
+from boreprop.analysis.plan_in_space import deviation_of
 from boreprop.analysis.stations import list_stations
 from boreprop.analysis.summary import summarize
 from boreprop.case.case import Case

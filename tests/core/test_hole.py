@@ -59,7 +59,7 @@ def drilled(parts: list[tuple[float, tuple[float, ...]]]) -> tuple[Hole, float]:
     """A hole with continuous Y made of random pieces, and where it ends."""
     hole, xi, Y = Hole(Survey((0.0,), (0.0,)), 1.0, REACH), 0.0, 0.0
     for width, rest in parts:
-        hole.append(xi, width, (Y, *rest), Drilled((0.0,) * 6, Inputs(0.0, 1.0, 0.0, 0.0, 0.1, 0.02)))
+        hole.append(xi, width, (Y, *rest), Drilled((0.0,) * 6, Inputs(0.0, 1.0, 0.1, 0.02)))
         xi, Y = xi + width, Y + sum(rest)
     return hole, xi
 

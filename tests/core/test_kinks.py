@@ -11,6 +11,7 @@ from numpy.polynomial import Polynomial
 
 from boreprop.core import radau
 from boreprop.core.kinks import Kinks, harm_of
+from boreprop.core.options import Options
 
 S = (1.0, 1.7, 2.9)
 GAINS = [1.0, 1.0, 1.0]
@@ -69,6 +70,22 @@ def test_a_step_may_pass_over_a_jump_that_changes_it_by_less_than_the_tolerance(
     change = 5.0 * 1e-3 * 0.4**2 / 2
     assert kinks.next_kink(0.9, 0.4, [5.0], harm, 1.01 * change) == inf
     assert kinks.next_kink(0.9, 0.4, [5.0], harm, 0.99 * change) == 1.0
+
+
+@given(places, st.floats(1e-3, 10.0))
+def test_among_many_kinks_a_step_goes_as_far_as_any_of_half_the_length_or_less(jumps: list[float], h: float) -> None:
+    """And it passes none that it must not."""
+    kinks, options = Kinks(S), Options()
+    for xi in sorted(jumps):
+        kinks.add_images(xi, 1, 1e-3)
+    lengths = [h / 2**k for k in range(40)]
+    length, way = kinks.reach(0.5, h, GAINS, options, True)
+    harm = harm_of(length, options.theta_weight, True)
+    assert kinks.next_kink(0.5, min(length, way), GAINS, harm, options.relative_tolerance) == inf
+    for other in lengths:
+        harm = harm_of(other, options.theta_weight, True)
+        far = kinks.next_kink(0.5, 2 * other, GAINS, harm, options.relative_tolerance) - 0.5
+        assert min(length, way) >= min(other, far) / 2
 
 
 @pytest.mark.parametrize("order", [1, 2, 3])

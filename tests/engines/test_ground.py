@@ -102,6 +102,29 @@ def test_rows_lie_anywhere_in_layers(engine: str) -> None:
     assert_same(few, many, 16)
 
 
+def test_a_resistance_that_is_scheduled_changes_evenly_through_layers_and_wear(engine: str) -> None:
+    lengths, etas = (0.0, 8.0, 20.0), (10.0, 30.0, 5.0)
+    ramp = InputSchedule(lengths, (("lateral_steering_resistance", etas),), "linear")
+    chis = ((1.7, 0.4), (3.1, 2.0))
+    layers = tuple(replace(layer(depth, chi=chi), lateral_steering_resistance=None) for depth, chi in chis)
+    case = replace(LAYERED, formations=layers, inputs=ramp)
+    run, few = (simulate(case, engine=engine, sample_interval=interval) for interval in (0.125, 1.0))
+    eta, blunt = np.interp(run["drilled_length"], lengths, etas), np.minimum(20.0 * run["drilled_length"], 250.0)
+    np.testing.assert_allclose(run["lateral_steering_resistance"], eta, rtol=1e-12)
+    weight = run["active_weight_on_bit"] - blunt
+    np.testing.assert_allclose(run["eta_pi"], eta * weight / case.bha.force_scale, rtol=1e-12)
+    assert set(run["formation"]) == {0.0, 1.0, 2.0}
+    assert_same(few, run, 8)
+
+
+def test_no_layer_stands_in_for_what_changes_along_the_way(engine: str) -> None:
+    """Not where it has the value for which one does, either."""
+    run = start(LAYERED, engine, Options(), LAYERED.ground)
+    eta = LAYERED.bit.lateral_steering_resistance
+    run.advance(4.0, 5e3, 2e3, lateral_steering_resistance_slope=0.5)
+    assert run.outputs()["eta_pi"] == pytest.approx((eta + 2.0) * (2e3 - 80.0) / LAYERED.bha.force_scale, rel=1e-12)
+
+
 def test_a_run_has_the_rock_of_each_row(engine: str) -> None:
     """ηΠ = η (W − G)/F* and ψ = clip(F_0/(ηΠ), −ψ*, ψ*) with what the columns say of the row, (3), (10) and (11)."""
     run = simulate(LAYERED, engine=engine, sample_interval=0.05)

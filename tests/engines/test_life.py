@@ -47,7 +47,7 @@ THREE = Scaled((1.0, 1.7, 2.9), (1e-3, 1e-3), 0.16, 2.4e-3, 0.1, 0.03)
 
 
 def test_steps_end_on_the_images_of_a_force_jump(engine: str) -> None:
-    run = begin(engine, THREE, Survey((0.0,), (0.5,)), 0.0, 0.1)
+    run = begin(engine, THREE, Survey((0.0,), (0.5,)), 0.0, 0.1, relative_tolerance=1e-11)
     run.advance(5.0, 0.0, 0.1)
     run.advance(5.0, 2e-3, 0.1)
     ends = step_ends(run, 9.0)

@@ -1,6 +1,6 @@
 """Inputs that are linear in the drilled length, on either engine: the limit of ever finer stairs, wherever rows lie."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from math import pi
 from typing import Any, cast
@@ -14,7 +14,7 @@ from boreprop.case.case import Case, InputSchedule, Schedule
 from boreprop.case.paper import paper_case
 from boreprop.core.errors import CannotContinue, ParameterError
 from boreprop.core.options import Options
-from boreprop.core.quantities import ACTING, IN_SPACE_ONLY, ROCK
+from boreprop.core.quantities import ACTING, IN_SPACE_ONLY, ROCK, fields_of, values_of
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop.run.course import acting, course_of
@@ -26,33 +26,73 @@ LENGTH, ENTRIES = 20.0, np.array([0.0, 7.0, 13.0, 16.0])
 WATCHED = ("bit_inclination", "average_inclination[1]", "displacement")
 
 
-def ramps(case: Case, force: Any, weight: Any, stairs: int = 0) -> Case:
-    """A case under a force and a weight, N, at `ENTRIES`, linear in between; or held in the middle of stairs."""
+FORCE, WEIGHT = np.array([0.0, 3e3, -1e3, 2e3]), np.array([2e3, 8e3, 1e3, 5e3])
+ROCK_RAMPS = {
+    "lateral_steering_resistance": np.array([10.0, 25.0, 6.0, 8.0]),
+    "angular_steering_resistance": np.array([1.0, 0.6, 2.0, 1.5]),
+    "bit_tilt_limit": np.array([0.03, 2e-3, 0.02, 5e-4]),
+}
+EVERYTHING = {"active_weight_on_bit": WEIGHT, **ROCK_RAMPS}
+
+
+def ramps(case: Case, force: Any, inputs: Mapping[str, Any] = EVERYTHING, stairs: int = 0) -> Case:
+    """A case under a force, N, and other inputs at `ENTRIES`, linear in between; or held in the middle of stairs."""
     lengths = ENTRIES
     if stairs:
         lengths = np.linspace(0.0, LENGTH, stairs, endpoint=False)
-        force, weight = (np.interp(lengths + LENGTH / stairs / 2, ENTRIES, values) for values in (force, weight))
+        middle = lengths + LENGTH / stairs / 2
+        force = np.interp(middle, ENTRIES, force)
+        inputs = {name: np.interp(middle, ENTRIES, values) for name, values in inputs.items()}
     entries, how = tuple(lengths.tolist()), "held" if stairs else "linear"
-    inputs = InputSchedule(entries, (("active_weight_on_bit", tuple(weight)),), how)
-    return replace(case, schedule=Schedule(entries, tuple(force), how), inputs=inputs)
-
-
-FORCE, WEIGHT = np.array([0.0, 3e3, -1e3, 2e3]), np.array([2e3, 8e3, 1e3, 5e3])
+    others = InputSchedule(entries, tuple((name, tuple(values)) for name, values in inputs.items()), how)
+    return replace(case, schedule=Schedule(entries, tuple(force), how), inputs=others)
 
 
 @pytest.mark.usefixtures("kernel")
 @pytest.mark.parametrize(
-    ("force", "weight"), [(FORCE, WEIGHT), (0 * FORCE, WEIGHT), (FORCE, 0 * WEIGHT + 2e3)], ids=["both", "W", "F"]
+    ("force", "inputs"),
+    [
+        (FORCE, {"active_weight_on_bit": WEIGHT}),
+        (0 * FORCE, {"active_weight_on_bit": WEIGHT}),
+        (FORCE, {"active_weight_on_bit": 0 * WEIGHT + 2e3}),
+        *((0 * FORCE, {name: values}) for name, values in ROCK_RAMPS.items()),
+        (FORCE, EVERYTHING),
+    ],
+    ids=["F and W", "W", "F", "η", "χ", "ψ*", "all"],
 )
-def test_a_ramp_is_the_limit_of_ever_finer_stairs(case: Case, force: Any, weight: Any) -> None:
+def test_a_ramp_is_the_limit_of_ever_finer_stairs(case: Case, force: Any, inputs: Any) -> None:
     def drill(stairs: int) -> Trajectory:
-        return simulate(ramps(case, force, weight, stairs), length=LENGTH, relative_tolerance=1e-9, engine="native")
+        given_ = ramps(case, force, inputs, stairs)
+        return simulate(given_, length=LENGTH, relative_tolerance=1e-9, engine="native")
 
     run, coarse, fine = drill(0), drill(50), drill(800)
     for name in WATCHED:
         far, near = (np.abs(stairs[name] - run[name]).max() for stairs in (coarse, fine))
         assert near < 0.05 * far, name  # their square: 1/256, but for events
         assert near < 1e-5, name
+
+
+@pytest.mark.parametrize("name", ["lateral_steering_resistance", "bit_tilt_limit"])
+def test_tighter_tolerances_lead_to_the_same_hole_under_ramps(engine: str, case: Case, name: str) -> None:
+    given_ = ramps(case, FORCE, {name: ROCK_RAMPS[name]})
+    usual, tight = (
+        simulate(given_, length=LENGTH, sample_interval=0.5, relative_tolerance=tolerance, engine=engine)
+        for tolerance in (1e-7, 1e-10)
+    )
+    assert usual["bit_inclination"] == pytest.approx(tight["bit_inclination"], abs=2e-6)
+
+
+def test_rock_that_hardens_evenly_is_a_weight_that_grows_evenly(engine: str, case: Case) -> None:
+    """Both multiply ηΠ and χΠ, and nothing else."""
+    shares = np.array([1.0, 3.0, 0.5, 2.5])
+    rock = {name: shares * ROCK_RAMPS[name][0] for name in ROCK[:2]}
+    drilled_ = [
+        simulate(ramps(case, FORCE, inputs), length=LENGTH, sample_interval=0.5, engine=engine)
+        for inputs in (rock, {"active_weight_on_bit": shares * case.active_weight_on_bit})
+    ]
+    for output in (*WATCHED, "bit_tilt", "stabilizer_force[1]", "eta_pi"):
+        scale = max(1.0, float(np.abs(drilled_[1][output]).max()))
+        np.testing.assert_allclose(drilled_[0][output], drilled_[1][output], rtol=0, atol=1e-9 * scale, err_msg=output)
 
 
 @st.composite
@@ -66,6 +106,9 @@ def cases(draw: st.DrawFn) -> Case:
     how = draw(st.sampled_from(["held", "linear"])), draw(st.sampled_from(["held", "linear"]))
     entries = tuple(ENTRIES.tolist())
     weights = tuple(draw(st.lists(weight, min_size=4, max_size=4)))
+    ranges = {ROCK[0]: st.floats(3.0, 60.0), ROCK[1]: st.floats(0.3, 3.0), ROCK[2]: st.floats(2e-3, 0.05)}
+    some = draw(st.sets(st.sampled_from(ROCK)))
+    rock = [(name, tuple(draw(st.lists(ranges[name], min_size=4, max_size=4)))) for name in ROCK if name in some]
     return Case(
         bha=BottomHoleAssembly(
             positions,
@@ -74,13 +117,13 @@ def cases(draw: st.DrawFn) -> Case:
             draw(st.floats(0.0, 2e3)),
             draw(st.floats(2e6, 5e7)),
         ),
-        bit=BitRock(draw(st.floats(3.0, 60.0)), draw(st.floats(0.3, 3.0)), draw(st.floats(2e-3, 0.05))),
+        bit=BitRock(*(draw(ranges[name]) for name in ROCK)),
         bit_diameter=0.2159,
         active_weight_on_bit=weights[0],
         length=LENGTH,
         survey=Survey((0.0, 20.0), tuple(angles)),
         schedule=Schedule(entries, tuple(draw(st.lists(force, min_size=4, max_size=4))), how[0]),
-        inputs=InputSchedule(entries, (("active_weight_on_bit", weights),), how[1]),
+        inputs=InputSchedule(entries, (("active_weight_on_bit", weights), *rock), how[1]),
     )
 
 
@@ -120,11 +163,13 @@ def legs(case: Case, ends: np.ndarray) -> Iterator[tuple[float, dict[str, Any]]]
     pieces = (np.searchsorted(course.starts, begins, side="right") - 1).astype(np.intc)
     for end, values in zip(stops.tolist(), acting(course, begins, pieces).tolist(), strict=True):
         given_ = dict(zip(ACTING, values, strict=True))
-        yield end, {name: value for name, value in given_.items() if name not in (*ROCK, *IN_SPACE_ONLY)}
+        bit = BitRock(**fields_of("bit", given_, case.structure))
+        own = {name: value for name, value in given_.items() if name not in (*ROCK, *IN_SPACE_ONLY)}
+        yield end, own | {"bit": bit}
 
 
 def test_a_state_saved_on_a_ramp_goes_on_as_if_nothing_had_been(engine: str, case: Case) -> None:
-    ramp = ramps(case, FORCE, WEIGHT)
+    ramp = ramps(case, FORCE)
 
     def begun() -> Engine:
         return start(ramp, engine, Options())
@@ -142,7 +187,7 @@ def test_a_state_saved_on_a_ramp_goes_on_as_if_nothing_had_been(engine: str, cas
 
 
 def test_the_integrator_does_not_restart_where_a_ramp_goes_on(engine: str, case: Case) -> None:
-    ramp = ramps(case, FORCE, WEIGHT)
+    ramp = ramps(case, FORCE)
     counts = []
     for ends in (np.array([LENGTH]), np.linspace(0.01, LENGTH, 500)):
         run = start(ramp, engine, Options())
@@ -152,12 +197,14 @@ def test_the_integrator_does_not_restart_where_a_ramp_goes_on(engine: str, case:
     assert counts[0] == counts[1]
 
 
-def test_the_weight_at_the_bit_is_on_its_ramp(engine: str, case: Case) -> None:
-    run = simulate(ramps(case, FORCE, WEIGHT), length=LENGTH, engine=engine)
+def test_what_acts_at_the_bit_is_on_its_ramp(engine: str, case: Case) -> None:
+    run = simulate(ramps(case, FORCE), length=LENGTH, engine=engine)
     expected = np.interp(run["drilled_length"], ENTRIES, WEIGHT)
     np.testing.assert_allclose(run["active_weight_on_bit"], expected, rtol=1e-12)
-    per_weight = case.bit.lateral_steering_resistance / case.bha.force_scale
-    np.testing.assert_allclose(run["eta_pi"], per_weight * expected, rtol=1e-12)
+    for name, values in ROCK_RAMPS.items():
+        np.testing.assert_allclose(run[name], np.interp(run["drilled_length"], ENTRIES, values), rtol=1e-12)
+    eta_pi = run["lateral_steering_resistance"] * expected / case.bha.force_scale
+    np.testing.assert_allclose(run["eta_pi"], eta_pi, rtol=1e-12)
     np.testing.assert_allclose(run["rss_force"], np.interp(run["drilled_length"], ENTRIES, FORCE), atol=1e-8)
 
 
@@ -166,6 +213,11 @@ def test_the_weight_at_the_bit_is_on_its_ramp(engine: str, case: Case) -> None:
     [
         ({"rss_force_slope": float("nan")}, "rss_force_slope: must be a finite number, got nan"),
         ({"active_weight_on_bit_slope": float("inf")}, "active_weight_on_bit_slope: must be a finite number, got inf"),
+        ({"bit_tilt_limit_slope": float("nan")}, "bit_tilt_limit_slope: must be a finite number, got nan"),
+        (
+            {"lateral_steering_resistance_slope": 1e308},
+            r"change of eta_pi over stabilizer_position\[1\]: must be a fin",
+        ),
     ],
 )
 def test_a_slope_that_is_no_number_is_refused_and_nothing_moves(
@@ -180,10 +232,19 @@ def test_a_slope_that_is_no_number_is_refused_and_nothing_moves(
     assert run.outputs() == before
 
 
-def test_a_weight_on_its_way_below_zero_stops_before(engine: str, case: Case) -> None:
+def test_a_slope_of_what_has_none_is_refused(engine: str, case: Case) -> None:
+    run = start(case, engine, Options())
+    with pytest.raises(TypeError, match=r"rss_toolface_slope: must be one of rss_force_slope, "):
+        run.advance(1.0, 0.0, 2e3, rss_toolface_slope=1.0)  # type: ignore[call-arg]
+
+
+@pytest.mark.parametrize("name", ["active_weight_on_bit", *ROCK])
+def test_what_is_on_its_way_below_zero_stops_before(engine: str, case: Case, name: str) -> None:
     run = start(replace(case, active_weight_on_bit=2e3), engine, Options())
+    first = {"active_weight_on_bit": 2e3, **values_of("bit", case.bit)}[name]
+    slope: Any = {f"{name}_slope": -first / 5.0}
     with pytest.raises(CannotContinue, match=r"too short|not finite|too many"):
-        run.advance(10.0, 0.0, 2e3, active_weight_on_bit_slope=-400.0)
+        run.advance(10.0, 0.0, 2e3, **slope)
     assert run.drilled_length == 0.0
-    run.advance(4.9, 0.0, 2e3, active_weight_on_bit_slope=-400.0)
+    run.advance(4.9, 0.0, 2e3, **slope)
     assert run.outputs()["eta_pi"] > 0.0

@@ -38,6 +38,9 @@ INTERBEDDED = rock(
     angular_steering_resistance=(1.0, 1.3, 0.7),
     bit_tilt_limit=(1.0, 0.2, 0.6),
 )
+assert INTERBEDDED.inputs is not None
+GRADUAL = replace(INTERBEDDED, inputs=replace(INTERBEDDED.inputs, interpolation="linear"))
+HELD_OR_LINEAR = pytest.mark.parametrize("case", [INTERBEDDED, GRADUAL], ids=["held", "linear"])
 
 
 @settings(max_examples=6)
@@ -54,9 +57,10 @@ def test_more_resistance_is_more_weight_to_all_digits(engine: str, resistance: t
         assert drilled[0][name].tolist() == drilled[1][name].tolist()
 
 
+@HELD_OR_LINEAR
 @pytest.mark.usefixtures("kernel")
-def test_engines_agree_on_rock_that_changes() -> None:
-    native, python = (simulate(INTERBEDDED, engine=engine, sample_interval=0.25) for engine in ("native", "python"))
+def test_engines_agree_on_rock_that_changes(case: Case) -> None:
+    native, python = (simulate(case, engine=engine, sample_interval=0.25) for engine in ("native", "python"))
     for name in COLUMNS:
         scale = max(1.0, float(np.abs(python[name]).max()))
         np.testing.assert_allclose(native[name], python[name], rtol=0, atol=1e-9 * scale, err_msg=name)
@@ -77,9 +81,10 @@ def test_tighter_tolerances_lead_to_the_same_hole(engine: str) -> None:
     assert usual["bit_inclination"] == pytest.approx(tight["bit_inclination"], abs=2e-6)
 
 
-def test_the_tilt_obeys_the_rock_where_the_bit_is(engine: str) -> None:
+@HELD_OR_LINEAR
+def test_the_tilt_obeys_the_rock_where_the_bit_is(engine: str, case: Case) -> None:
     """ψ = clip(F_0/(ηΠ), −ψ*, ψ*) with the η and ψ* of the row, (10) and (11)."""
-    run = simulate(INTERBEDDED, engine=engine, sample_interval=0.1)
+    run = simulate(case, engine=engine, sample_interval=0.1)
     eta_pi = run["lateral_steering_resistance"] * run["active_weight_on_bit"] / CASE.bha.force_scale
     assert run["eta_pi"] == pytest.approx(eta_pi, rel=1e-12)
     limit = run["bit_tilt_limit"]
@@ -88,9 +93,10 @@ def test_the_tilt_obeys_the_rock_where_the_bit_is(engine: str) -> None:
     assert set(run["bit_tilt_saturation"]) == {-1.0, 0.0, 1.0}
 
 
-def test_the_bit_turns_by_the_ratio_of_the_row(engine: str) -> None:
+@pytest.mark.parametrize(("case", "length"), [(INTERBEDDED, 20.0), (GRADUAL, 5.0)], ids=["held", "linear"])
+def test_the_bit_turns_by_the_ratio_of_the_row(engine: str, case: Case, length: float) -> None:
     """εηΠ θ' = M, (17)."""
-    run = simulate(INTERBEDDED, engine=engine, sample_interval=0.001, length=20.0)
+    run = simulate(case, engine=engine, sample_interval=0.001, length=length)
     scale = run["angular_steering_resistance"] * run["active_weight_on_bit"] * CASE.length_scale**2
     turn = np.gradient(run["bit_inclination"], run["drilled_length"])
     smooth = np.ones(len(turn), bool)

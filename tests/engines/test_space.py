@@ -1,6 +1,6 @@
 """The law in space against what shares no code with it: trajectories, a short program, closed forms, the planar law."""
 
-from dataclasses import replace
+from dataclasses import astuple, replace
 from math import atan2, cos, degrees, pi, radians, sin
 from typing import Any
 
@@ -10,6 +10,7 @@ import pytest
 from boreprop.case.paper import paper_case
 from boreprop.core.errors import ParameterError
 from boreprop.core.options import Options
+from boreprop.core.quantities import ROCK
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop.kernel.binding import NativeDrilling, available
@@ -317,15 +318,37 @@ def is_frame(matrix: Vector) -> bool:
     return bool(abs(matrix @ matrix.T - np.eye(3)).max() < 1e-12)
 
 
-def test_a_slope_of_force_is_many_small_steps_of_it() -> None:
+def test_slopes_of_force_weight_and_rock_are_many_small_steps_of_them() -> None:
     given = replace(TURNING, eta_pi=0.3)
     ramp, stairs = given.begin(relative_tolerance=1e-9), given.begin(relative_tolerance=1e-9)
     aim: dict[str, Any] = {"rss_toolface": given.toolface, "toolface_reference": given.reference}
-    ramp.advance(4.0, 2e-3, 0.3, rss_force_slope=1e-3, active_weight_on_bit_slope=0.02, **aim)
+    own, slopes = astuple(ramp.bit)[:3], (0.2, 0.01, -7e-3)
+    slope_of_rock: Any = {f"{name}_slope": slope for name, slope in zip(ROCK, slopes, strict=True)}
+    ramp.advance(4.0, 2e-3, 0.3, rss_force_slope=1e-3, active_weight_on_bit_slope=0.02, **slope_of_rock, **aim)
     for start in np.arange(0.0, 4.0, 0.01):
         middle = start + 0.005
-        stairs.advance(start + 0.01, 2e-3 + 1e-3 * middle, 0.3 + 0.02 * middle, **aim)
+        eta, chi, limit = np.add(own, np.multiply(slopes, middle)).tolist()
+        bit = BitRock(eta, chi, limit, given.walk)
+        stairs.advance(start + 0.01, 2e-3 + 1e-3 * middle, 0.3 + 0.02 * middle, bit=bit, **aim)
     assert direction(stairs.outputs(), "bit") == pytest.approx(direction(ramp.outputs(), "bit"), abs=2e-6)
+
+
+def test_rows_lie_anywhere_on_a_ramp_of_the_rock_in_space() -> None:
+    """Where the tilt meets a limit that closes in on it, too."""
+    slopes: Any = {"bit_tilt_limit_slope": -8e-3, "lateral_steering_resistance_slope": -0.15}
+    runs = [replace(TURNING, eta_pi=0.3).begin() for _ in range(2)]
+    aim: dict[str, Any] = {"rss_toolface": 1.0, "toolface_reference": "frame"}
+    own = runs[0].bit
+    for run, stops in zip(runs, ([4.0], np.linspace(0.0, 4.0, 38)[1:].tolist()), strict=True):
+        start = 0.0
+        for stop in stops:
+            limit = own.tilt_limit - 8e-3 * start
+            bit = replace(own, lateral_steering_resistance=1.0 - 0.15 * start, tilt_limit=limit)
+            run.advance(stop, 5e-3, 0.3, bit=bit, **slopes, **aim)
+            start = stop
+    assert runs[0].outputs()["bit_tilt_saturation"] == 1
+    assert runs[0].outputs() == pytest.approx(runs[1].outputs(), rel=1e-9, abs=1e-11)
+    assert runs[0].statistics == runs[1].statistics
 
 
 # the existing hole

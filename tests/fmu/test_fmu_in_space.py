@@ -30,7 +30,7 @@ host = partial(report, "fmu_host")
 
 @pytest.fixture(scope="module")
 def steered(case: Case) -> Case:
-    """The paper's case in a hole that turns, steered to sides, with a bit that walks to the left and from a depth on to the right."""
+    """The paper's case in a hole that turns, steered to sides, with a bit that walks first to the left, then right."""
     return replace(
         case,
         bit=replace(case.bit, walk_angle=radians(-3.0)),

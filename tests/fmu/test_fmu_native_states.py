@@ -34,9 +34,9 @@ def test_a_state_that_is_not_whole_and_its_own_is_refused_and_changes_nothing(on
     one.initialize(rss_force=1e3)
     one.steps(5, 0.9)
     state = one.state()
-    assert state.startswith(b"boreprop-native-fmu-state-6 " + one.description.guid.encode())
+    assert state.startswith(b"boreprop-native-fmu-state-7 " + one.description.guid.encode())
     for content in spoilt(state).values():
-        with refused(one, "state: must be one of this FMU, boreprop-native-fmu-state-6 "):
+        with refused(one, "state: must be one of this FMU, boreprop-native-fmu-state-7 "):
             one.set_state(content)
         assert one.state() == state
 
@@ -54,8 +54,8 @@ def test_what_no_run_can_have_saved_is_refused_though_its_checksum_is_right(one:
         (8, nan),
         (run, nan),
         (run + 1, -1.0),
-        (run + 17, -1.0),
-        (run + 21, inf),
+        (run + 15, -1.0),
+        (run + 25, inf),
     ):
         spoilt_body = body[: 8 * at] + np.array([number], "<f8").tobytes() + body[8 * at + 8 :]
         checksum = 0xCBF29CE484222325

@@ -130,6 +130,18 @@ def test_rock_is_followed_exactly(case: Case, flavour: Flavour, pack: Pack, comm
 
 
 @pytest.mark.usefixtures("kernel")
+def test_rock_that_changes_evenly_is_followed_exactly(case: Case, pack: Pack, command: Command, tmp_path: Path) -> None:
+    rock = interbedded(case)
+    assert rock.inputs is not None
+    ramp = replace(rock, inputs=replace(rock.inputs, interpolation="linear"))
+    run = run_of(command, pack(ramp, NATIVE), tmp_path, "--step", "0.4")
+    assert_drilled(run, ramp, 0.4)
+    for name, values in rock.inputs.inputs:
+        expected = np.interp(run["drilled_length"], rock.inputs.drilled_length, values)
+        np.testing.assert_allclose(run[name], expected, rtol=1e-9)
+
+
+@pytest.mark.usefixtures("kernel")
 def test_rock_is_held_while_a_force_is_linear(case: Case, pack: Pack, command: Command, tmp_path: Path) -> None:
     rock = interbedded(case)
     ramp = replace(rock, schedule=replace(rock.schedule, interpolation="linear"))

@@ -121,4 +121,38 @@ def test_a_long_string_on_the_wall_at_many_points_drills_on() -> None:
     run = slender(2e4, 3e3, bha)
     assert run.outputs()["wall_distance"] == pytest.approx(0.0, abs=1e-9)
     assert run.outputs()["body_contact_force"] > 100.0
-    assert run.statistics.accepted < 20_000
+    assert run.statistics.accepted < 4_000
+
+
+def lying_down(largest_step: float) -> float:
+    """Inclination of the bit where a limp string, off the wall at first, has drilled down onto it along its length."""
+    bha = with_points(
+        BottomHoleAssembly((20.0, 40.0), (0.0,), 0.5, 1500.0, 1e6), [1.0 + 0.37 * k for k in range(100)], 0.01
+    )
+    survey, options = Survey((0.0, 40.0, 50.0), (0.0, 0.0, 0.01)), replace(Options(1e-8), largest_step=largest_step)
+    run = NativeDrilling(bha, BitRock(10.0, 1.0, 0.02), survey, active_weight_on_bit=2e4, options=options)
+    run.advance(1.0, 0.0, 2e4)
+    return float(run.outputs()["bit_inclination"])
+
+
+def test_a_step_along_which_more_points_come_to_the_wall_than_there_is_room_for_is_taken_shorter() -> None:
+    """Once the first ones lie on the wall, they keep the others off it."""
+    assert lying_down(1.0) == pytest.approx(lying_down(1e-3), abs=1e-7)
+
+
+def test_more_contacts_than_there_is_room_for_are_too_crowded_and_not_buckling() -> None:
+    points = [1.0 + 0.37 * k for k in range(100)]
+    bha = with_points(BottomHoleAssembly((20.0, 40.0), (0.0,), 0.5, 1500.0, 1e4), points, 0.01)
+    with pytest.raises(CannotContinue, match="more than 58 supports touch the wall"):
+        lie(bha, np.zeros((1, len(points) + 2)), np.zeros(1), np.ones(1))
+    with pytest.raises(CannotContinue, match="more than 58 supports touch the wall"):
+        NativeDrilling(bha, BitRock(10.0, 1.0, 0.02), Survey((0.0, 40.0), (1.5, 1.5)), active_weight_on_bit=2e4)
+
+
+def test_a_weight_that_grows_on_the_way_beyond_what_the_bha_bears_is_refused_with_the_limit() -> None:
+    run, limit = slender(5e4, 0.0), borne(SLENDER)
+    with pytest.raises(ParameterError, match=r"^weight_on_bit: must be < .*, where the BHA buckles") as refused:
+        run.advance(70.0, 0.0, 5e4 / 3, weight_on_bit=1.001 * limit)
+    assert refused.value.problem
+    assert refused.value.problem.limit == pytest.approx(limit, rel=1e-6)
+    run.advance(61.0, 0.0, 5e4 / 3, weight_on_bit=5e4)

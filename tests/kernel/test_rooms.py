@@ -51,7 +51,7 @@ int joined(double Y_at_the_end, double Y_of_the_next) {
 void gains_of(int n, const double *s, const double *y_star, double w, double epsilon, double eta_pi, double *gains) {
     static Integrator p;
     Scaled scaled = {.n = n, .w = w};
-    ScaledInputs inputs = {.eta_pi = eta_pi, .epsilon = epsilon, .psi_star = 0.03};
+    ScaledInputs inputs = {.eta_pi = eta_pi, .chi_pi = epsilon * eta_pi, .psi_star = 0.03};
     memcpy(scaled.s, s, (size_t)n * sizeof *s), memcpy(scaled.y_star, y_star, (size_t)(n - 1) * sizeof *s);
     prepare(&p, &scaled, 1.0, 1.0, USUAL_OPTIONS);
     find_places(&p.now, &p.scaled, 0.0);
@@ -131,7 +131,7 @@ def test_a_jump_at_a_stabilizer_counts_as_much_as_in_the_core(rooms: ctypes.CDLL
     """Also where weight makes sin⟨Θ⟩_1, and with it the first stabilizer, count most."""
     scaled = Scaled((1.0, 1.7, 2.9), (1e-3, 2e-3), 0.0, 5.0, 0.1, 0.03)
     modes, gains = Modes(scaled), doubles([0.0] * 3)
-    inputs = Inputs(0.0, 0.05, 0.0, 0.0, scaled.epsilon, scaled.psi_star)
+    inputs = Inputs(0.0, 0.05, scaled.epsilon * 0.05, scaled.psi_star)
     numbers = map(ctypes.c_double, (scaled.w, scaled.epsilon, 0.05))
     rooms.gains_of(3, doubles(scaled.s), doubles(scaled.y_star), *numbers, gains)
     assert list(gains) == pytest.approx(Laws(modes, inputs, 0.0)[modes.free()].gains, rel=1e-12)

@@ -11,6 +11,7 @@ from boreprop.case.case import Case, InputSchedule, Profile, Schedule
 from boreprop.case.paper import paper_case
 from boreprop.core.quantities import ACTING, IN_SPACE_ONLY, ROCK
 from boreprop.run.course import Course, acting, course_of
+from boreprop.run.ground import on_rows
 from boreprop.run.simulate import simulate
 
 
@@ -52,10 +53,11 @@ def test_what_an_engine_is_given_does_not_hold_the_rate_of_penetration() -> None
     assert course.names == ("rss_force", "active_weight_on_bit", *ROCK, "rate_of_penetration")
     assert course.starts.tolist() == [0.0, 2.0, 4.0, 6.0]
     given_ = acting(course, np.array([0.0, 3.0]), np.array([0, 1], dtype=np.intc))
-    slopes = ("rss_force", "rss_force_slope", "active_weight_on_bit", "active_weight_on_bit_slope")
-    assert ACTING == (*slopes, *ROCK, "weight_on_bit", *IN_SPACE_ONLY)
+    ramps = ("rss_force", "active_weight_on_bit", *ROCK)
+    assert ACTING == (*(name + end for name in ramps for end in ("", "_slope")), "weight_on_bit", *IN_SPACE_ONLY)
     assert given_[:, :4].tolist() == [[0.0, 500.0, 2e3, 500.0], [1e3, 0.0, 3500.0, 500.0]]
-    assert given_[:, 4:].tolist() == [[*astuple(paper_case().bit)[: len(ROCK)], *(0.0,) * (1 + len(IN_SPACE_ONLY))]] * 2
+    rock = [number for value in astuple(paper_case().bit)[: len(ROCK)] for number in (value, 0.0)]
+    assert given_[:, 4:].tolist() == [[*rock, *(0.0,) * (1 + len(IN_SPACE_ONLY))]] * 2
 
 
 def test_a_run_has_a_column_for_each_input_that_its_case_schedules() -> None:
@@ -63,3 +65,10 @@ def test_a_run_has_a_column_for_each_input_that_its_case_schedules() -> None:
     assert run["rss_force"].tolist() == [0.0, 1e3, 1e3, 1e3, 1e3]
     assert run["active_weight_on_bit"].tolist() == [2e3, 3e3, 4e3, 4e3, 4e3]
     assert run["rate_of_penetration"].tolist() == [0.01, 0.01, 0.02, 0.02, 0.02]  # always held
+
+
+def test_rock_along_a_run_that_has_no_column_of_it_is_what_its_case_schedules() -> None:
+    lengths = np.array([0.0, 1.0, 4.0, 7.0])
+    schedule = InputSchedule((0.0, 4.0), (("bit_tilt_limit", (0.02, 0.01)),), "linear")
+    case = replace(paper_case(), inputs=schedule)
+    assert on_rows(case, {"drilled_length": lengths}, "bit_tilt_limit").tolist() == [0.02, 0.0175, 0.01, 0.01]

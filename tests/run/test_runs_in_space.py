@@ -1,7 +1,8 @@
 """Runs in space through `simulate`, result files and what is made of them."""
 
+import json
 from dataclasses import replace
-from math import cos, pi, radians, sin
+from math import cos, hypot, pi, radians, sin
 from pathlib import Path
 
 import numpy as np
@@ -9,13 +10,13 @@ import pytest
 
 from boreprop.analysis.comparison import compare
 from boreprop.analysis.hole_in_space import SurveyInSpace
-from boreprop.analysis.plan import deviation_of, planned_hole
+from boreprop.analysis.plan_in_space import DeviationInSpace, deviation_of, plan_of
 from boreprop.analysis.stations import list_stations
 from boreprop.analysis.summary import summarize
 from boreprop.case.case import Case, InputSchedule, Schedule
 from boreprop.core.survey import Survey
 from boreprop.core.system import BottomHoleAssembly
-from boreprop.errors import InputError, ParameterError
+from boreprop.errors import ParameterError
 from boreprop.run.completion import complete
 from boreprop.run.results import read_trajectory, write_trajectory
 from boreprop.run.simulate import simulate
@@ -194,10 +195,40 @@ def test_a_survey_of_the_run_compares_by_its_inclination(turning: Trajectory) ->
     np.testing.assert_allclose(found.predicted, found.measured, atol=radians(3.0))
 
 
-def test_a_plan_is_refused_for_a_run_in_space(turning: Trajectory) -> None:
-    plan = planned_hole(Survey((0.0, 100.0), (0.7, 0.7)), 30.0)
-    with pytest.raises(InputError, match="plan: must be left out for a run in space"):
-        deviation_of(turning, plan, 5.0)
+def test_a_run_is_not_off_a_plan_and_a_survey_of_its_own_rows(turning: Trajectory) -> None:
+    columns = [30.0 + turning["drilled_length"]]
+    columns += [turning[f"borehole_{name}"] for name in ("inclination", "azimuth")]
+    own = Survey(*(tuple(column.tolist()) for column in columns))
+    off, found = deviation_of(turning, plan_of(turning, own), 4.0), compare(turning, own)
+    assert isinstance(off, DeviationInSpace)
+    assert found.high is not None
+    assert found.right is not None
+    for distance in (off.distance, found.high, found.right):
+        assert np.abs(distance).max() < 0.01  # in a hole that ripples by more, and turns by metres to the right
+    for angle in (off.azimuth[16:], off.inclination[16:]):
+        assert np.abs(angle).max() < radians(0.1)
+
+
+def test_summary_and_compare_tell_it_to_the_high_side_and_to_the_right(
+    command_here: Command, tmp_path: Path, turning: Trajectory
+) -> None:
+    write_trajectory(turning, tmp_path / "run.csv")
+    (tmp_path / "plan.csv").write_text("measured_depth,inclination_deg,azimuth_deg\n0,40,45\n60,40,45\n120,40,45\n")
+    printed = command_here("boreprop", "summary", "run.csv", "--plan", "plan.csv", "--stations", "30").stdout
+    assert max(map(len, printed.splitlines())) <= 80
+    assert " right, " in printed
+    document = json.loads(command_here("boreprop", "summary", "run.csv", "--plan", "plan.csv", "--json").stdout)
+    off = document["off_plan"]
+    assert off["distance"] == pytest.approx(hypot(off["high"], off["right"]))
+    done = command_here("boreprop", "compare", "run.csv", "plan.csv", "--output", "both.png", "--json")
+    compared = json.loads(done.stdout)
+    there = int(np.searchsorted(turning["drilled_length"], 30.0))
+    ahead = 30.0 * sin(radians(40.0)) / 2**0.5  # to the north and to the east
+    off_north, off_east = ahead - turning["north"][there], ahead - turning["east"][there]
+    azimuth = compared["predicted_azimuth"][0]
+    assert compared["right"] == [pytest.approx(off_east * cos(azimuth) - off_north * sin(azimuth), abs=1e-6)]
+    assert compared["azimuth_residual"] == [pytest.approx(radians(45.0) - azimuth)]
+    assert max(map(len, command_here("boreprop", "compare", "run.csv", "plan.csv").stdout.splitlines())) <= 80
 
 
 def test_the_python_engine_and_two_dimensions_are_refused(inclined: Case) -> None:
@@ -248,7 +279,7 @@ def test_analyses_of_the_plane_take_its_azimuth_but_no_turn(
     (tmp_path / "case.toml").write_text(HOLE + f"azimuth_deg = {azimuth}\n")
     done = command("boreprop", "steering", "case.toml")
     assert (done.returncode == 2) == refused, done.stderr
-    assert ("azimuth: must be the same at all stations" in done.stderr) == refused
+    assert ("hole.azimuth_deg: must be the same at all stations" in done.stderr) == refused
 
 
 def test_a_direction_by_inclination_and_azimuth_starts_the_bit(turning: Trajectory) -> None:

@@ -34,6 +34,12 @@ def runs(case: Case) -> dict[str, Trajectory]:
     return {name: simulate(one, sample_interval=0.1) for name, one in zip(NAMES, cases, strict=True)}
 
 
+@pytest.fixture(scope="module")
+def alone(runs: dict[str, Trajectory], tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[str]]:
+    """The titles of the views of each run in a viewer of its own."""
+    return {name: titles_alone(run, tmp_path_factory.mktemp("alone")) for name, run in runs.items()}
+
+
 def application(*runs: Trajectory, plan: Survey | None = None) -> str:
     return Drawing.of([stored(f"run {k}", run) for k, run in enumerate(runs)], plan).application
 
@@ -64,9 +70,8 @@ def test_a_recording_has_the_names_of_its_runs_and_their_cases(runs: dict[str, T
 @pytest.mark.parametrize("order", [NAMES, NAMES[::-1]])
 @pytest.mark.parametrize("way", ["file", "connect"])
 def test_each_of_two_recordings_in_one_viewer_keeps_its_look(
-    runs: dict[str, Trajectory], tmp_path: Path, order: tuple[str, str], way: str
+    runs: dict[str, Trajectory], alone: dict[str, list[str]], tmp_path: Path, order: tuple[str, str], way: str
 ) -> None:
-    alone = {name: titles_alone(run, tmp_path) for name, run in runs.items()}
     assert alone[NAMES[0]] != alone[NAMES[1]]
     with rerun("--headless", env=environment(str(tmp_path))) as (_, address):
         client = ViewerClient.connect(address)

@@ -27,7 +27,7 @@ from boreprop.run.trajectory import Trajectory
 from boreprop_viz import live, sinks
 from boreprop_viz.source import gather
 from boreprop_viz.stream import RunStream
-from boreprop_viz.track import DECIMALS
+from boreprop_viz.style import DECIMALS
 from rrd import read, stacked, static
 from viewers import rerun, signals, sound, until
 

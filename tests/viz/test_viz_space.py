@@ -19,7 +19,10 @@ from boreprop.run.trajectory import Trajectory
 from boreprop_fmu.pack.build import build_fmu
 from boreprop_viz import live
 from boreprop_viz.picture import SOFTWARE_DRIVERS, viewer
-from boreprop_viz.record import record
+from boreprop_viz.record import Drawing, find_sources, record
+from boreprop_viz.scales import Extremes
+from boreprop_viz.scene import Bounds
+from boreprop_viz.space_scales import SpaceScales
 from boreprop_viz.space_scene import PLAY, Discs, disc_places, tube
 from boreprop_viz.style import BY_SEVERITY
 from conftest import Command
@@ -240,9 +243,9 @@ def test_the_command_simulates_a_case_in_space(command: Command, case: Case, tmp
     (tmp_path / "spiral.toml").write_text(dump_case(replace(spiral_case(case), length=12.0)), encoding="utf-8")
     done = command("boreprop-view", "spiral.toml", "--save", "spiral.rrd")
     assert done.returncode == 0, done.stderr
-    expected = simulate(replace(spiral_case(case), length=12.0))["bit_azimuth"][-1]
-    azimuth = read(tmp_path / "spiral.rrd", "plots/azimuth/bit_azimuth", "Scalars:scalars")
-    assert azimuth[12_000][0] == pytest.approx(math.degrees(expected), abs=1e-3)
+    expected = simulate(replace(spiral_case(case), length=12.0))["bit_inclination"][-1]
+    inclination = read(tmp_path / "spiral.rrd", "plots/inclination/bit_inclination", "Scalars:scalars")
+    assert inclination[12_000][0] == pytest.approx(math.degrees(expected), abs=1e-3)
 
 
 def test_an_fmu_in_space_is_drawn_while_it_drills(command: Command, turning: Trajectory, tmp_path: Path) -> None:
@@ -269,9 +272,47 @@ def test_runs_in_the_plane_and_in_space_are_not_drawn_together(case: Case, spira
         record({"flat": plane, "spiral": spiral}, save=tmp_path / "x.rrd")
 
 
-def test_a_plan_is_refused_since_it_lies_in_a_plane(spiral: Trajectory, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="plan: must come with runs in the plane"):
-        record(spiral, plan=Survey((0.0, 100.0), (0.0, 0.0)), save=tmp_path / "x.rrd")
+def test_a_plan_is_shown_from_all_sides_and_the_run_measured_against_it(turning: Trajectory, tmp_path: Path) -> None:
+    """A straight plan in the direction in which the hole starts, without azimuths."""
+    inclination, saved = math.radians(40.0), tmp_path / "plan.rrd"
+    record(turning, plan=Survey((0.0, 100.0), (inclination, inclination)), save=saved)
+    ahead = np.array([math.sin(inclination) * math.cos(AZIMUTH), math.sin(inclination) * math.sin(AZIMUTH)])
+    end = (100.0 - 7.32) * np.append(ahead, math.cos(inclination))
+    [path] = static(saved, "hole/plan", "LineStrips3D:strips")[0]
+    np.testing.assert_allclose(path[-1], end, atol=1e-4)
+    [path] = static(saved, "plan_view/plan", "LineStrips2D:strips")[0]
+    np.testing.assert_allclose(path[-1], (end[1], -end[0]), atol=1e-4)
+    bit = places(turning, np.array([40.0]))[0]
+    along = bit @ end / np.linalg.norm(end)
+    distance = math.sqrt(bit @ bit - along**2)
+    right = bit[1] * math.cos(AZIMUTH) - bit[0] * math.sin(AZIMUTH)
+    shown = {
+        curve: read(saved, f"plots/{curve}", "Scalars:scalars")[40_000][0]
+        for curve in (
+            "distance_from_plan/distance_from_plan",
+            "distance_from_plan/distance_from_plan_right",
+            "azimuth/0_plan",
+        )
+    }
+    assert list(shown.values()) == pytest.approx([distance, right, 70.0], abs=2e-4)
+    [[listed]] = static(saved, "stations", "TextDocument:text")
+    assert f"| {right:+.2f} |" in listed
+    said = read(saved, "verdict", "TextDocument:text")[40_000][0]
+    assert f"; {distance:.1f} m off the plan, " in said
+    assert said.endswith(f", {abs(right):.1f} m {'right' if right > 0 else 'left'}")
+
+
+def test_a_plan_without_azimuths_is_refused_where_runs_start_in_different_directions(
+    spiral: Trajectory, turning: Trajectory, tmp_path: Path
+) -> None:
+    with pytest.raises(InputError, match=r"azimuth of the plan: must be given.*add a column azimuth_deg"):
+        record({"a": spiral, "b": turning}, plan=Survey((0.0, 100.0), (0.0, 0.1)), save=tmp_path / "x.rrd")
+
+
+def test_a_run_of_a_single_row_is_drawn(turning: Trajectory, tmp_path: Path) -> None:
+    saved = tmp_path / "one.rrd"
+    record(replace(turning, columns={name: values[:1] for name, values in turning.columns.items()}), save=saved)
+    assert read(saved, "verdict", "TextDocument:text")[0][0].endswith("**run** no ripple")
 
 
 @pytest.mark.slow
@@ -284,3 +325,28 @@ def test_the_views_of_space_draw_something_and_complain_of_nothing(recorded_turn
             assert np.mean(np.ptp(picture, axis=-1) > 40) > 1e-3, origin
             assert not shown.reports(views[origin]), origin
         assert not shown.warnings()
+
+
+def test_azimuths_are_plotted_without_a_jump_and_only_where_they_say_something(turning: Trajectory) -> None:
+    """A hole that walks through north, the same at 40° and at 2° of inclination."""
+    azimuth = np.linspace(-0.5, 0.4, turning.row_count)
+    north = np.mod(azimuth + math.pi, 2 * math.pi) - math.pi
+    columns = turning.columns | {"borehole_azimuth": np.mod(north, 2 * math.pi), "bit_azimuth": north}
+    space = SpaceScales(-0.2, Bounds((0.0, 1.0), (0.0, 1.0)), 1.0, 1.0, 1.0, 1)
+    shown = space.plotted(replace(turning, columns=columns))
+    for axis in ("bit", "borehole"):
+        np.testing.assert_allclose(shown[f"{axis}_azimuth"], azimuth + 2 * math.pi, atol=1e-12)
+    columns["bit_inclination"] = np.full(turning.row_count, math.radians(2.0))
+    assert np.isnan(space.plotted(replace(turning, columns=columns))["bit_azimuth"]).all()
+
+
+def test_of_a_vertical_hole_no_azimuth_is_plotted_stored_or_live(spiral: Trajectory, tmp_path: Path) -> None:
+    assert spiral.case is not None
+    short = {name: values[:50] for name, values in spiral.columns.items()}
+    stored = Drawing.of(find_sources(replace(spiral, columns=short)))
+    assert "azimuth" not in stored.scales.ranges
+    assert "inclination" in stored.scales.ranges
+    extremes = Extremes(stored.scales.plots)
+    extremes.take(stored.scales.plotted(stored.sources[0].beginning))
+    live_scales = replace(stored.scales, ranges={**dict.fromkeys(stored.scales.ranges), "azimuth": None})
+    assert set(extremes.complete(live_scales).ranges) == set(stored.scales.ranges)

@@ -13,6 +13,7 @@ import rerun as rr
 
 from boreprop.analysis.rippling import find_rippling
 from boreprop.analysis.search import State
+from boreprop.analysis.spiral.closed_form import spiral as closed_form
 from boreprop.case.case import Case
 from boreprop.case.file import load_case
 from boreprop.case.paper import paper_case
@@ -260,3 +261,61 @@ def test_waves_too_short_for_the_rows_are_named() -> None:
     apart = Trajectory({name: values[::10] for name, values in run.columns.items()}, run.case)
     assert "would not show" not in "".join(saying.words for saying in say(run))
     assert "; waves under 8 m would not show between these rows" in say(apart)[-1].words
+
+
+WINDS = re.compile(r"a spiral to the (right|left) since (\d+) m, pitch ([\d.]+) m, radius (\d+) mm, ±[\d.]+ °")
+
+
+@pytest.fixture(scope="module", params=["right", "left"])
+def spiral(request: pytest.FixtureRequest) -> Trajectory:
+    """A run whose ripple becomes a spiral, since its bit walks."""
+    case = paper_case()
+    walk = radians(5.0) if request.param == "right" else radians(-5.0)
+    return simulate(replace(case, bit=replace(case.bit, walk_angle=walk)), length=90.0, sample_interval=0.2)
+
+
+def test_of_a_spiral_the_words_say_to_which_side_how_wide_and_since_when(spiral: Trajectory) -> None:
+    assert spiral.case
+    side = "right" if spiral.case.bit.walk_angle > 0 else "left"
+    expected, said = closed_form(spiral.case, side), say(spiral)
+    told = WINDS.search(said[-1].words)
+    assert told
+    assert told[1] == side
+    assert [float(told[3]), float(told[4])] == pytest.approx([expected.pitch, 1e3 * expected.radius], rel=0.03)
+    # where it is said to begin, the bit goes through an ellipse that is a tenth as wide as it is long
+    s, since = spiral["drilled_length"], float(told[2])
+    turn = np.abs(s - since) < expected.pitch / 2
+    across = np.column_stack((spiral["north"], spiral["east"]))[turn]
+    across -= np.column_stack([np.polyval(np.polyfit(s[turn], part, 1), s[turn]) for part in across.T])
+    major, minor = np.linalg.svd(across, compute_uv=False)
+    assert 0.03 < minor / major < 0.3
+
+
+def test_the_words_on_a_spiral_do_not_depend_on_how_its_rows_come(spiral: Trajectory) -> None:
+    assert say(spiral, 41) == say(spiral, spiral.row_count)
+
+
+def test_a_ripple_in_a_plane_is_told_so_in_space() -> None:
+    """The same case in the plane and in space, which says of its waves that they lie in a plane."""
+    run, other = (simulate(paper_case(), length=60.0, dimensions=dimensions) for dimensions in (2, 3))
+    planar, spatial = say(run)[-1].words, say(other)[-1].words
+    assert spatial.startswith("rippling since")
+    assert spatial == f"{planar}, in a plane"
+
+
+def test_a_ripple_that_ends_in_space_is_told_with_where_it_ended() -> None:
+    """A made-up planar ripple to the east."""
+    flat = made_up(begins=60.0, ends=150.0, length=300.0)
+    columns = flat.columns | {
+        "north": np.zeros(flat.row_count),
+        "east": flat["displacement"],
+        "borehole_azimuth": np.full(flat.row_count, np.pi / 2),
+        "stabilizer_force_high[1]": flat["stabilizer_contact[1]"],
+        "stabilizer_force_right[1]": np.zeros(flat.row_count),
+        "bit_tilt_high": np.zeros(flat.row_count),
+        "bit_tilt_right": np.zeros(flat.row_count),
+    }
+    expected, said = say(flat)[-1].words, say(Trajectory(columns, flat.case))[-1].words
+    assert re.fullmatch(r"no ripple; rippling from \d+ m to \d+ m", said)
+    shown, own = (list(map(float, re.findall(r"\d+", words))) for words in (said, expected))
+    assert shown == pytest.approx(own, abs=1.0)

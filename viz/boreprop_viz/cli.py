@@ -39,7 +39,10 @@ def view(
         Path | None, typer.Option(metavar="Borehole.fmu", help="The FMU that made the runs: it holds their case.")
     ] = None,
     plan: Annotated[
-        Path | None, typer.Option(metavar="PLAN.csv", help="The planned hole: columns measured_depth, inclination_deg.")
+        Path | None,
+        typer.Option(
+            metavar="PLAN.csv", help="The planned hole: columns measured_depth, inclination_deg[, azimuth_deg]."
+        ),
     ] = None,
     schedule: Annotated[
         Path | None,

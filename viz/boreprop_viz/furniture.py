@@ -146,18 +146,21 @@ def metres(value: float) -> str:
     return f"{round(value, 3) + 0.0:.15g}"
 
 
-def log_grid(rec: rr.RecordingStream, shown: Bounds, view: str = "vertical_section", up: float = -1.0) -> None:
+def log_grid(
+    rec: rr.RecordingStream, shown: Bounds, view: str = "vertical_section", up: float = -1.0, above: float = 0.08
+) -> None:
     """Lines at round numbers of metres, labelled along the left and the bottom edge, except in the corners.
 
-    `up` is the sign of the numbers up the screen.
+    `up` is the sign of the numbers up the screen, and `above` how far those at the bottom are from that edge, a part of
+    the height.
     """
     (left, right), (top, bottom) = shown.x, shown.y
     step = shown.grid_step
     x, z = (step * np.arange(np.ceil(low / step), high / step) for low, high in (shown.x, shown.y))
     lines = [*points(x[:, None], np.array([top, bottom])), *points(np.array([left, right]), z[:, None])]
     rec.log(f"{view}/grid", rr.LineStrips2D.from_fields(strips=lines), static=True)
-    left, right, bottom = 0.9 * left + 0.1 * right, 0.9 * right + 0.1 * left, 0.95 * bottom + 0.05 * top
-    x, z = x[(x > left) & (x < right)], z[z < bottom - 0.055 * (bottom - top)]  # a line of text above the lowest
+    left, right, bottom = 0.9 * left + 0.1 * right, 0.9 * right + 0.1 * left, (1 - above) * bottom + above * top
+    x, z = x[(x > left) & (x < right)], z[z < bottom - above * (bottom - top)]  # a line of text above the lowest
     log_labels(rec, f"{view}/grid/depth", points(left, z), [f"{metres(-up * value)} m" for value in z])
     log_labels(rec, f"{view}/grid/displacement", points(x, bottom), [f"{metres(value)} m" for value in x])
 

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 import numpy as np
 import rerun as rr
 
-from boreprop.analysis.hole import SurveyedHole
+from boreprop.analysis.plan_in_space import plan_of
 from boreprop.analysis.stations import list_stations
 from boreprop.analysis.summary import averaging_length
 from boreprop.core.survey import Survey
@@ -44,8 +44,7 @@ class Listing:
                 self._log(source, Trajectory(columns, source.case), verdict)
 
     def _log(self, source: Source, run: Trajectory, verdict: Verdict) -> None:
-        start = source.case.survey.measured_depth[-1]
-        plan = None if self.plan is None else SurveyedHole.of(self.plan, start)
+        plan = None if self.plan is None else plan_of(run, self.plan)
         over = averaging_length(source.case.bha, verdict.told)
         found = list_stations(run, BUILD_LENGTH, plan, averaged_over=over)
         heading = [[text.replace("\n", " ") for text in headings(found)], ["---:"] * len(headings(found))]

@@ -12,7 +12,7 @@ import numpy as np
 import rerun as rr
 from numpy.typing import ArrayLike
 
-from boreprop.analysis.plan import planned_hole, read_plan
+from boreprop.analysis.plan import check_reach, read_plan
 from boreprop.case.case import Case
 from boreprop.case.file import load_case
 from boreprop.case.packed import read_packed_case
@@ -101,7 +101,7 @@ def live(
     start = case.survey.measured_depth[-1]
     planned = read_plan(plan, start) if isinstance(plan, str | Path) else plan
     if planned is not None:
-        planned_hole(planned, start)  # raises if it does not reach the start
+        check_reach(planned, start)
     check_sinks(spawn, serve, connect, save)
     name = name or ("run" if isinstance(case_or_fmu, Case) else Path(case_or_fmu).stem)
     ended = None

@@ -28,7 +28,7 @@ from .scene import Array, planned_path
 from .section import log_severities
 from .sinks import flush, open_recording
 from .source import LiveRun, Source, live, stored
-from .space_furniture import log_furniture_in_space, log_plan_grid
+from .space_furniture import log_furniture_in_space, log_plan_grid, log_plan_in_space
 from .space_layout import blueprint_in_space
 from .space_stream import SpaceStream
 from .stream import RunStream
@@ -169,7 +169,11 @@ class Drawing:
             log_furniture_in_space(rec, scales, scales.space, [source.beginning for source in sources])
         log_frames(rec, scales)
         if self.plan is not None:
-            log_plan(rec, planned_paths(self.plan, sources))
+            paths = planned_paths(self.plan, sources)
+            if scales.space is None:
+                log_plan(rec, paths)
+            else:
+                log_plan_in_space(rec, scales.space, paths)
         tracks = make_tracks(rec, scales, sources)
         key = entries(tracks, planned=self.plan is not None)
         log_key(rec, key)
@@ -193,7 +197,7 @@ class Drawing:
                         flush(rec)
                         card.say(i, stream.send(stretch))
                         follow(stretch.rows)
-                        extremes.take(stretch.rows)
+                        extremes.take(scales.plotted(stretch.rows))
                         done += stretch.rows.row_count
                         progress(done)
         finally:
@@ -202,18 +206,25 @@ class Drawing:
 
 
 def scales_in_space(sources: Sequence[Source], plan: Survey | None) -> Scales:
-    """The scales of runs in space; `InputError` if one of them is in the plane, or if there is a plan, which is."""
-    if plan is not None:
-        raise InputError("plan: must come with runs in the plane, got a run in space: leave it out")
+    """The scales of runs in space; `InputError` if one is in the plane, or a plan lies in no plane of all."""
     in_plane = [source.name for source in sources if not source.spatial]
     if in_plane:
         raise InputError(
             f"{in_plane[0]}: must be a run in space like the others, got one in the plane: use --dimensions 3"
         )
+    ahead = [source.likely_positions_in_space() for source in sources]
+    if plan is not None:
+        azimuths = {source.case.survey.azimuth[-1:] or (0.0,) for source in sources}
+        if not plan.azimuth and len(azimuths) > 1:
+            raise InputError(
+                "azimuth of the plan: must be given with runs that start in different directions, got none: "
+                "add a column azimuth_deg"
+            )
+        ahead += planned_paths(plan, sources)
     return choose_scales_in_space(
         [source.beginning for source in sources],
         whole=not any(source.live for source in sources),
-        positions=np.concatenate([source.likely_positions_in_space() for source in sources]),
+        positions=np.concatenate(ahead),
     )
 
 
@@ -231,8 +242,8 @@ def arranged(scales: Scales, tracks: Sequence[Track], key: Sequence[Entry]) -> r
 
 def planned_paths(plan: Survey, sources: Sequence[Source]) -> list[Array]:
     """The planned path from each measured depth at which runs start, as the pictures begin where drilling starts."""
-    starts = {source.case.survey.measured_depth[-1]: source.case for source in sources}
-    return [planned_path(plan, case) for case in starts.values()]
+    starts = {source.case.survey.measured_depth[-1]: source for source in sources}
+    return [planned_path(plan, source.case, in_space=source.spatial) for source in starts.values()]
 
 
 def application_of_its_own(name: str) -> str:

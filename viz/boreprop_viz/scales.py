@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import repeat
 from math import ceil, floor, log10
 
 import numpy as np
@@ -22,6 +21,7 @@ from .scene import Array, Bounds, frame_bounds, round_down, section_bounds
 from .space_scales import SpaceScales, plan_bounds, section_azimuth
 from .style import (
     BY_SEVERITY,
+    DECIMALS,
     LANES,
     LANES_IN_SPACE,
     LANES_TITLE,
@@ -48,7 +48,7 @@ TILTS = 1.15  # tilt limits to either side in the plot of the tilt, so that a ti
 RIPPLES = 1.15  # ripples to either side in their plot
 WALLS_APART = 0.6  # lengths of the BHA at most, in the bit frame: the factor that enlarges them is rounded down
 CURVED = 0.4  # lengths of the BHA, at most, from the axis of the frame to the walls of a hole that curves
-ENLARGED = 0.07  # of the length of a run, which the enlarged hole in space lies from its trend at most
+ENLARGED = 0.08  # of the length of a run, which the enlarged hole in space lies from its trend at most
 THICKNESS = 0.2  # of the trend: the turns of a spiral do not touch
 LONGEST_IN_SPACE = 0.8  # of the radius of a disc: the longest arrow
 LONGEST_ARROW = 7  # parts into which the BHA is divided for the longest arrow to be one
@@ -94,6 +94,11 @@ class Scales:
         return unit * floor(((self.start or 0.0) + self.begin) / unit)
 
     @property
+    def shown_length(self) -> float:
+        """Length of hole that strip and enlarged hole show, m, of a run of a single row, too."""
+        return max(self.length, 1.0)
+
+    @property
     def along(self) -> str:
         """What the horizontal axis of the plots shows."""
         place = "drilled length (mm)" if self.start is None else "measured depth (mm)"
@@ -108,6 +113,10 @@ class Scales:
     def lanes_title(self) -> str:
         """What the lanes show."""
         return LANES_TITLE if self.space is None else LANES_TITLE_IN_SPACE
+
+    def plotted(self, rows: Trajectory) -> Trajectory:
+        """Rows as they are plotted."""
+        return rows if self.space is None else self.space.plotted(rows)
 
     def hold(self, rows: Trajectory) -> bool:
         """Whether vertical section and strip show the bit at all rows."""
@@ -207,12 +216,13 @@ def choose_scales_in_space(runs: Sequence[Trajectory], *, whole: bool, positions
         section=space.on_section(positions),
         ends=list(map(find_rippling, runs)) if whole else [],
     )
-    ripple = max(map(largest_ripple, runs, repeat(seen.trend))) if whole else 0.0
-    ripple = ripple or seen.ripple[1] / SMALL_LENGTH.factor
+    ripple = seen.ripple[1] / SMALL_LENGTH.factor
+    if whole:  # at first it may be larger than in the end
+        ripple = max(ripple, *(RIPPLES * largest_ripple(run, seen.trend) for run in runs))
     space = replace(
         space,
         plan=plan_bounds(space.on_plan(positions), least=4 * max(case.bit_diameter for case in cases)),
-        lateral=max(1.0, first_digit(ENLARGED * seen.length / ripple)),
+        lateral=max(1.0, first_digit(ENLARGED * seen.shown_length / ripple)),
         thickness=THICKNESS * seen.trend,
         newtons=seen.newtons_per_metre
         * max(case.bha.stabilizer_positions[-1] for case in cases)
@@ -220,11 +230,11 @@ def choose_scales_in_space(runs: Sequence[Trajectory], *, whole: bool, positions
         / LONGEST_IN_SPACE,
         stabilizers=max(len(case.bha.stabilizer_clearances) for case in cases),
     )
-    size = RIPPLES * SMALL_LENGTH.factor * ripple
+    size, plotted = SMALL_LENGTH.factor * ripple, [space.plotted(run) for run in runs]
     return replace(
         seen,
         ripple=with_ticks(-size, size, MOST_STEPS_OF_RIPPLE),
-        ranges=plot_ranges(PLOTS_IN_SPACE, runs, whole) | {"bit_tilt": seen.ranges["bit_tilt"]},
+        ranges=plot_ranges(PLOTS_IN_SPACE, plotted, whole) | {"bit_tilt": seen.ranges["bit_tilt"]},
         plots=PLOTS_IN_SPACE,
         space=space,
     )
@@ -299,15 +309,18 @@ def lateral_room(run: Trajectory) -> float:
 def plot_ranges(
     plots: Mapping[str, Plot], runs: Sequence[Trajectory], whole: bool
 ) -> dict[str, tuple[float, float] | None]:
-    """The range of each plot for which some runs have curves; None if not all of their rows are there."""
+    """The range of each plot for which some runs have values; None if not all of their rows are there."""
     curves = {name: plot.curves(runs) for name, plot in plots.items()}
-    return {name: plot_range(plots[name], some) if whole else None for name, some in curves.items() if some}
+    if not whole:
+        return {name: None for name, some in curves.items() if some}
+    there = {name: some for name, some in curves.items() if any(np.isfinite(curve).any() for curve in some)}
+    return {name: plot_range(plots[name], some) for name, some in there.items()}
 
 
 def plot_range(plot: Plot, curves: Sequence[Array]) -> tuple[float, float]:
     """The range of a plot of some curves, in the unit shown."""
-    values = plot.unit.factor * np.concatenate(curves)
-    values = values[np.isfinite(values)] if np.isfinite(values).any() else np.zeros(1)
+    values = np.round(plot.unit.factor * np.concatenate(curves), DECIMALS)
+    values = values[np.isfinite(values)]
     low, high = float(values.min()), float(values.max())
     margin = max(MARGIN * (high - low), SMALLEST_SPAN * max(abs(low), abs(high))) or 1.0
     return with_ticks(low - margin, high + margin)
@@ -321,7 +334,7 @@ class Extremes:
         self.found: dict[str, Array] = {}
 
     def take(self, rows: Trajectory) -> None:
-        """Look at the next rows of a run."""
+        """Look at the next rows of a run, as they are plotted."""
         for name, plot in self.plots.items():
             values = np.concatenate([self.found.get(name, np.empty(0)), *plot.curves([rows])])
             finite = values[np.isfinite(values)]
@@ -329,10 +342,12 @@ class Extremes:
                 self.found[name] = np.array([finite.min(), finite.max()])
 
     def complete(self, scales: Scales) -> Scales:
-        """The same scales with a range for each plot."""
-        ranges = dict(scales.ranges)
-        for name, found in self.found.items():
-            ranges[name] = ranges[name] or plot_range(self.plots[name], [found])
+        """The same scales with a range for each plot that has had a value."""
+        ranges: dict[str, tuple[float, float] | None] = {
+            name: span or plot_range(self.plots[name], [self.found[name]])
+            for name, span in scales.ranges.items()
+            if span or name in self.found
+        }
         return replace(scales, ranges=ranges)
 
 

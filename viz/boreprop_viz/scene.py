@@ -12,8 +12,10 @@ from math import floor, log10
 import numpy as np
 from numpy.typing import NDArray
 
-from boreprop.analysis.hole import HoleAxis, bit_positions
+from boreprop.analysis.hole import HoleAxis, SurveyedHole, bit_positions
+from boreprop.analysis.hole_in_space import SurveyInSpace
 from boreprop.analysis.plan import planned_hole
+from boreprop.analysis.plan_in_space import planned_in_space
 from boreprop.analysis.sag import BeamInHole
 from boreprop.case.case import Case
 from boreprop.core.quantities import CLEARANCES
@@ -24,6 +26,7 @@ Array = NDArray[np.float64]
 
 POINTS_ALONG_BHA = 36  # of the drawn hole, and twice those of the BHA: smooth curves with little data
 POINTS_OF_PLAN = 1000  # of the drawn plan: at most a pixel apart
+MOST_LINES = 4.5  # of a grid, beside each other: numbers of metres fit there in a small window
 REACH_ABOVE_BHA = 1.15  # lengths of the BHA up to which the bit frame shows the hole, so that its top can be seen
 AHEAD = 0.2  # lengths of the BHA ahead of the bit over which the bit frame shows the directions of bit and hole
 SECTION_SHAPE = 0.65  # width of the vertical section over its height
@@ -31,15 +34,16 @@ SECTION_LEFT, SECTION_RIGHT = 0.22, 0.9  # parts of its width between which hole
 FRAME_WIDTH = 0.9  # lengths of the BHA: room for the walls, and for arrows and names beside them
 
 
-def planned_path(plan: Survey, case: Case) -> Array:
-    """Points along the planned hole, one of them where drilling starts, (N, 2).
+def planned_path(plan: Survey, case: Case, *, in_space: bool = False) -> Array:
+    """Points along the planned hole, one of them where drilling starts, (N, 2); in space (N, 3).
 
     Raises
     ------
     InputError
         If the plan does not include the measured depth at which drilling starts.
     """
-    hole = planned_hole(plan, case.survey.measured_depth[-1])
+    hole: SurveyedHole | SurveyInSpace
+    hole = planned_in_space(plan, case.survey) if in_space else planned_hole(plan, case.survey.measured_depth[-1])
     even = np.linspace(hole.length[0], hole.length[-1], POINTS_OF_PLAN)
     return hole.at(np.unique(np.concatenate((hole.length, [0.0], even))))
 
@@ -194,9 +198,9 @@ class Bounds:
 
     @property
     def grid_step(self) -> float:
-        """The length between two lines of a grid in it, m."""
-        (left, right), (top, bottom) = self.x, self.y
-        return round_down(max(right - left, bottom - top) / 4)
+        """The length between two lines of a grid in it, m, so that the numbers of metres fit beside each other."""
+        left, right = self.x
+        return round_up((right - left) / MOST_LINES)
 
     def hold(self, position: Array) -> bool:
         """Whether all positions (N, 2) are shown."""
@@ -208,6 +212,12 @@ def round_down(value: float) -> float:
     """The largest of 1, 2 and 5 times powers of ten that is not above `value`."""
     power = 10.0 ** floor(log10(value))
     return max(step * power for step in (1, 2, 5) if step * power <= value)
+
+
+def round_up(value: float) -> float:
+    """The smallest of 1, 2 and 5 times powers of ten that is not below `value`."""
+    power = 10.0 ** floor(log10(value))
+    return min(step * power for step in (1, 2, 5, 10) if step * power >= value)
 
 
 def section_bounds(position: Array, around: float) -> Bounds:

@@ -12,6 +12,7 @@ from boreprop.analysis.axis import AXIS_REACH
 from boreprop.analysis.hole import HoleAxis, SurveyedHole, bit_positions, existing_hole, turning
 from boreprop.analysis.hole_in_space import directions, is_in_space, positions_in_space
 from boreprop.analysis.plan import deviation_from
+from boreprop.analysis.plan_in_space import DeviationInSpace, deviation_in_space, planned_in_space
 from boreprop.analysis.turning import dogleg_severity, existing_in_space, turning_in_space
 from boreprop.case.case import Case
 from boreprop.core.survey import Survey
@@ -129,7 +130,7 @@ def stored(name: str, run: Trajectory, plan: Survey | None = None, *, batch: int
         raise InputError(f"drilled_length: row {back[0] + 2}: must not decrease, got {length[back[0] + 1]:g}")
     run = complete(run)
     case = case_of(run)
-    [whole] = stretches_in_space([run], case) if is_in_space(run) else stretches([run], case, plan)
+    [whole] = (stretches_in_space if is_in_space(run) else stretches)([run], case, plan)
     return Source(name, case, run.row_count, whole.rows, live=False, stretches=pieces(whole, batch))
 
 
@@ -159,8 +160,7 @@ def live(
         raise InputError(f"{name}: must come with its case, as the FMUs of boreprop-fmu do, got none")
     rows = run if pace is None else paced(run, run.columns.index("time"), pace)
     trajectories = (rows_of(run.case, run.columns, some) for some in gather(rows, batch))
-    spatial = "north" in run.columns
-    coming = stretches_in_space(trajectories, run.case) if spatial else stretches(trajectories, run.case, plan)
+    coming = (stretches_in_space if "north" in run.columns else stretches)(trajectories, run.case, plan)
     first = next(coming)
     row_count = len(run) if isinstance(run, Sized) else None
     return Source(name, run.case, row_count, first.rows, live=True, stretches=chain([first], coming))
@@ -237,10 +237,11 @@ def stretches(runs: Iterable[Trajectory], case: Case, plan: Survey | None) -> It
         hole = hole.since(float(length[-1]) - reach)
 
 
-def stretches_in_space(runs: Iterable[Trajectory], case: Case) -> Iterator[Stretch]:
+def stretches_in_space(runs: Iterable[Trajectory], case: Case, plan: Survey | None) -> Iterator[Stretch]:
     """Add the hole behind them to consecutive rows of a run in space, as `stretches` does in the plane."""
     half = case.bha.half_length
     hole: HoleAxis | None = None
+    planned = None if plan is None else planned_in_space(plan, case.survey)
     for rows in runs:
         if hole is None:
             hole = existing_in_space(case.survey, reach_behind(half), half / POINTS_IN_HALF)
@@ -249,8 +250,23 @@ def stretches_in_space(runs: Iterable[Trajectory], case: Case) -> Iterator[Stret
         build, walk = turning_in_space(hole, length, over=BUILD_LENGTH, chord=half)
         severity = dogleg_severity(hole, length, over=half)
         columns = {"build_rate": build, "walk_rate": walk, "dogleg_severity": severity}
+        if planned is not None:
+            columns |= columns_off_plan(deviation_in_space(planned, hole, length, half))
         yield Stretch(replace(rows, columns=rows.columns | columns), hole)
         hole = hole.since(float(length[-1]) - reach_behind(half))
+
+
+def columns_off_plan(off: DeviationInSpace) -> dict[str, Array]:
+    """What there is to say of the plan of a run in space."""
+    return {
+        "planned_inclination": off.planned_inclination,
+        "planned_azimuth": off.planned_azimuth,
+        "distance_from_plan": off.distance,
+        "distance_from_plan_high": off.high,
+        "distance_from_plan_right": off.right,
+        "inclination_less_plan": off.inclination,
+        "azimuth_less_plan": off.azimuth,
+    }
 
 
 def reach_behind(half: float) -> float:

@@ -25,10 +25,10 @@ from .space_scene import PLAY, TILT, TOOLFACE, Discs, Tube, circle, tube
 from .track import Moments, Track, arrivals, moments, send, send_curve, send_numbers, send_strips
 
 RIPPLE_EAST = f"{RIPPLE}_east"
-POINTS_OF_BHA = 16
+POINTS_OF_BHA = 8
 POINTS_IN_HALF = 20  # of the tube over half the length of the BHA
 PIECE, EVERY = AXIS_POINTS // 2, 2  # points of the ripple in a piece of the enlarged hole, and every how many is drawn
-POINTS_OF_BLADES = 36
+POINTS_OF_BLADES = 24
 Projection = Callable[[Array], Array]
 
 
@@ -179,13 +179,13 @@ def in_degrees(angle: float) -> str:
 
 
 def log_upright(track: Track, space: SpaceScales, discs: Discs) -> None:
-    """What is up the screen, where it changes; of the first run."""
-    if track.place:
+    """What is up the screen, where it changes."""
+    if not track.numbered:
         return
     words = np.array(discs.upright)
     changes = np.flatnonzero(np.append(True, words[1:] != words[:-1]))
     at = moments(discs.rows).where(changes)
-    place = space.discs[0] + np.array([-1.2, -1.45])
+    place = space.discs[0] + np.array([-1.2, -1.45 + 0.25 * track.place])
     send(
         track,
         "across/upright",

@@ -21,18 +21,18 @@ from .furniture import (
     text_style,
 )
 from .scales import Scales
-from .scene import round_down
-from .space_entities import RIPPLE_EAST
+from .scene import Array, round_down
+from .space_entities import RIPPLE_EAST, projections
 from .space_scales import SpaceScales
 from .space_scene import PLAY, TILT, TOOLFACE, circle
 from .style import (
     BIT,
+    BLUE,
     BY_STABILIZER,
     FAINT,
     FURNITURE,
     GREY,
     HOLE,
-    PURPLE,
     RSS,
     STROKES,
     STROKES_IN_SPACE,
@@ -47,6 +47,7 @@ PALE = 0.5  # share of white in the colour of a run's text
 REFERENCES = ("the high side", "north", "the frame of the bit")  # from where a toolface counts
 POINTS_OF_DISC = 72
 TO_THE_LEFT = (0.43, -0.9)  # of the eye that sees the enlarged hole: north, east
+DEPTHS_ASIDE = 0.16  # of the length of a run, from the trend of the enlarged hole to the middle of its depths
 BELOW = 1.28  # radii of a disc from its middle to its name
 
 
@@ -54,6 +55,8 @@ def log_furniture_in_space(rec: rr.RecordingStream, scales: Scales, space: Space
     """What is common to all runs and does not change."""
     log_stroke(rec, "vertical_section/grid", FURNITURE["vertical_section/grid"])
     log_stroke(rec, "plan_view/grid", FURNITURE["vertical_section/grid"])
+    for view in ("vertical_section", "plan_view"):
+        log_stroke(rec, f"{view}/plan", FURNITURE["vertical_section/plan"])
     for view in ("hole", "enlarged"):
         rec.log(view, rr.ViewCoordinates.FRD, static=True)  # north, east, down
     log_discs(rec, space, runs)
@@ -63,7 +66,19 @@ def log_furniture_in_space(rec: rr.RecordingStream, scales: Scales, space: Space
 
 def log_plan_grid(rec: rr.RecordingStream, space: SpaceScales) -> None:
     """Lines at round numbers of metres to north, up the screen, and to east."""
-    log_grid(rec, space.plan, "plan_view", up=1.0)
+    log_grid(rec, space.plan, "plan_view", up=1.0, above=0.14)
+
+
+def log_plan_in_space(rec: rr.RecordingStream, space: SpaceScales, paths: list[Array]) -> None:
+    """The planned paths in all views that show places, each through points north, east and down, (N, 3)."""
+    plan = FURNITURE["vertical_section/plan"]
+    for view, project in projections(space).items():
+        shown = [project(path) for path in paths]
+        if view == "hole":
+            radii = rr.Radius.ui_points(plan.width / 2)
+            rec.log("hole/plan", rr.LineStrips3D(shown, colors=plan.colour, radii=radii), static=True)
+        else:
+            rec.log(f"{view}/plan", rr.LineStrips2D.from_fields(strips=shown), static=True)
 
 
 def log_discs(rec: rr.RecordingStream, space: SpaceScales, runs: list[Trajectory]) -> None:
@@ -104,16 +119,16 @@ def reference(runs: list[Trajectory]) -> str:
 def log_depths(rec: rr.RecordingStream, scales: Scales, space: SpaceScales) -> None:
     """Beside the enlarged hole: depths down its trend, and how far some millimetres to north and to east are."""
     begin = (scales.start or 0.0) + scales.begin
-    step = round_down(max(scales.length, 1.0) / 5)
+    step = round_down(scales.shown_length / 5)
     depth = step * np.arange(np.ceil(begin / step), (begin + scales.length) / step)
     aside = round_down(scales.ripple[1]) / SMALL_LENGTH.factor
     far = space.lateral * aside
     down = np.zeros((len(depth), 3))
-    down[:, :2], down[:, 2] = 2.5 * far * np.array(TO_THE_LEFT), depth
+    down[:, :2], down[:, 2] = DEPTHS_ASIDE * scales.shown_length * np.array(TO_THE_LEFT), depth
     words = "MD" if scales.start is not None else "drilled"
     labels = [f"{words} {metres(value)} m" for value in depth]
     rec.log("enlarged/depths", rr.Points3D(down, labels=labels, colors=WHITE, radii=0.0, show_labels=True), static=True)
-    top = begin - 0.05 * scales.length
+    top = begin - 0.05 * scales.shown_length
     ends = np.array([[far, 0.0, top], [0.0, far, top]])
     size = SMALL_LENGTH.text(aside)
     rec.log(
@@ -126,10 +141,12 @@ def log_depths(rec: rr.RecordingStream, scales: Scales, space: SpaceScales) -> N
         ),
         static=True,
     )
-    names = np.array([[far, 0.0, top - 0.05 * scales.length], [0.0, 2.5 * far, top]])  # apart, as the eye sees them
+    names = np.array(
+        [[far, 0.0, top - 0.05 * scales.shown_length], [0.0, 2.5 * far, top]]
+    )  # apart, as the eye sees them
     text = rr.Points3D(names, labels=["north", f"east {size}"], colors=WHITE, radii=0.0, show_labels=True)
     rec.log("enlarged/names", text, static=True)
-    line = np.array([[0.0, 0.0, begin], [0.0, 0.0, begin + scales.length]])
+    line = np.array([[0.0, 0.0, begin], [0.0, 0.0, begin + scales.shown_length]])
     rec.log("enlarged/trend", rr.LineStrips3D([line], colors=FAINT, radii=rr.Radius.ui_points(1.0)), static=True)
 
 
@@ -156,7 +173,7 @@ def log_styles_in_space(track: Track) -> None:
         rec.log(track.entity(f"hole/{thing}"), spheres, static=True)
     log_styles_across(track, n)
     log_curve_styles(track)
-    for curve, side, colour in zip((RIPPLE, RIPPLE_EAST), ("north", "east"), track.shades((HOLE, PURPLE)), strict=True):
+    for curve, side, colour in zip((RIPPLE, RIPPLE_EAST), ("north", "east"), track.shades((HOLE, BLUE)), strict=True):
         log_curve_style(track, curve, f"to {side} (mm)", colour, 2.0)
     log_lane_styles(track)
 
@@ -172,7 +189,7 @@ def log_styles_across(track: Track, n: int) -> None:
     for thing in [*map(str, range(1, n)), "tilt"]:
         rec.log(track.entity(f"across/middle/{thing}"), dots(WHITE, 4.0), static=True)
         rec.log(track.entity(f"across/trail/{thing}"), dots(track.colour or BIT, 1.0), static=True)
-    rec.log(track.entity("across/upright"), text_style(WHITE), static=True)
+    rec.log(track.entity("across/upright"), text, static=True)
     rec.log(track.entity("across/toolface/label"), text, static=True)
     for force, colour in forces.items():
         rec.log(track.entity(f"across/{force}"), arrows(colour), static=True)

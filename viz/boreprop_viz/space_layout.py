@@ -7,7 +7,21 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from .key import KEY, LINE, Entry, line_count
-from .layout import HERE, TAB, TimePanel, card, key_bounds, plot, so_far, stations, tab, vertical_section, visual, waves
+from .layout import (
+    HERE,
+    TAB,
+    TimePanel,
+    card,
+    key_bounds,
+    plot,
+    so_far,
+    stations,
+    tab,
+    verdict,
+    vertical_section,
+    visual,
+    waves,
+)
 from .scales import WAVES, Scales
 from .space_scales import SpaceScales
 from .space_scene import disc_bounds
@@ -21,7 +35,8 @@ UP = (0.0, 0.0, -1.0)
 def blueprint_in_space(
     scales: Scales, space: SpaceScales, tracks: Sequence[Track], key: Sequence[Entry]
 ) -> rrb.Blueprint:
-    """Four columns: vertical section and plan view; the hole in three dimensions; what is across it; the plots.
+    """Three columns: section, plan view and the hole in three dimensions, above the verdict; what is across the hole;
+    the key above the plots.
 
     The parameters are those of `layout.blueprint`.
     """
@@ -33,15 +48,22 @@ def blueprint_in_space(
     high = LINE * line_count(key)
     return rrb.Blueprint(
         rrb.Horizontal(
-            rrb.Vertical(vertical_section(scales, tracks), plan_view(space, tracks), row_shares=[0.62, 0.38]),
-            rrb.Tabs(enlarged(scales, space, tracks), whole_hole(tracks)),
+            rrb.Vertical(
+                rrb.Horizontal(
+                    rrb.Vertical(vertical_section(scales, tracks), plan_view(space, tracks), row_shares=[0.65, 0.35]),
+                    rrb.Tabs(enlarged(scales, space, tracks), whole_hole(tracks)),
+                    column_shares=[0.19, 0.21],
+                ),
+                verdict(),
+                row_shares=[0.85, 0.15],
+            ),
             across(scales, space, tracks),
             rrb.Vertical(
                 rrb.Spatial2DView(origin=KEY, titlebar=False, background=GROUND, visual_bounds=key_bounds(high)),
                 rrb.Tabs(*(one for one in tabs if one), card(), stations(), active_tab=1 if scales.rippling else 0),
                 row_shares=[high, TAB],
             ),
-            column_shares=[0.19, 0.21, 0.17, 0.43],
+            column_shares=[0.4, 0.17, 0.43],
         ),
         TimePanel(scales),
         rrb.BlueprintPanel(state="hidden"),
@@ -65,7 +87,7 @@ def plan_view(space: SpaceScales, tracks: Sequence[Track]) -> rrb.Spatial2DView:
 def enlarged(scales: Scales, space: SpaceScales, tracks: Sequence[Track]) -> rrb.Spatial3DView:
     """The hole along its trend, and its distance from that enlarged; as far as the cursor."""
     middle = (scales.start or 0.0) + scales.begin + scales.length / 2
-    eye = np.array([-1.08, -0.51, -0.25]) * scales.length + (0.0, 0.0, middle)
+    eye = np.array([-1.08, -0.51, -0.25]) * scales.shown_length + (0.0, 0.0, middle)
     return rrb.Spatial3DView(
         origin="enlarged",
         name=f"Ripple × {space.lateral:g}",
@@ -79,12 +101,20 @@ def enlarged(scales: Scales, space: SpaceScales, tracks: Sequence[Track]) -> rrb
 
 
 def whole_hole(tracks: Sequence[Track]) -> rrb.Spatial3DView:
-    """The hole at true scale, as far as the cursor."""
+    """The hole at true scale, as far as the cursor, around the bit."""
+    reach = max(track.case.bha.stabilizer_positions[-1] for track in tracks)
     return rrb.Spatial3DView(
         origin="hole",
-        name="True scale",
+        name="× 1",
         background=GROUND,
         line_grid=False,
+        eye_controls=rrb.EyeControls3D(
+            kind=rrb.Eye3DKind.Orbital,
+            position=1.2 * reach * np.array([-1.08, -0.51, -0.25]),
+            look_target=(0.0, 0.0, 0.0),
+            eye_up=UP,
+            tracking_entity=tracks[0].entity("hole/bit"),
+        ),
         overrides={track.entity(f"hole/{thing}"): so_far() for track in tracks for thing in ("drilled_hole", "tube")},
     )
 

@@ -4,13 +4,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from boreprop.analysis.hole_in_space import positions_in_space
+from boreprop.analysis.hole_in_space import NEARLY_VERTICAL, positions_in_space
 from boreprop.run.trajectory import Trajectory
 
 from .scene import Array, Bounds
 from .space_scene import disc_places
 
 LOST = ("average_inclination", "north", "east")  # columns that have no projection
+AZIMUTHS = ("bit_azimuth", "borehole_azimuth", "planned_azimuth")
 PLAN_MARGIN = 0.3  # of the extent of the holes, to either side in the plan view: room for the numbers of metres
 
 
@@ -38,6 +39,20 @@ class SpaceScales:
             inclination, azimuth = rows[f"{axis}_inclination"], rows[f"{axis}_azimuth"]
             ahead = np.sin(inclination) * np.cos(azimuth - self.azimuth)
             columns[f"{axis}_inclination"] = np.arctan2(ahead, np.cos(inclination))
+        return replace(rows, columns=columns)
+
+    def plotted(self, rows: Trajectory) -> Trajectory:
+        """Rows with azimuths as they are plotted: without a jump at north, and nan where a direction is near vertical.
+
+        An azimuth is within half a turn of that of the vertical section.
+        """
+        columns = dict(rows.columns)
+        for name in AZIMUTHS:
+            if name in columns:
+                inclination = columns[name.replace("azimuth", "inclination")]
+                beside = np.mod(columns[name] - self.azimuth + np.pi, 2 * np.pi) - np.pi
+                azimuth = self.azimuth % (2 * np.pi) + beside
+                columns[name] = np.where(inclination > NEARLY_VERTICAL, azimuth, np.nan)
         return replace(rows, columns=columns)
 
     def on_section(self, position: Array) -> Array:

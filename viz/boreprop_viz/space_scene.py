@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from boreprop.analysis.ellipse import NEARLY_VERTICAL
+from boreprop.analysis.hole_in_space import NEARLY_VERTICAL
 from boreprop.case.case import Case
 from boreprop.core.quantities import CLEARANCES
 from boreprop.run.ground import on_rows

@@ -3,12 +3,11 @@
 from dataclasses import replace
 
 from boreprop.analysis.hole import HoleAxis
-from boreprop.run.trajectory import Trajectory
 
 from .entities import log_modes, log_plots, log_tilt_limits
 from .scales import Scales
 from .section import DrilledHole, log_existing_hole
-from .source import Stretch, between, joined
+from .source import Stretch, joined
 from .space_entities import (
     DrilledTube,
     log_bha_in_hole,
@@ -25,15 +24,12 @@ from .space_scene import Discs
 from .track import Track
 from .verdict import Saying, Verdict
 
-KEPT = 12.0  # half lengths of the BHA: rows this far back are kept, for the ripple that is known late
-
 
 class SpaceStream:
-    """Draws the stretches of a run in space one after the other. Nothing is said of its ripple."""
+    """Draws the stretches of a run in space one after the other."""
 
     def __init__(self, track: Track, space: SpaceScales) -> None:
         self.track, self.space = track, space
-        self.rows: Trajectory | None = None  # the last rows
         self.begin = 0.0  # drilled length at the first row, m
         self.holes: dict[str, DrilledHole] = {}  # by view, from the first rows on
         self.tube: DrilledTube | None = None
@@ -49,7 +45,7 @@ class SpaceStream:
             hole.track = self.track
 
     def send(self, stretch: Stretch) -> list[Saying]:
-        """Log the next rows of the run; returns what there is to say of its ripple: nothing."""
+        """Log the next rows of the run; returns what there is to say of its ripple."""
         views = {
             view: replace(stretch, hole=HoleAxis(stretch.hole.length, project(stretch.hole.position)))
             for view, project in projections(self.space).items()
@@ -60,7 +56,7 @@ class SpaceStream:
             for view, seen in views.items():
                 log_existing_hole(self.track, seen.hole, self.begin, view)
                 self.holes[view] = DrilledHole(self.track, self.begin, view)
-        rows = stretch.rows if self.rows is None else joined(self.rows, stretch.rows)
+        rows = stretch.rows if self.verdict.rows is None else joined(self.verdict.rows, stretch.rows)
         for view, hole in self.holes.items():
             hole.log(views[view], rows)
         self.tube.log(stretch, rows)
@@ -69,9 +65,7 @@ class SpaceStream:
         for log in (log_stabilizers_across, log_tilt_across, log_toolface, log_upright):
             log(self.track, self.space, discs)
         for log_curves in (log_plots, log_tilt_limits):
-            log_curves(self.track, stretch.rows)
+            log_curves(self.track, self.space.plotted(stretch.rows))
         self.rippled = log_ripple_in_space(self.track, self.space, stretch, rows, self.begin, self.rippled)
         log_modes(self.track, rows, stretch.rows.row_count)
-        last = float(rows["drilled_length"][-1])
-        self.rows = between(rows, last - KEPT * self.track.case.bha.half_length, last)
-        return []
+        return self.verdict.follow(stretch.rows)

@@ -11,6 +11,7 @@ from boreprop.units import BUILD_LENGTH, SMALL_LENGTH, UNITS, Unit
 from .scene import Array
 
 Colour = tuple[int, int, int]
+DECIMALS = 4  # of the values of a curve
 # the colours of Okabe and Ito, which can be told apart with any colour vision, less their yellow: each of these shows
 # on white and on black
 ORANGE, SKY_BLUE, GREEN = (230, 159, 0), (86, 180, 233), (0, 158, 115)
@@ -92,7 +93,10 @@ SI_OF_HOLE = {  # SI units of `source.hole_columns`, …
     "walk_rate": "rad/m",
     "dogleg_severity": "rad/m",
     "distance_from_plan": "m",
+    "distance_from_plan_high": "m",
+    "distance_from_plan_right": "m",
     "inclination_less_plan": "rad",
+    "azimuth_less_plan": "rad",
 }
 OVER = {name: f"over {BUILD_LENGTH:g} m" for name in ("build_rate", "walk_rate")} | {
     "dogleg_severity": "over half the BHA"
@@ -150,18 +154,23 @@ PLOTS = {
     "rate_of_penetration": Plot("Rate of penetration", ("rate_of_penetration",), (BLUE,)),
 }
 PLOTS_IN_SPACE = {
-    "inclination": replace(PLOTS["inclination"], planned=""),
-    "azimuth": Plot("Azimuth", ("borehole_azimuth", "bit_azimuth"), (HOLE, BIT)),
+    "inclination": PLOTS["inclination"],
+    "azimuth": Plot("Azimuth", ("borehole_azimuth", "bit_azimuth"), (HOLE, BIT), "planned_azimuth"),
     "build_rate": Plot(
-        "Build and walk rate, dogleg severity", ("build_rate", "walk_rate", "dogleg_severity"), (HOLE, PURPLE, OLIVE)
+        "Build and walk rate, dogleg severity", ("build_rate", "walk_rate", "dogleg_severity"), (HOLE, BLUE, OLIVE)
     ),
-    "bit_tilt": Plot(
-        "Bit tilt: size, high, right", ("bit_tilt", "bit_tilt_high", "bit_tilt_right"), (WHITE, BIT, BLUE)
+    "distance_from_plan": Plot(
+        "Distance from the plan: size, high, right",
+        ("distance_from_plan", "distance_from_plan_high", "distance_from_plan_right"),
+        (GREY, BIT, BLUE),
     ),
+    "inclination_less_plan": PLOTS["inclination_less_plan"],
+    "azimuth_less_plan": Plot("Azimuth less that of the plan", ("azimuth_less_plan",), (HOLE,)),
+    "bit_tilt": Plot("Bit tilt: size, high, right", ("bit_tilt", "bit_tilt_high", "bit_tilt_right"), (GREY, BIT, BLUE)),
     "bit_lateral_force": Plot(
         "Bit side force: size, high, right",
         ("bit_lateral_force", "bit_lateral_force_high", "bit_lateral_force_right"),
-        (WHITE, BIT, BLUE),
+        (GREY, BIT, BLUE),
     ),
     "stabilizer_force": replace(PLOTS["stabilizer_force"], title="Contact forces"),
     "rss_force": replace(PLOTS["rss_force"], title="RSS force"),
@@ -171,6 +180,7 @@ PLOTS_IN_SPACE = {
 }
 TABS_IN_SPACE = (
     ("Hole", ("inclination", "azimuth", "build_rate")),
+    ("Plan", ("distance_from_plan", "inclination_less_plan", "azimuth_less_plan")),
     ("Tilt", ("bit_tilt", "bit_lateral_force")),
     ("Forces", ("stabilizer_force", "rss_force", "rss_toolface")),
     ("Drilling", ("active_weight_on_bit", "rate_of_penetration")),

@@ -22,7 +22,7 @@ from boreprop.units import UNITS
 from .scales import Scales
 from .scene import Array
 from .source import Source
-from .style import BY_RUN, GREY, SHADES, Colour, mixed
+from .style import BY_RUN, DECIMALS, GREY, SHADES, Colour, mixed
 
 TIMELINE = "drilled_length_mm"  # the one that a viewer shows first
 DEPTH_TIMELINE = "measured_depth_mm"
@@ -30,7 +30,6 @@ TIME_TIMELINE = "simulation_time"
 TIMELINES = (TIMELINE, DEPTH_TIMELINE, TIME_TIMELINE)
 MODES = "modes"  # the lanes
 MOST_NUMBERED = 2  # runs
-DECIMALS = 4  # of a curve
 LABEL_APART = 0.09  # of the width of the bit frame, from the tail of an arrow to the middle of its number, which …
 LABELS_APART = 0.035  # of the height of the bit frame, from the number of a run to that of the next
 LABEL_AT_MOST = 0.8  # … is at most so far from the middle of the frame, parts of its half width

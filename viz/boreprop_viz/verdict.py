@@ -8,12 +8,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from boreprop.analysis.ellipse import Ellipse, Shape
+from boreprop.analysis.hole_in_space import is_in_space
 from boreprop.analysis.rippling import Rippling, find_rippling, last_wave, visible_waves
 from boreprop.analysis.search import State
+from boreprop.analysis.space import direction_of
 from boreprop.analysis.summary import SHORT_WAVE
 from boreprop.analysis.waves import large_until
 from boreprop.case.case import Case
 from boreprop.report.tables.stations import beside
+from boreprop.report.tables.summary import ROUND, SHAPES
 from boreprop.run.trajectory import Trajectory
 from boreprop.units import SMALL_LENGTH, UNITS, Unit
 
@@ -27,6 +31,7 @@ FADED = 0.5  # of an amplitude: a wave that dies out swings while it does, and i
 STILL = 0.5  # of an amplitude: a ripple that is at least this large goes on while force or weight change
 NEAR = 0.1  # m: a smaller change of the distance from the plan is not told
 SO_FAR = "no ripple so far"
+Kind = tuple[State, Shape | None]
 
 
 class Saying(NamedTuple):
@@ -40,9 +45,9 @@ class Saying(NamedTuple):
 class Verdict:
     """Follows a run, and says what is true of it.
 
-    A new state of the ripple is told once two checks running have found it, or at the end of the run. While force or
-    weight change too often to tell, a ripple counts as going on. Places are drilled lengths from an `origin`, m: with
-    the measured depth of the start they are measured depths.
+    A new state of the ripple, or in space a new shape, is told once two checks running have found it, or at the end of
+    the run. While force or weight change too often to tell, a ripple counts as going on. Places are drilled lengths
+    from an `origin`, m: with the measured depth of the start they are measured depths.
     """
 
     def __init__(self, case: Case, origin: float = 0.0) -> None:
@@ -51,9 +56,10 @@ class Verdict:
         self.rows: Trajectory | None = None  # the last rows, as far back as a check needs
         self.start, self.steps = 0.0, 1  # where the run starts, m, and how many steps from there the next check is
         self.checked = -np.inf  # the last row that was checked, m
-        self.state = State.NONE  # at the last check
+        self.kind: Kind = (State.NONE, None)  # at the last check
         self.told = Rippling()  # the wave that was told last
-        self.began: float | None = None  # from where on the present ripple has had half its size, m
+        self.began: float | None = None  # from where on the present ripple has had half its size, m, …
+        self.wound = np.nan  # … and from where on the present spiral has wound to its side, m
         self.ended: tuple[float, Rippling] | None = None  # a ripple that is over, until it is known where it ended
         self.past = ""  # the last ripple that is over, in words
         self.off_plan = 0.0  # the distance from the plan that was told last, m
@@ -83,7 +89,7 @@ class Verdict:
             if recent.row_count and recent["drilled_length"][-1] > self.checked:
                 self._check(recent)
                 sayings += self._say(recent)
-            self.steps += SELDOM if self.state is self.told.state is State.LASTING else 1
+            self.steps += SELDOM if self.kind[0] is self.told.state is State.LASTING else 1
         self.rows = between(rows, length[-1] - self.reach, np.inf)
         return sayings
 
@@ -109,13 +115,13 @@ class Verdict:
 
     def _check(self, recent: Trajectory, sure: bool = False) -> None:
         """Look at the last rows, and find words for what has changed noticeably."""
-        wave = last_wave(recent)
+        wave = find_rippling(recent) if is_in_space(recent) else last_wave(recent)
         going_on = self.began is not None and wave.amplitude > STILL * self.told.amplitude
         if wave.state is State.STEERED and going_on:
             wave = replace(wave, state=State.LASTING)
         before, self.checked = self.checked, float(recent["drilled_length"][-1])
-        confirmed, self.state = sure or wave.state is self.state, wave.state
-        if sure or (confirmed and (wave.state is not self.told.state or _changed(wave, self.told))):
+        confirmed, self.kind = sure or _kind(wave) == self.kind, _kind(wave)
+        if sure or (confirmed and (self.kind != _kind(self.told) or _changed(wave, self.told))):
             self._tell(replace(find_rippling(recent), state=wave.state), recent)
         self._see_spacing(recent)
         self._see_plan(recent, sure)
@@ -123,15 +129,15 @@ class Verdict:
 
     def _tell(self, wave: Rippling, recent: Trajectory) -> None:
         """Put a wave into words that was found in the last rows."""
-        size = f"±{rounded(wave.amplitude, UNITS['rad'])}, ±{rounded(wave.axis_amplitude, SMALL_LENGTH)}"
-        waves = f"waves of {rounded(wave.wavelength, UNITS['m'], digits=3)}, {size}"
         before, self.told = self.told, wave
         if wave.ripples:
-            all_along = wave.since <= recent["drilled_length"][0] + wave.wavelength
-            if self.began is None or not all_along:
-                self.began = wave.since
+            first = float(recent["drilled_length"][0])
+            self.began = _beginning(self.began, wave.since, first + wave.wavelength)
+            if wave.ellipse is not None:
+                wound = self.wound if _kind(wave)[1] is _kind(before)[1] else None
+                self.wound = _beginning(wound, wave.ellipse.since, first + 2 * wave.wavelength)
             what = "growing" if wave.state is State.GROWING else "rippling"
-            self.ripple = f"{what} since {self._place(self.began)}: {waves}"
+            self.ripple = f"{what} since {self._place(self.began)}: {self._waves(wave)}"
             return
         if self.began is not None:
             self.ended, self.past = (self.began, before), f"; rippling from {self._place(self.began)}"
@@ -140,10 +146,19 @@ class Verdict:
             self.ended, self.past = None, f"{self.past} to {self._place(end)}"
         now = {
             State.NONE: "no ripple" if self.past else SO_FAR,
-            State.DYING: f"dying out: {waves}",
-            State.STEERED: f"{waves}, but force or weight change too often to tell",
+            State.DYING: f"dying out: {_plain_waves(wave)}",
+            State.STEERED: f"{_plain_waves(wave)}, but force or weight change too often to tell",
         }
         self.ripple = now[wave.state] + self.past
+
+    def _waves(self, wave: Rippling) -> str:
+        """The waves of a ripple in words; in space with their shape, and where a spiral began to wind."""
+        ellipse = wave.ellipse
+        if ellipse is None or ellipse.shape in (Shape.PLANE, Shape.UNCLEAR):
+            return _plain_waves(wave) + (SHAPES[ellipse.shape] if ellipse else "")
+        winding = f"{SHAPES[ellipse.shape].removeprefix(', ')} since {self._place(self.wound)}"
+        size = rounded(wave.amplitude, UNITS["rad"])
+        return f"{winding}, pitch {_long(wave)}, {_radius(ellipse)}, ±{size}"
 
     def _place(self, length: float) -> str:
         """A drilled length, m, in words."""
@@ -165,7 +180,7 @@ class Verdict:
             self.plan = ""
         elif sure or not self.plan or abs(distance - self.off_plan) > max(NEAR, NOTICEABLE * abs(self.off_plan)):
             self.off_plan = distance
-            self.plan = f"; {beside(distance, '.1f')} of the plan" if abs(distance) > NEAR / 2 else "; on the plan"
+            self.plan = f"; {_beside_plan(recent)}" if abs(distance) > NEAR / 2 else "; on the plan"
 
     def _see_sag(self, recent: Trajectory) -> None:
         """Look whether the axis of the BHA leaves the hole in some rows, where the model does not hold."""
@@ -181,6 +196,48 @@ class Verdict:
             self.sag = f"; {at} behind the bit the axis of the BHA leaves the hole, by {by}: the model does not hold"
 
 
+def _beside_plan(rows: Trajectory) -> str:
+    """How far the hole is off its plan at the last of some rows, in words."""
+    distance = float(rows["distance_from_plan"][-1])
+    if "distance_from_plan_high" not in rows:
+        return f"{beside(distance, '.1f')} of the plan"
+    off = f"{UNITS['m'].text(distance, '.1f')} off the plan"
+    high, right = (float(rows[f"distance_from_plan_{side}"][-1]) for side in ("high", "right"))
+    if np.isnan(high):  # which a vertical plan does not have
+        return off
+    return f"{off}, {beside(high, '.1f')}, {beside(right, '.1f', ('right', 'left'))}"
+
+
+def _kind(wave: Rippling) -> Kind:
+    """What kind of wave it is; the shape is that of a ripple in space."""
+    return wave.state, wave.ellipse.shape if wave.ripples and wave.ellipse else None
+
+
+def _beginning(before: float | None, found: float, known: float) -> float:
+    """Where something began, m: as found, unless that is where the rows begin, before the length `known`, m."""
+    return found if before is None or found > known else before
+
+
+def _plain_waves(wave: Rippling) -> str:
+    """The length of waves, and how far the direction and the axis of the hole swing in them."""
+    return (
+        f"waves of {_long(wave)}, ±{rounded(wave.amplitude, UNITS['rad'])}, "
+        f"±{rounded(wave.axis_amplitude, SMALL_LENGTH)}"
+    )
+
+
+def _long(wave: Rippling) -> str:
+    return rounded(wave.wavelength, UNITS["m"], digits=3)
+
+
+def _radius(ellipse: Ellipse) -> str:
+    """The radius of a hole that winds, or the semi-axes of its ellipse if that is not round."""
+    major = rounded(ellipse.major, SMALL_LENGTH)
+    if ellipse.minor > ROUND * ellipse.major:
+        return f"radius {major}"
+    return f"±{major} by ±{rounded(ellipse.minor, SMALL_LENGTH)}"
+
+
 def _end(recent: Trajectory, began: float, ripple: Rippling) -> float | None:
     """Where a ripple that is over fell to half its size, m; None if it has not yet."""
     rows = between(recent, began + 2 * ripple.wavelength, np.inf)
@@ -188,7 +245,8 @@ def _end(recent: Trajectory, began: float, ripple: Rippling) -> float | None:
     if not len(length):
         return None
     least = ripple.amplitude / 2 / 2**0.5  # as a root mean square
-    end = large_until(length, rows["borehole_inclination"], ripple.wavelength, least)
+    direction = direction_of(rows) if is_in_space(rows) else rows["borehole_inclination"]
+    end = large_until(length, direction, ripple.wavelength, least)
     return end if end < length[-1] else None
 
 

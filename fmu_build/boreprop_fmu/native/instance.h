@@ -129,6 +129,13 @@ static Inputs held_inputs(const Component *c) {
     return inputs;
 }
 
+/* Whether an input has a value for which a layer stands in, unless it changes along the way. */
+static int is_layers_own(const Component *c, int input, double value) {
+    const Drilling *drilling = &c->run->drilling;
+    int rock = input - IN_LATERAL_STEERING_RESISTANCE;
+    return rock >= 0 && rock < ROCK && stands_in(&drilling->ground, drilling->integrator.now.layer, rock, value);
+}
+
 /* What the run is given: without weight there is no ηΠ, and the last one that drilled stands for it. */
 static Inputs present_inputs(const Component *c) {
     double weight = c->value[IN_ACTIVE_WEIGHT_ON_BIT];

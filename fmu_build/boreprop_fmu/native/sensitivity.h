@@ -106,8 +106,7 @@ static double change_with(
     int off_bottom = c->value[IN_ACTIVE_WEIGHT_ON_BIT] == 0.0;
     if (off_bottom && (given == IN_ACTIVE_WEIGHT_ON_BIT || output->quantity == OUT_ETA_PI)) return 0.0;
     const Drilling *drilling = &c->run->drilling;
-    int rock = (int)given - IN_LATERAL_STEERING_RESISTANCE, layer = drilling->integrator.now.layer;
-    if (rock >= 0 && rock < ROCK && stands_in(&drilling->ground, layer, rock, c->value[given])) return 0.0;
+    if (is_layers_own(c, (int)given, c->value[given])) return 0.0;
     double eta = drilling->given.lateral_steering_resistance; /* in the layer where the bit is */
     return output_gain(drilling, at, (Output)output->quantity, output->index, (Input)given, eta);
 }

@@ -5,7 +5,7 @@
 
 #include "text.h"
 
-#define STATE_FORMAT "boreprop-native-fmu-state-6"
+#define STATE_FORMAT "boreprop-native-fmu-state-7"
 enum { SEAL = sizeof STATE_FORMAT + 71 }; /* bytes of the line: all but the format are of fixed width */
 
 /* A body. */

@@ -6,22 +6,30 @@
 
 #define LEAST_SHARE 5e-4 /* of a weight at one end of a step, at least, is that at the other end, also where it is 0 */
 
-/* Drill to a length while the inputs go from their present values to those at its end; force and active weight on bit
-   are linear in the length, bit, rock and the whole weight on bit are held. If that fails, nothing has moved. */
+/* The change per metre of an input on a way to its value at the end. */
+static double slope_to(const Component *c, const double end[INPUT_COUNT], int input, double way) {
+    return way > 0 ? (end[input] - c->value[input]) / way : 0.0;
+}
+
+/* Drill to a length while the inputs go from their present values to those at its end; force, active weight on bit, and
+   bit and rock are linear in the length, the others are held. If that fails, nothing has moved. */
 static int drill_on(Component *c, double to, const double end[INPUT_COUNT], char why[LINE]) {
-    double way = to - drilling_length(&c->run->drilling), force = c->value[IN_RSS_FORCE];
-    double weight = c->value[IN_ACTIVE_WEIGHT_ON_BIT], end_weight = end[IN_ACTIVE_WEIGHT_ON_BIT];
-    double least = LEAST_SHARE * larger(weight, end_weight);
-    int axial = c->packed.variables.structure.axial, held = 1, inputs_end = c->packed.variables.first_output;
-    for (int i = IN_LATERAL_STEERING_RESISTANCE; i < inputs_end; i++) held &= end[i] == c->value[i];
-    int stays = end[IN_RSS_FORCE] == force && end_weight == weight;
+    double way = to - drilling_length(&c->run->drilling), weight = c->value[IN_ACTIVE_WEIGHT_ON_BIT];
+    double end_weight = end[IN_ACTIVE_WEIGHT_ON_BIT], least = LEAST_SHARE * larger(weight, end_weight);
+    int axial = c->packed.variables.structure.axial, held = 1, stays = 1;
+    for (int i = 0; i < c->packed.variables.first_output; i++) {
+        if (i == IN_RATE_OF_PENETRATION || end[i] == c->value[i]) continue;
+        stays = 0;
+        if (i > IN_BIT_TILT_LIMIT || is_layers_own(c, i, end[i])) held = 0;
+    }
     weight = larger(weight, least), end_weight = larger(end_weight, least);
     Inputs inputs = held_inputs(c);
-    inputs.rss_force = force, inputs.active_weight_on_bit = weight;
-    if (way > 0) {
-        inputs.rss_force_slope = (end[IN_RSS_FORCE] - force) / way;
-        inputs.active_weight_on_bit_slope = (end_weight - weight) / way;
-    }
+    inputs.rss_force = c->value[IN_RSS_FORCE], inputs.active_weight_on_bit = weight;
+    inputs.rss_force_slope = slope_to(c, end, IN_RSS_FORCE, way);
+    inputs.active_weight_on_bit_slope = way > 0 ? (end_weight - weight) / way : 0.0;
+    inputs.lateral_steering_resistance_slope = slope_to(c, end, IN_LATERAL_STEERING_RESISTANCE, way);
+    inputs.angular_steering_resistance_slope = slope_to(c, end, IN_ANGULAR_STEERING_RESISTANCE, way);
+    inputs.bit_tilt_limit_slope = slope_to(c, end, IN_BIT_TILT_LIMIT, way);
     if (!advance(c, to, inputs, why)) return 0;
     if (way > 0) c->weight = end_weight;
     c->run_has_inputs = held && (stays || (way > 0 && !axial));

@@ -31,7 +31,7 @@ from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop_fmu.python.process import forget, give_ctrl_c_back, open_log, write_to_user
 
-STATE_FORMAT = "boreprop-fmu-state-7"
+STATE_FORMAT = "boreprop-fmu-state-8"
 INSTANTIATED, INITIALIZATION, STEPPING, TERMINATED = "instantiated", "initialization", "stepping", "terminated"
 BEFORE_THE_END = (INSTANTIATED, INITIALIZATION, STEPPING)
 TIGHTEST, LOOSEST = 1e-12, 1e-5  # tolerance that a host may choose: some choose 1e-3 always, too coarse for a hole

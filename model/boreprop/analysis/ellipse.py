@@ -7,23 +7,24 @@ the hole winds to its side. If they are as large as each other, the ellipse is a
 
 from dataclasses import dataclass
 from enum import StrEnum
-from math import atan2, hypot, inf, nan, pi, radians
+from math import atan2, expm1, inf, nan, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
 from ..arrays import Complexes, Floats
+from .hole_in_space import NEARLY_VERTICAL, inclination_of, sides
 from .search import AT_THE_END
 from .space import untwisted
 from .waves import mean_over, slope
 
 NARROW = 0.1  # minor over major axis: a narrower ellipse counts as a line
+WIDE = 0.2  # the same: where all of the last waves are wider, and wind to one side, that is certain
 HARMONICS = 16  # of a wave that are looked at: what repeats may be a pattern of several turns
-CERTAIN = 3.0  # standard errors by which the hole must wind to one side
+CERTAIN = 4.0  # standard errors by which the hole must wind to one side: with 3 noise makes one plane in 800 wind
 FOLLOWED = 20  # waves at the end: in none may it wind to the other side, and from their differences comes the error
 SLOW = 0.02  # of a turn in a wave: a phase that drifts faster than this comes from irregular waves
 HALF = 0.5  # of their size at the end: smaller waves count as something else
-NEARLY_VERTICAL = radians(3.0)  # up to here the high side says little, and directions count from north
 
 
 class Shape(StrEnum):
@@ -142,19 +143,29 @@ def _shape(narrow: float, winding: Floats) -> Shape:
     """The shape of waves, from minor over major axis of the last four and by how much each of the last ones winds."""
     if narrow < NARROW:
         return Shape.PLANE
-    late = winding[-AT_THE_END:]
-    error = np.sqrt(np.mean(np.diff(winding) ** 2) / 2 / len(late)) if len(winding) > 1 else inf
+    late, changes = winding[-AT_THE_END:], np.diff(winding)
+    error = np.sqrt(np.mean(changes**2) / 2 / len(late)) if len(changes) else inf
     other = -min(winding * np.sign(late.mean()))  # by how much it winds to the other side, at most
-    if abs(late.mean()) < max(NARROW / 2, CERTAIN * error) or other > NARROW:
+    certain = abs(late.mean()) >= errors_from(len(changes)) * error or (min(abs(late)) > WIDE and other < 0.0)
+    if abs(late.mean()) < NARROW / 2 or not certain or other > NARROW:
         return Shape.UNCLEAR
     return Shape.RIGHT if late.mean() > 0 else Shape.LEFT
 
 
+def errors_from(count: int) -> float:
+    """As many standard errors, themselves from so many values, as are as certain as `CERTAIN` from many.
+
+    A quantile of Student's distribution by the formula of Wallace (1959), right to 10 % from three values on.
+    """
+    if not count:
+        return inf
+    normal = CERTAIN * (8 * count + 3) / (8 * count + 1)
+    return sqrt(count * expm1(normal**2 / count))
+
+
 def _side(across: Floats, forward: Floats) -> tuple[float, bool]:
     """The side to which a vector across the hole is, from 0 to π, and whether it counts from north."""
-    north, east, down = forward.tolist()
-    sideways = hypot(north, east)
-    if atan2(sideways, down) < NEARLY_VERTICAL:
+    if inclination_of(forward) < NEARLY_VERTICAL:
         return atan2(across[1], across[0]) % pi, True
-    high = np.array([north * down, east * down, -(sideways**2)]) / sideways
-    return atan2(across @ np.cross(forward, high), across @ high) % pi, False
+    high, right = sides(forward)
+    return atan2(across @ right, across @ high) % pi, False

@@ -3,7 +3,8 @@
 Positions are north, east and down of the bit at the start of the run; lengths are measured from there along the hole.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,8 @@ from ..core.survey import Survey
 from ..run.trajectory import Trajectory
 from .hole import POINTS_BEHIND, Hole, HoleAxis
 
-STRAIGHT = 1e-6  # rad: a piece that turns by less is drawn straight, which is wrong by 1e-7 of its length at most
+STRAIGHT = 1e-9  # rad: a piece that turns by less is straight, since rounding decides to which side it turns
+NEARLY_VERTICAL = np.radians(3.0)  # up to here the high side says little, and directions count from north
 UPRIGHT = 1e-9  # a direction whose horizontal part is less has no azimuth
 
 
@@ -47,34 +49,58 @@ class SurveyInSpace:
     position: Floats
 
     @classmethod
-    def of(cls, survey: Survey) -> "SurveyInSpace":
-        """The hole of a survey, with the last station at the origin."""
-        length = np.asarray(survey.measured_depth) - survey.measured_depth[-1]
+    def of(cls, survey: Survey, start: float | None = None) -> "SurveyInSpace":
+        """The hole of a survey, at the origin where its measured depth is `start`, m; None: at its last station."""
+        depth = np.asarray(survey.measured_depth)
+        length = depth - (depth[-1] if start is None else start)
         azimuth = np.asarray(survey.azimuth) if survey.azimuth else np.zeros(length.size)
         hole = cls(length, directions(np.asarray(survey.inclination), azimuth), np.zeros((length.size, 3)))
         pieces = hole._from_station(np.arange(length.size - 1), np.diff(length))
-        position = np.concatenate((np.zeros((1, 3)), np.cumsum(pieces, axis=0)))
-        return cls(length, hole.direction, position - position[-1])
+        hole = replace(hole, position=np.concatenate((np.zeros((1, 3)), np.cumsum(pieces, axis=0))))
+        return replace(hole, position=hole.position - hole.at(np.array(0.0)))
 
     def at(self, length: Floats) -> Floats:
         """Positions at lengths, m, shape (..., 3)."""
-        station = np.clip(np.searchsorted(self.length, length, side="right") - 1, 0, None)
+        station = self._station(length)
         position: Floats = self.position[station] + self._from_station(station, length - self.length[station])
         return position
 
+    def turning_at(self, length: Floats) -> tuple[Floats, Floats]:
+        """Directions at lengths, m, and by how much they change along the hole, 1/m, shape (..., 3) each."""
+        station = self._station(length)
+        start, side, curvature, turn = self._arc(station, length - self.length[station])
+        cosine, sine = np.cos(turn), np.sin(turn)
+        return cosine * start + sine * side, curvature * (cosine * side - sine * start)
+
+    @cached_property
+    def _bends(self) -> tuple[Floats, Floats]:
+        """To which side the hole turns below each station, (N, 3), and its curvature there, 1/m, (N,)."""
+        start, end = self.direction[:-1], self.direction[1:]
+        turn = angle_between(start, end)
+        bent = turn > STRAIGHT
+        across = end - (start * end).sum(axis=-1, keepdims=True) * start
+        size = np.where(bent, np.linalg.norm(across, axis=-1), 1.0)
+        side = np.append(across / size[:, None], np.zeros((1, 3)), axis=0)
+        return side, np.append(np.where(bent, turn / np.diff(self.length), 0.0), 0.0)
+
+    def _station(self, length: Floats) -> NDArray[np.intp]:
+        """The last station before each of some lengths, m, or the first one."""
+        return np.clip(np.searchsorted(self.length, length, side="right") - 1, 0, None)
+
+    def _arc(self, station: NDArray[np.intp], along: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """Of the arc below stations its direction there, the side to which it turns, its curvature, 1/m, and its turn.
+
+        The turn is that up to this far along, m, in rad. The shapes are (..., 3) twice and (..., 1) twice.
+        """
+        side, curvature = self._bends
+        bend = np.where(along < 0.0, 0.0, curvature[station])[..., None]
+        return self.direction[station], side[station], bend, bend * along[..., None]
+
     def _from_station(self, station: NDArray[np.intp], along: Floats) -> Floats:
         """From stations to the places this far along, m, which the next station is not before."""
-        following = np.minimum(station + 1, self.length.size - 1)
-        start, end = self.direction[station], self.direction[following]
-        turn = angle_between(start, end)
-        turn[(turn < STRAIGHT) | (along < 0.0)] = 0.0
-        apart = np.where(turn > 0.0, self.length[following] - self.length[station], 1.0)
-        straight = turn == 0.0
-        own = np.where(straight, 1.0, turn)
-        done = own * along / apart
-        of_start = np.where(straight, along, apart * (np.cos(own - done) - np.cos(own)) / (own * np.sin(own)))
-        of_end = np.where(straight, 0.0, apart * (1.0 - np.cos(done)) / (own * np.sin(own)))
-        way: Floats = of_start[..., None] * start + of_end[..., None] * end
+        start, side, _, turn = self._arc(station, along)
+        chord = along[..., None] * np.sinc(turn / (2 * np.pi))
+        way: Floats = chord * (np.cos(turn / 2) * start + np.sin(turn / 2) * side)
         return way
 
 
@@ -117,3 +143,20 @@ def azimuth_of(direction: Floats) -> Floats:
     north, east = direction[..., 0], direction[..., 1]
     azimuth = np.mod(np.arctan2(east, north), 2 * np.pi)
     return np.where(np.hypot(north, east) > UPRIGHT, azimuth, np.nan)
+
+
+def turned_to(azimuth: Floats, other: Floats) -> Floats:
+    """How far azimuths are from others, rad, from −π to π."""
+    return np.mod(azimuth - other + np.pi, 2 * np.pi) - np.pi
+
+
+def sides(forward: Floats) -> tuple[Floats, Floats]:
+    """The high side and the right of directions, looking along them, shape (..., 3) each.
+
+    Within `NEARLY_VERTICAL` of the vertical they are the sides to the north and to the right of that.
+    """
+    vertical = inclination_of(forward) < NEARLY_VERTICAL
+    towards = np.where(vertical[..., None], (1.0, 0.0, 0.0), (0.0, 0.0, -1.0))
+    across = towards - np.sum(towards * forward, axis=-1, keepdims=True) * forward
+    high = across / np.linalg.norm(across, axis=-1, keepdims=True)
+    return high, np.cross(forward, high)

@@ -13,10 +13,7 @@ from ..arrays import Floats
 from ..case.tables import read_survey
 from ..core.survey import Survey
 from ..errors import InputError
-from ..run.completion import case_of
-from ..run.trajectory import Trajectory
-from .hole import HoleAxis, SurveyedHole, chord_inclination, hole_of
-from .hole_in_space import is_in_space
+from .hole import HoleAxis, SurveyedHole, chord_inclination
 
 ROUNDING = 1e-6  # m of measured depth: a hole that goes on this little beyond its plan ends with it
 
@@ -50,10 +47,19 @@ def read_plan(path: str | Path, start: float) -> Survey:
     """
     plan = read_survey(path)
     try:
-        planned_hole(plan, start)
+        check_reach(plan, start)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
     return plan
+
+
+def check_reach(plan: Survey, start: float) -> None:
+    """Raise `InputError` if a plan does not include the measured depth `start`, m, at which drilling starts."""
+    first, last = plan.measured_depth[0], plan.measured_depth[-1]
+    if not first <= start <= last:
+        raise InputError(
+            f"measured_depth of the plan: must include {start:g} m, where drilling starts, got {first:g} to {last:g}"
+        )
 
 
 def planned_hole(plan: Survey, start: float) -> SurveyedHole:
@@ -62,12 +68,13 @@ def planned_hole(plan: Survey, start: float) -> SurveyedHole:
     Raises
     ------
     InputError
-        If the plan does not include the measured depth `start`, m, at which drilling starts.
+        If the plan does not include the measured depth `start`, m, at which drilling starts, or leaves its plane.
     """
-    first, last = plan.measured_depth[0], plan.measured_depth[-1]
-    if not first <= start <= last:
+    check_reach(plan, start)
+    if plan.turns:
         raise InputError(
-            f"measured_depth of the plan: must include {start:g} m, where drilling starts, got {first:g} to {last:g}"
+            "azimuth of the plan: must be the same everywhere for a run in the plane, got a plan that turns: "
+            "drill it in space (--dimensions 3)"
         )
     return SurveyedHole.of(plan, start)
 
@@ -96,23 +103,3 @@ def deviation_from(plan: SurveyedHole, hole: HoleAxis, length: Floats, over: flo
         inclination=np.where(outside, np.nan, chord_inclination(hole, length, over) - planned),
         planned_inclination=np.where(outside, np.nan, planned),
     )
-
-
-def check_in_plane_of_plan(run: Trajectory) -> None:
-    """Raise `InputError` if a run is in space, for a plan lies in a plane."""
-    if is_in_space(run):
-        raise InputError(
-            "plan: must be left out for a run in space, got one (--stations lists the run with its azimuth)"
-        )
-
-
-def deviation_of(run: Trajectory, plan: SurveyedHole, over: float) -> Deviation:
-    """How far each row of a run is off its plan, see `deviation_from`.
-
-    Raises
-    ------
-    InputError
-        If the run lacks its case, or is in space.
-    """
-    check_in_plane_of_plan(run)
-    return deviation_from(plan, hole_of(run, case_of(run).survey, over), run["drilled_length"], over)

@@ -9,8 +9,17 @@ from ..core.checks import check_number
 from ..run.completion import case_of
 from ..run.trajectory import Trajectory
 from .hole import SurveyedHole, chord_inclination, hole_of
-from .hole_in_space import angle_between, azimuth_of, chord_direction, hole_in_space, inclination_of, is_in_space
-from .plan import Deviation, check_in_plane_of_plan, deviation_from
+from .hole_in_space import (
+    SurveyInSpace,
+    angle_between,
+    azimuth_of,
+    chord_direction,
+    hole_in_space,
+    inclination_of,
+    is_in_space,
+)
+from .plan import Deviation
+from .plan_in_space import DeviationInSpace, off_plan
 from .rippling import find_rippling
 from .summary import averaging_length
 
@@ -48,14 +57,18 @@ class Stations:
     true_vertical_depth: Floats
     displacement: Floats
     dogleg_severity: Floats
-    deviation: Deviation | None = None
+    deviation: Deviation | DeviationInSpace | None = None
     azimuth: Floats | None = None
     north: Floats | None = None
     east: Floats | None = None
 
 
 def list_stations(
-    run: Trajectory, spacing: float, plan: SurveyedHole | None = None, *, averaged_over: float | None = None
+    run: Trajectory,
+    spacing: float,
+    plan: SurveyedHole | SurveyInSpace | None = None,
+    *,
+    averaged_over: float | None = None,
 ) -> Stations:
     """List a run at survey stations.
 
@@ -68,7 +81,7 @@ def list_stations(
     spacing
         Measured depth from station to station, m.
     plan
-        The `planned_hole` of the run.
+        The planned hole of the run, see `plan_in_space.plan_of`.
     averaged_over
         The length of hole over which inclinations are averaged, m; without it, that of `summarize`.
 
@@ -80,8 +93,6 @@ def list_stations(
         If the run lacks its case or a column.
     """
     check_number("spacing", spacing, above=0.0)
-    if plan is not None:
-        check_in_plane_of_plan(run)
     case = case_of(run)
     over = averaging_length(case.bha, find_rippling(run)) if averaged_over is None else averaged_over
     zero = case.survey.measured_depth[-1]
@@ -91,7 +102,7 @@ def list_stations(
     before = np.minimum(np.append(-np.inf, length[:-1]), length - over)
     before[0] = length[0] - over
     if is_in_space(run):
-        return _in_space(run, over, depth, length, before)
+        return _in_space(run, plan, over, depth, length, before)
     hole = hole_of(run, case.survey, 2 * over)
     position, inclination = hole.at(length), chord_inclination(hole, length, over)
     turn = inclination - chord_inclination(hole, before, over)
@@ -102,11 +113,18 @@ def list_stations(
         true_vertical_depth=position[:, 1],
         displacement=position[:, 0],
         dogleg_severity=np.abs(turn) / (length - before),
-        deviation=None if plan is None else deviation_from(plan, hole, length, over),
+        deviation=None if plan is None else off_plan(plan, hole, length, over),
     )
 
 
-def _in_space(run: Trajectory, over: float, depth: Floats, length: Floats, before: Floats) -> Stations:
+def _in_space(
+    run: Trajectory,
+    plan: SurveyedHole | SurveyInSpace | None,
+    over: float,
+    depth: Floats,
+    length: Floats,
+    before: Floats,
+) -> Stations:
     """A run in space at stations, with the lengths from which the dogleg severity of each is taken."""
     hole = hole_in_space(run, case_of(run).survey, 2 * over)
     position, direction = hole.at(length), chord_direction(hole, length, over)
@@ -117,6 +135,7 @@ def _in_space(run: Trajectory, over: float, depth: Floats, length: Floats, befor
         true_vertical_depth=position[:, 2],
         displacement=np.hypot(position[:, 0], position[:, 1]),
         dogleg_severity=angle_between(chord_direction(hole, before, over), direction) / (length - before),
+        deviation=None if plan is None else off_plan(plan, hole, length, over),
         azimuth=azimuth_of(direction),
         north=position[:, 0],
         east=position[:, 1],

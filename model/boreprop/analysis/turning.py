@@ -7,9 +7,16 @@ import numpy as np
 
 from ..arrays import Floats
 from ..core.survey import Survey
-from .ellipse import NEARLY_VERTICAL
 from .hole import HoleAxis
-from .hole_in_space import SurveyInSpace, angle_between, azimuth_of, chord_direction, inclination_of
+from .hole_in_space import (
+    NEARLY_VERTICAL,
+    SurveyInSpace,
+    angle_between,
+    azimuth_of,
+    chord_direction,
+    inclination_of,
+    turned_to,
+)
 
 
 def existing_in_space(survey: Survey, reach: float, spacing: float) -> HoleAxis:
@@ -31,7 +38,7 @@ def turning_in_space(hole: HoleAxis, length: Floats, over: float, chord: float) 
     Inclinations and azimuths are those of chords. Where one of these is nearly vertical the azimuth says little: nan.
     """
     now, before = (chord_direction(hole, at, chord) for at in (length, length - over))
-    walk = np.mod(azimuth_of(now) - azimuth_of(before) + np.pi, 2 * np.pi) - np.pi
+    walk = turned_to(azimuth_of(now), azimuth_of(before))
     known = np.minimum(inclination_of(now), inclination_of(before)) > NEARLY_VERTICAL
     return (inclination_of(now) - inclination_of(before)) / over, np.where(known, walk, np.nan) / over
 

@@ -146,7 +146,8 @@ def dump_case(case: Case, **run: str | None) -> str:
         if quantity.key and quantity.field and there:
             table, key = quantity.key.split(".")
             value = attrgetter(quantity.field)(case)
-            if value in (quantity.start, ()) and quantity.size != "n-1":
+            left_out = value in (quantity.start, ()) if isinstance(value, tuple) else value == quantity.start
+            if left_out and quantity.size != "n-1":
                 continue
             kinds = {"String": str, "Boolean": bool, "Integer": int}
             written = file_degrees if key.endswith("_deg") else kinds.get(quantity.kind, float)

@@ -160,8 +160,8 @@ class InputSchedule:
         Name of each input in the table of quantities, or of a clearance, and its value at each of these lengths, in SI
         units, shape (k,).
     interpolation
-        "held" or "linear". Bit and rock, clearances, the whole weight on bit and the rate of penetration are always
-        constant from each entry to the next.
+        "held" or "linear". Clearances, the whole weight on bit and the rate of penetration are always constant from
+        each entry to the next.
 
     Raises
     ------

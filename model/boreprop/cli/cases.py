@@ -4,13 +4,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
+import numpy as np
 import typer
 
 from ..case.case import Case, check_plane
 from ..case.file import load_case, read_case
 from ..case.usual import unusual
+from ..core.quantities import BY_NAME
 from ..core.system import scale
-from ..errors import InputError, ParameterError
+from ..errors import InputError, ParameterError, shown
 from ..run.results import read_trajectory
 from ..run.trajectory import Trajectory
 from . import console
@@ -37,11 +39,20 @@ def open_case(path: Path, *, in_plane: bool = True) -> Case:
         if case.bha.structure.is_of_the_paper:  # others are checked by the native engine
             scale(case.bha, replace(case.bit, walk_angle=0.0))
     except ParameterError as error:  # of a number that no key has, so the case is not refused for a key
-        raise InputError(f"{path}: {error}") from error
+        raise InputError(f"{path}: {as_in_file(error)}") from error
     found = notes + unusual(case)
     if found:
         console.warn(f"{path}: {'; '.join(found)}")
     return case
+
+
+def as_in_file(error: ParameterError) -> str:
+    """What is wrong with a parameter; with an angle, by its key in the case file and in degrees."""
+    quantity = BY_NAME.get(error.name)
+    if quantity is None or not quantity.key.endswith("_deg"):
+        return str(error)
+    values = np.round(np.degrees(np.asarray(error.value)), 9).tolist()
+    return f"{quantity.key}: {error.constraint}, got {shown(values)}"
 
 
 def open_run(run_file: Path, case_file: Path | None) -> Trajectory:

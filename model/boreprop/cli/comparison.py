@@ -20,7 +20,10 @@ def compare_command(
     run_file: RunFile,
     survey_file: Annotated[
         Path,
-        typer.Argument(metavar="SURVEY.csv", help="What was measured: columns measured_depth, inclination_deg."),
+        typer.Argument(
+            metavar="SURVEY.csv",
+            help="What was measured: columns measured_depth, inclination_deg and, for a run in space, azimuth_deg.",
+        ),
     ],
     case_file: RunCase = None,
     output: Annotated[Path | None, typer.Option(metavar="PICTURE.png", help="Draw both into this file.")] = None,
@@ -36,13 +39,14 @@ def compare_command(
     except InputError as error:
         raise InputError(f"{survey_file}: {error}") from error
     if as_json:
-        print_json(plain(found) | {"residual": found.residual, "root_mean_square": found.root_mean_square})
+        residuals = {"residual": found.residual, "azimuth_residual": found.azimuth_residual}
+        print_json(plain(found) | residuals | {"root_mean_square": found.root_mean_square})
     else:
-        print_table(lines(found), headings(), title=f"{run_file} and {survey_file}", caption=caption(found))
+        print_table(lines(found), headings(found), title=f"{run_file} and {survey_file}", caption=caption(found))
     if output is not None:
         from ..report.figures.comparison import draw  # imported here, since only a picture needs matplotlib
         from ..report.figures.drawing import save
 
         save(draw(found), output)
         if not as_json:
-            print(f"{output}: predicted and measured inclination")
+            print(f"{output}: predicted and measured hole")

@@ -10,8 +10,10 @@ import typer
 from ..analysis.spiral.closed_form import HANDS, spiral
 from ..analysis.spiral.transverse import transverse_growth
 from ..analysis.spiral.walking import walk_chart
+from ..errors import InputError
 from ..report.tables.spiral import caption, heading, lines, ripple_line, title
 from ..run.files import files_read
+from ..units import UNITS
 from . import console
 from .cases import open_case
 from .fallback import warn_of_fallback
@@ -41,6 +43,11 @@ def spiral_command(
     if chart is not None:
         console.check_output(chart, (".png",), reads=files_read(case_file))
     case = open_case(case_file, in_plane=False)
+    if ripple and case.bit.walk_angle:
+        walks = UNITS["rad"].text(case.bit.walk_angle, ".3g")
+        raise InputError(
+            f"--ripple: must be left out for a bit that walks, since it leaves any plane at once, got {walks}"
+        )
     found = spiral(case)
     if ripple:
         warn_of_fallback()

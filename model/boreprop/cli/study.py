@@ -97,7 +97,7 @@ def _cases(case_file: Path, vary: list[str], uncertain: list[str], draws: int, s
     """The cases of the study: a grid, or a sample."""
     if bool(vary) == bool(uncertain):
         raise InputError(f"--vary, --uncertain: exactly one must be given, got {'both' if vary else 'neither'}")
-    case = open_case(case_file)
+    case = open_case(case_file, in_plane=False)
     if vary:
         return grid(case, parse_each(parse_axis, vary))
     return sample(case, parse_each(parse_distribution, uncertain), draws, seed)

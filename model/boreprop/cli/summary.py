@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from ..analysis.plan import deviation_of, planned_hole, read_plan
+from ..analysis.plan import read_plan
+from ..analysis.plan_in_space import deviation_of, plan_of
 from ..analysis.stations import list_stations
 from ..analysis.summary import summarize
 from ..report.tables import stations as tables
@@ -28,7 +29,8 @@ def summary_command(
         typer.Option(
             "--plan",
             metavar="PLAN.csv",
-            help="Say how far the hole is off this plan: columns measured_depth, inclination_deg.",
+            help="Say how far the hole is off this plan: columns measured_depth, inclination_deg and, for a run in "
+            "space, azimuth_deg.",
         ),
     ] = None,
     as_json: AsJson = False,
@@ -37,13 +39,13 @@ def summary_command(
     """Print a run in a dozen numbers, and whether it ripples."""
     trajectory = open_run(run_file, case_file)
     start = case_of(trajectory).survey.measured_depth[-1]
-    plan = None if plan_file is None else planned_hole(read_plan(plan_file, start), start)
+    plan = None if plan_file is None else plan_of(trajectory, read_plan(plan_file, start))
     summary = summarize(trajectory)
     over = summary.averaging_length
     off = None if plan is None else deviation_of(trajectory, plan, over)
     listed = None if stations is None else list_stations(trajectory, stations, plan, averaged_over=over)
     if as_json:
-        off_plan = None if off is None else {"distance": off.distance[-1], "inclination": off.inclination[-1]}
+        off_plan = None if off is None else {name: column[-1] for name, column in plain(off).items()}
         print_json(plain(summary) | {"off_plan": off_plan, "stations": listed})
         return
     print_table([*lines(summary), *([] if off is None else tables.plan_lines(trajectory, off))], (str(run_file), ""))

@@ -3,20 +3,22 @@
 from collections.abc import Iterable
 from functools import partial
 from math import nan
-from typing import Any
+from typing import Any, Unpack
 
 from .checks import check_number, check_quantity
 from .errors import BorepropError, CannotContinue, ParameterError, error_of
 from .ground import Ground, check_step
-from .inputs import Inputs
+from .inputs import Inputs, Slopes, slopes_of
 from .integrator import Integrator
 from .modes import Modes, bit_tilt, saturation, wall
 from .options import Options, Statistics
 from .problems import DERIVED, Problem
-from .quantities import ACTING, IN_SPACE_ONLY, ROCK, fields_of
+from .quantities import ACTING, IN_SPACE_ONLY, ROCK, SLOPES, fields_of
 from .survey import Survey
 from .system import BitRock, BottomHoleAssembly, epsilon, eta_pi, scale
 from .through import GroundIntegrator
+
+Given = tuple[BitRock, float, float, tuple[float, ...]]  # bit and rock, force and active weight, N, and their slopes
 
 
 class Drilling:
@@ -66,10 +68,10 @@ class Drilling:
         self.drilled_length = 0.0
         self.clearances = bha.stabilizer_clearances
         self._given: tuple[Any, ...] = ()  # the last inputs that were given, in N, and …
-        self._inputs = Inputs(*(nan,) * 6)  # … as the paper's numbers
+        self._inputs = Inputs(*(nan,) * 4)  # … as the paper's numbers
         if ground:
             bit = ground.bit_in(ground.first_layer, bit)
-        scaled, inputs = scale(bha, bit), self._scaled_inputs(bit, rss_force, active_weight_on_bit)
+        scaled, inputs = scale(bha, bit), self._scaled_inputs(bit, rss_force, active_weight_on_bit, slopes_of({}))
         kind = GroundIntegrator if ground else Integrator
         try:
             self.integrator = kind(Modes(scaled), survey, self._length, inputs.F_rss, inputs.eta_pi, options)
@@ -80,30 +82,37 @@ class Drilling:
         if ground and isinstance(self.integrator, GroundIntegrator):
             self.integrator.take_ground(ground)
 
-    def _scaled_inputs(
-        self, bit: BitRock, force: float, weight: float, force_slope: float = 0.0, weight_slope: float = 0.0
-    ) -> Inputs:
+    def _scaled_inputs(self, bit: BitRock, force: float, weight: float, slopes: tuple[float, ...]) -> Inputs:
         """The dimensionless inputs; `ParameterError` if these numbers, or the inputs, are out of range."""
-        given = (bit, force, weight, force_slope, weight_slope)
+        given = (bit, force, weight, slopes)
         if given == self._given:
             return self._inputs
-        ratio = epsilon(bit)
+        l1, F_star, ratio = self._length, self._force, epsilon(bit)
         check_quantity("rss_force", force)
-        check_number("rss_force_slope", force_slope)
         check_quantity("active_weight_on_bit", weight)
-        check_number("active_weight_on_bit_slope", weight_slope)
+        for name, value in zip(SLOPES, slopes, strict=True):
+            check_number(name, value)
+        force_slope, weight_slope, eta_slope, chi_slope, limit_slope = slopes
+        eta, chi = bit.lateral_steering_resistance, bit.angular_steering_resistance
+        stiffness = eta_pi(self._bha, bit, weight)
         inputs = Inputs(
-            F_rss=force / self._force,
-            eta_pi=eta_pi(self._bha, bit, weight),
-            F_rss_slope=force_slope * self._length / self._force,
-            eta_pi_slope=eta_pi(self._bha, bit, weight_slope) * self._length,
-            epsilon=ratio,
+            F_rss=force / F_star,
+            eta_pi=stiffness,
+            chi_pi=ratio * stiffness,
             psi_star=bit.tilt_limit,
+            F_rss_slope=force_slope * l1 / F_star,
+            eta_pi_slope=(eta * weight_slope + eta_slope * weight) / F_star * l1,
+            chi_pi_slope=(chi * weight_slope + chi_slope * weight) / F_star * l1,
+            psi_star_slope=limit_slope * l1,
+            eta_pi_curve=eta_slope * weight_slope / F_star * l1 * l1,
+            chi_pi_curve=chi_slope * weight_slope / F_star * l1 * l1,
         )
         check_number(DERIVED["scaled_force"], inputs.F_rss)
         check_number(DERIVED["scaled_slope"], inputs.F_rss_slope)
         check_number("eta_pi", inputs.eta_pi, above=0.0)
-        check_number(DERIVED["eta_pi_slope"], inputs.eta_pi_slope)
+        check_number(DERIVED["eta_pi_change"], inputs.eta_pi_slope + inputs.eta_pi_curve)
+        check_number(DERIVED["chi_pi_change"], inputs.chi_pi_slope + inputs.chi_pi_curve)
+        check_number(DERIVED["psi_star_change"], inputs.psi_star_slope)
         check_number(DERIVED["inverse_eta_pi"], 1 / inputs.eta_pi)
         self._given, self._inputs = given, inputs
         return inputs
@@ -114,10 +123,9 @@ class Drilling:
         rss_force: float,
         active_weight_on_bit: float,
         *,
-        rss_force_slope: float = 0.0,
-        active_weight_on_bit_slope: float = 0.0,
         weight_on_bit: float = 0.0,
         bit: BitRock | None = None,
+        **slopes: Unpack[Slopes],
     ) -> None:
         """Drill on under inputs from here, which are constant or linear in the drilled length.
 
@@ -127,12 +135,12 @@ class Drilling:
             Where to stop, m from the start of the run. If the bit is there already, only the inputs are taken over.
         rss_force, active_weight_on_bit
             The inputs where the bit is, N.
-        rss_force_slope, active_weight_on_bit_slope
-            Their change per metre drilled, N/m.
         weight_on_bit
             All of the weight, N, which acts on a BHA with `axial_load` only, and so not here.
         bit
-            Bit and rock from here; None: those of the start.
+            Bit and rock where the bit is; None: those of the start.
+        slopes
+            Changes of force, active weight, and bit and rock per metre drilled.
 
         Raises
         ------
@@ -143,27 +151,25 @@ class Drilling:
         """
         drilled_length, rss_force = float(drilled_length), float(rss_force)  # numpy's own would slow down what follows
         check_quantity("weight_on_bit", weight_on_bit)
-        inputs = self._scaled_inputs(
-            bit or self.bit, rss_force, active_weight_on_bit, rss_force_slope, active_weight_on_bit_slope
-        )
+        given = (bit or self.bit, rss_force, active_weight_on_bit, slopes_of(slopes))
+        inputs = self._scaled_inputs(*given)
         check_number("drilled_length", drilled_length, at_least=self.drilled_length)
         xi, p = drilled_length / self._length, self.integrator
         if isinstance(p, GroundIntegrator):
-            forces = rss_force, rss_force_slope, active_weight_on_bit, active_weight_on_bit_slope
-            p.drill_through(xi, partial(self._inputs_in_ground, p.ground, p.xi, xi, bit or self.bit, forces))
+            p.drill_through(xi, partial(self._inputs_in_ground, p.ground, p.xi, xi, given))
         else:
             p.drill(xi, inputs)
         self.drilled_length = drilled_length
 
     def _inputs_in_ground(
-        self, ground: Ground, start: float, end: float, bit: BitRock, forces: tuple[float, ...], xi: float, layer: int
+        self, ground: Ground, start: float, end: float, given: Given, xi: float, layer: int
     ) -> tuple[Inputs, float]:
         """What acts at `xi` in a layer, on a way from `start` to `end` with these given, and up to which place."""
-        force, force_slope, weight, weight_slope = forces
+        bit, force, weight, (force_slope, weight_slope, *rock_slopes) = given
         way, length = (xi - start) * self._length, xi * self._length
         active, slope, until = ground.active(length, end * self._length, weight + weight_slope * way, weight_slope)
-        inputs = self._scaled_inputs(ground.bit_in(layer, bit), force + force_slope * way, active, force_slope, slope)
-        return inputs, until / self._length
+        rock, slopes = ground.bit_in(layer, bit, rock_slopes, way), (force_slope, slope, *rock_slopes)
+        return self._scaled_inputs(rock, force + force_slope * way, active, slopes), until / self._length
 
     def change_clearances(self, clearances: tuple[float, ...]) -> None:
         """Let the stabilizers have other clearances, m, from where the bit is; errors as in `advance`."""
@@ -234,7 +240,8 @@ class Drilling:
         loads = p.loads()
         mode = p.settled(loads)
         F, delta, F_0 = [row(loads) for row in mode.F], [row(loads) for row in mode.delta], mode.F_0(loads)
-        psi = bit_tilt(F_0, p.eta_pi, p.inputs.psi_star)
+        here = p.inputs_here()
+        psi = bit_tilt(F_0, here.eta_pi, here.psi_star)
         Theta = theta - psi
         # λ_i (⟨Θ⟩_i − θ) = e_i − e_{i−1}
         offsets = [0.0, *loads.e]
@@ -251,7 +258,7 @@ class Drilling:
         values |= {f"stabilizer_force[{i}]": f * F_star for i, f in enumerate(F, 1)}
         values |= {f"stabilizer_contact[{i}]": wall(f) for i, f in enumerate(F, 1)}
         values |= {
-            "bit_tilt_saturation": saturation(F_0, p.eta_pi, p.inputs.psi_star),
+            "bit_tilt_saturation": saturation(F_0, here.eta_pi, here.psi_star),
             "bit_lateral_force": F_0 * F_star,
             "bit_moment": -mode.M(loads) * F_star * l1,
             "borehole_curvature": (Theta - p.earlier_inclination(p.xi - 1.0)) / l1,
@@ -259,7 +266,7 @@ class Drilling:
         values |= self._sensed() | {
             "displacement": x * l1,
             "true_vertical_depth": z * l1,
-            "eta_pi": p.eta_pi,
+            "eta_pi": here.eta_pi,
         }
         if isinstance(p, GroundIntegrator) and p.ground.tops:
             values["formation"] = p.layer

@@ -1,6 +1,7 @@
 """What the bit meets along the way: layers of rock by true vertical depth, and the wear of the bit."""
 
 from bisect import bisect_right
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import chain
 from math import inf
@@ -103,15 +104,19 @@ class Ground:
             self.tops[layer] if layer < len(self.tops) else inf,
         )
 
-    def bit_in(self, layer: int, given: BitRock) -> BitRock:
-        """Bit and rock in a layer where some are given."""
+    def bit_in(
+        self, layer: int, given: BitRock, slopes: Sequence[float] = (0.0,) * len(ROCK), way: float = 0.0
+    ) -> BitRock:
+        """Bit and rock in a layer, a length `way` ahead of where some are given with slopes per metre.
+
+        For a property that changes along the way no layer stands in.
+        """
         own, values = values_of("bit", self.bit), values_of("bit", given)
         changed = {
-            name: value
-            for name, value in zip(ROCK, self.rock[layer], strict=True)
-            if value and values[name] == own[name]
+            name: value if value and values[name] == own[name] and not slope else values[name] + slope * way
+            for name, value, slope in zip(ROCK, self.rock[layer], slopes, strict=True)
         }
-        return BitRock(**fields_of("bit", values | changed, 1)) if changed else given
+        return BitRock(**fields_of("bit", values | changed, 1))
 
     def active(self, length: float, end: float, weight: float, slope: float) -> tuple[float, float, float]:
         """The active weight on bit, N, its change per metre, and up to which drilled length it goes on so.

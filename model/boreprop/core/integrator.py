@@ -16,7 +16,7 @@ from .errors import CannotContinue
 from .events import Event, first_event
 from .hole import Drilled, Hole
 from .inputs import Inputs
-from .kinks import MERGE, Kinks, harm_of
+from .kinks import MERGE, Kinks
 from .law import Law, Laws, bend
 from .modes import Loads, Mode, Modes, Regime, bit_tilt, saturation
 from .options import Options, Statistics
@@ -83,7 +83,7 @@ class Integrator:
             self.kinks.add_images(kink, 2, jump)
         theta = self.hole.final_inclination
         self.present = Step.standstill(0.0, theta, 0.0)  # the step that the bit is in
-        inputs = Inputs(F_rss, eta_pi, 0.0, 0.0, self.scaled.epsilon, self.scaled.psi_star)
+        inputs = Inputs(F_rss, eta_pi, self.scaled.epsilon * eta_pi, self.scaled.psi_star)
         self.readings = [Reading() for _ in self.scaled.sensors]
         self._restart(self._loads(0.0, theta, 0.0, F_rss), inputs, theta)
         self._read(0.0)
@@ -96,7 +96,7 @@ class Integrator:
         Raises `CannotContinue` if that fails; then nothing has changed.
         """
         way = xi - self.xi
-        changed = not self._inputs_here().same(inputs, way if way > 0.0 else 1.0)
+        changed = not self.inputs_here().same(inputs, way if way > 0.0 else 1.0)
         if changed or xi > self.present.end:
             with self._all_or_nothing():
                 if changed:
@@ -108,7 +108,7 @@ class Integrator:
     def change_clearances(self, y_star: tuple[float, ...]) -> None:
         """Let the stabilizers have other clearances from where the bit is; errors as in `drill`."""
         with self._all_or_nothing():
-            loads, (theta, Y), inputs = self.loads(), self.present.state(self.xi), self._inputs_here()
+            loads, (theta, Y), inputs = self.loads(), self.present.state(self.xi), self.inputs_here()
             Theta = self._inclination(theta, loads, inputs)
             self._move_path(self.xi)
             self.present = Step.standstill(self.xi, theta, Y)
@@ -123,12 +123,12 @@ class Integrator:
 
     def advance(self, xi: float) -> None:
         """Drill on to `xi` under the inputs as they are, see `drill`."""
-        self.drill(xi, self._inputs_here())
+        self.drill(xi, self.inputs_here())
 
     def steer(self, F_rss: float, eta_pi: float) -> None:
         """Take over other inputs where the bit is, see `drill`; bit and rock stay."""
-        here = self._inputs_here()
-        self.drill(self.xi, Inputs(F_rss, eta_pi, 0.0, 0.0, here.epsilon, here.psi_star))
+        here = self.inputs_here()
+        self.drill(self.xi, Inputs(F_rss, eta_pi, here.epsilon * eta_pi, here.psi_star))
 
     def step(self) -> Step:
         """Drill on to the end of the integrator's next step, and return that step; errors as in `drill`."""
@@ -173,7 +173,7 @@ class Integrator:
 
     def _steer(self, inputs: Inputs) -> None:
         """Take over inputs where the bit is. Where a slope or ε changes, the curvature jumps."""
-        loads, (theta, Y), before = self.loads(), self.present.state(self.xi), self._inputs_here()
+        loads, (theta, Y), before = self.loads(), self.present.state(self.xi), self.inputs_here()
         Theta = self._inclination(theta, loads, before)
         self._move_path(self.xi)
         self.present = Step.standstill(self.xi, theta, Y)
@@ -187,18 +187,19 @@ class Integrator:
 
     # looking
 
-    def _inputs_here(self) -> Inputs:
+    def inputs_here(self) -> Inputs:
+        """The inputs where the bit is."""
         return self.inputs.ahead(self.xi - self.inputs_xi)
 
     @property
     def F_rss(self) -> float:
         """The steering force where the bit is."""
-        return self._inputs_here().F_rss
+        return self.inputs_here().F_rss
 
     @property
     def eta_pi(self) -> float:
         """ηΠ where the bit is."""
-        return self._inputs_here().eta_pi
+        return self.inputs_here().eta_pi
 
     def state(self) -> tuple[float, float]:
         """θ and Y (counted from the start of the run) at the bit."""
@@ -207,7 +208,7 @@ class Integrator:
 
     def inclination(self) -> float:
         """Θ at the bit, eq. (16): algebraic, it jumps with the inputs."""
-        return self._inclination(self.present.state(self.xi)[0], self.loads(), self._inputs_here())
+        return self._inclination(self.present.state(self.xi)[0], self.loads(), self.inputs_here())
 
     def earlier_inclination(self, xi: float) -> float:
         """Θ as it was when the bit was at `xi`, at most LOOK_BACK behind; where Θ jumped, its value after the jump."""
@@ -335,7 +336,7 @@ class Integrator:
         self._read(xi)
         theta, Y, kink = self._leave(last)
         inputs = self.inputs.ahead(xi - self.inputs_xi)
-        if inputs.eta_pi_slope:  # each step has laws of its own
+        if inputs.law_changes:  # each step has laws of its own
             self._laws = Laws(self.modes, inputs, xi)
             self._change_regime(self.regime)
         plan = first_plan(last, kink, self.options.layers * self._law.relaxation)
@@ -389,9 +390,7 @@ class Integrator:
     def _choose_length(self, law: Law, plan: Plan, xi: float) -> float:
         """Length of the next trial: as planned, but no kink lies within it, and none is left a short step ahead."""
         largest = min(self.options.largest_step, law.longest)
-        h = min(plan.h, largest)
-        harm = harm_of(h, self.options.theta_weight, self.inputs_xi > 0.0)
-        to_kink = self.kinks.next_kink(xi, 2 * h, law.gains, harm, self.options.relative_tolerance) - xi
+        h, to_kink = self.kinks.reach(xi, min(plan.h, largest), law.gains, self.options, self.inputs_xi > 0.0)
         longest = h if plan.repeated else min(STRETCH * h, largest)
         return h if to_kink >= 2 * h else to_kink if to_kink <= longest else to_kink / 2
 

@@ -6,6 +6,8 @@ from itertools import takewhile
 from math import factorial, inf
 from typing import Any, NamedTuple
 
+from .options import Options
+
 SMOOTHEST_KINK = 3  # of the derivatives of Y: what a jump in a higher one does is small, and the error estimate sees it
 MERGE = 1e-9  # ℓ₁: kinks closer than this are one. Far above the rounding of a place, far below any step worth taking
 
@@ -17,15 +19,15 @@ PASSED_THETA = (0.0, 7.17e-2, 6.09e-3, 7.31e-4)
 # in [0, 1], between the Radau nodes, and of the integral of that.
 
 
-def harm_of(h: float, theta_weight: float, changed: bool) -> tuple[float, ...]:
+def harm_of(h: float, theta_weight: float, many: bool) -> tuple[float, ...]:
     """What passing a kink does to a step of length `h`, per jump and gain, by the order of the kink.
 
-    Errors of θ have this weight. It is no more than what a kink changes over twice the step, which counts before inputs
-    change on the way: kinks are few there, and runs keep their steps to the last bit.
+    Errors of θ have this weight. It is no more than what a kink changes over twice the step, which counts where there
+    are not many: before inputs change on the way. Such runs keep their steps to the last bit.
     """
     orders = range(SMOOTHEST_KINK + 1)
     changes = [(2 * h) ** (m + 1) / factorial(m + 1) for m in orders]
-    if not changed:
+    if not many:
         return tuple(changes)
     errors = [h**m * max(PASSED_Y[m] * h, theta_weight * PASSED_THETA[m]) for m in orders]
     return tuple(map(min, changes, errors))
@@ -83,6 +85,19 @@ class Kinks:
             if gains[kink.i] * kink.jump * harm[kink.order] > tolerance:
                 return kink.xi
         return inf
+
+    def reach(self, xi: float, h: float, gains: list[float], options: Options, many: bool) -> tuple[float, float]:
+        """The length of a step from `xi`, at most h, and how far the next kink is that such a step must not pass.
+
+        Where there are many kinks, the length is halved until the step goes farther than to half of it: a shorter step
+        may pass a kink that a longer one may not.
+        """
+        while True:
+            harm = harm_of(h, options.theta_weight, many)
+            to_kink = self.next_kink(xi, 2 * h, gains, harm, options.relative_tolerance) - xi
+            if not many or to_kink > h / 2:
+                return h, to_kink
+            h /= 2
 
     def save(self) -> dict[str, Any]:
         """The kinks, as plain lists."""

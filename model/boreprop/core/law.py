@@ -9,12 +9,14 @@ touch which wall, tilt saturated or not) only sin⟨Θ⟩_1 is not linear.
 from math import inf
 from typing import NamedTuple
 
-from .inputs import Inputs
+from .inputs import SAME, Inputs
 from .linear import dot, ratio, total
 from .modes import Loads, Mode, Modes, Regime, Row
 from .radau import Jacobian
 
-LONGEST_RAMP = 0.1  # by which share ηΠ changes within a step, at most: it then takes about six iterations
+LONGEST_RAMP = 0.1  # by which share ηΠ, χΠ or ψ* changes within a step, at most: it then takes about six iterations
+
+Ratios = tuple[list[float], list[float]]  # of M/χΠ and of F_0/(ηΠ), at the points
 
 
 class Linear(NamedTuple):
@@ -115,18 +117,19 @@ class Law:
     def __init__(self, modes: Modes, regime: Regime, inputs: Inputs, xi: float) -> None:
         mode, eta_pi = modes[regime.contact], inputs.eta_pi
         self.s = modes.scaled.s  # the delays
-        self.xi, self.ramp = xi, inputs.ramp  # where it is made; whether inputs change
-        self.growth = inputs.eta_pi_slope / eta_pi  # of ηΠ per ξ, over ηΠ at `xi`
-        self.longest = LONGEST_RAMP / abs(self.growth) if self.growth else inf  # step under a changing ηΠ
+        self.xi, self.inputs = xi, inputs  # where it is made; the inputs there
+        self.changes = inputs.law_changes  # along the way
+        self.longest = LONGEST_RAMP / inputs.growth if self.changes else inf  # step of a law that changes
         self.bounds = [
             Bound(bound.part, Linear.of(bound.row, self.s, inputs, bound.scale), bound.lower, bound.upper)
             for bound in regime.bounds(modes, eta_pi, inputs.psi_star)
         ]
         psi = self.bounds[0].value  # without saturation
-        self.saturated, self._tilt = regime.saturation != 0, self.bounds[0].part
-        self.theta_rate = Linear.of(mode.M, self.s, inputs, ratio(1, inputs.epsilon * eta_pi))
+        self.saturation, self._tilt = regime.saturation, self.bounds[0].part
+        self.theta_rate = Linear.of(mode.M, self.s, inputs, ratio(1, inputs.chi_pi))
         if regime.saturation:
-            self.Theta = Linear(1.0, 0.0, (0.0,) * len(self.s), 0.0, -regime.saturation * inputs.psi_star)
+            side, nothing = regime.saturation, (0.0,) * len(self.s)
+            self.Theta = Linear(1.0, 0.0, nothing, 0.0, -side * inputs.psi_star, -side * inputs.psi_star_slope)
         else:
             less = tuple(-c for c in psi.delayed)
             self.Theta = Linear(1.0 - psi.theta, -psi.Y, less, -psi.g, -psi.constant, -psi.slope)
@@ -146,7 +149,7 @@ class Law:
     def frozen(
         self, theta: float, Y: float, delayed: list[list[float]], sines: list[float], aheads: list[float]
     ) -> tuple[list[float], list[float]]:
-        """θ' and Y' along a step with (θ, Y) frozen at its start, where ηΠ does not change."""
+        """θ' and Y' along a step with (θ, Y) frozen at its start, of a law that does not change."""
         rates = self.theta_rate.frozen(theta, Y, delayed, sines, aheads)
         return rates, self.Theta.frozen(theta, Y, delayed, sines, aheads)
 
@@ -157,24 +160,36 @@ class Law:
         delayed: list[list[float]],
         sines: list[float],
         aheads: list[float],
+        ratios: Ratios,
     ) -> tuple[list[float], list[float]]:
-        """θ' and Y' along a step. M and F_0 are divided by ηΠ, which may change."""
+        """θ' and Y' along a step of a law that changes."""
         rates = self.theta_rate.along(thetas, Ys, delayed, sines, aheads)
         Thetas = self.Theta.along(thetas, Ys, delayed, sines, aheads)
-        ratios = [self.eta_pi_ratio(ahead) for ahead in aheads]
-        rates = [rate * p for rate, p in zip(rates, ratios)]
-        if not self.saturated:
-            Thetas = [theta + p * (Theta - theta) for theta, Theta, p in zip(thetas, Thetas, ratios)]
-        return rates, Thetas
+        rates = [rate * p for rate, p in zip(rates, ratios[0])]
+        return rates, [theta + p * (Theta - theta) for theta, Theta, p in zip(thetas, Thetas, ratios[1])]
 
-    def eta_pi_ratio(self, ahead: float) -> float:
-        """ηΠ at `xi` over that a length `ahead` of there."""
-        return 1 / (1 + self.growth * ahead)
+    def ratios_along(self, aheads: list[float]) -> Ratios:
+        """Of a law that changes, by what M/χΠ and F_0/(ηΠ) as under its inputs are multiplied along a step."""
+        own = self.inputs
+        eta = [1.0 if self.saturation else own.eta_pi / own.eta_pi_at(ahead) for ahead in aheads]
+        return [own.chi_pi / own.chi_pi_at(ahead) for ahead in aheads], eta
+
+    def tilt_ratio(self, ahead: float) -> float:
+        """By what F_0/(ηΠ), as under the inputs of a law that changes, is multiplied a length `ahead` of there.
+
+        It is then bounded there as well by the ψ* of these inputs: it is their ηΠψ* over that ahead.
+        """
+        own = self.inputs
+        return own.eta_pi * own.psi_star / (own.eta_pi_at(ahead) * own.psi_star_at(ahead))
+
+    def _is_on_ramp(self, bound: Bound) -> bool:
+        """Whether a bounded value is to be multiplied by that."""
+        return self.changes and bound.part == self._tilt
 
     def bounded_at(self, bound: Bound, xi: float, theta: float, Y: float, delayed: list[float], sine: float) -> float:
         """The value that a bound is on, at one place."""
         value = bound.value.at(theta, Y, delayed, sine, xi - self.xi)
-        return value * self.eta_pi_ratio(xi - self.xi) if self.growth and bound.part == self._tilt else value
+        return value * self.tilt_ratio(xi - self.xi) if self._is_on_ramp(bound) else value
 
     def bounded_along(
         self,
@@ -187,8 +202,8 @@ class Law:
     ) -> list[float]:
         """The value that a bound is on, along a step."""
         values = bound.value.along(thetas, Ys, delayed, sines, aheads)
-        if self.growth and bound.part == self._tilt:
-            values = [value * self.eta_pi_ratio(ahead) for value, ahead in zip(values, aheads)]
+        if self._is_on_ramp(bound):
+            values = [value * self.tilt_ratio(ahead) for value, ahead in zip(values, aheads)]
         return values
 
 
@@ -208,10 +223,12 @@ class Laws:
 def bend(law: Law, mode: Mode, loads: Loads, before: Inputs, inputs: Inputs) -> float:
     """The jump of Θ' = θ' − ψ' where a slope of the inputs, or ε, changes; `law` is that beyond it."""
     jump = 0.0
-    if inputs.epsilon != before.epsilon:  # θ' = M/(εηΠ)
+    if abs(inputs.epsilon - before.epsilon) > SAME * before.epsilon:  # θ' = M/(εηΠ)
         jump = law.Theta.theta * mode.M(loads) / inputs.eta_pi * (1 / inputs.epsilon - 1 / before.epsilon)
     force, stiffness = inputs.F_rss_slope - before.F_rss_slope, inputs.eta_pi_slope - before.eta_pi_slope
-    if (force or stiffness) and not law.saturated:  # (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ
+    if law.saturation:
+        jump -= law.saturation * (inputs.psi_star_slope - before.psi_star_slope)
+    elif force or stiffness:  # (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ
         psi = mode.F_0(loads) / inputs.eta_pi
         jump -= (force * mode.F_0.rss - stiffness * psi) / inputs.eta_pi
     return jump

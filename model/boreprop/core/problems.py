@@ -7,10 +7,13 @@ from dataclasses import dataclass
 from math import nan
 
 F_STAR = "(3 flexural_stiffness / stabilizer_position[1]^2)"
+LENGTH_SCALE = "stabilizer_position[1]"
 DERIVED = {
     "scaled_force": f"rss_force / {F_STAR}",
     "scaled_slope": f"rss_force_slope / {F_STAR}",
-    "eta_pi_slope": f"lateral_steering_resistance active_weight_on_bit_slope / {F_STAR}",
+    "eta_pi_change": f"change of eta_pi over {LENGTH_SCALE}",
+    "chi_pi_change": f"change of eta_pi angular_steering_resistance / lateral_steering_resistance over {LENGTH_SCALE}",
+    "psi_star_change": f"change of bit_tilt_limit over {LENGTH_SCALE}",
     "inverse_eta_pi": "1 / eta_pi",
     "force_scale": F_STAR.strip("()"),
     "scaled_reach": "stabilizer_position[n] / stabilizer_position[1]",

@@ -190,9 +190,9 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("rss_force", "input", "N", "F_RSS", "(21)", "force of the steering pads on the BHA, positive builds", nominal=1e4, slope=True, key="rss.force", field="schedule.rss_force"),
     Quantity("active_weight_on_bit", "input", "N", "Π F*", "(3)", "weight on bit that goes into drilling", above=0.0, nominal=1e4, slope=True, key="drilling.active_weight_on_bit", field="active_weight_on_bit"),
     Quantity("rate_of_penetration", "input", "m/s", "", "", "drilled length per time", at_least=0.0, start=1.0),
-    Quantity("lateral_steering_resistance", "input", "", "η", "(4)", "lateral over axial drilling resistance", above=0.0, nominal=10.0, key="bit.lateral_steering_resistance", field="bit.lateral_steering_resistance"),
-    Quantity("angular_steering_resistance", "input", "", "χ", "(4)", "angular over axial drilling resistance", above=0.0, key="bit.angular_steering_resistance", field="bit.angular_steering_resistance"),
-    Quantity("bit_tilt_limit", "input", "rad", "ψ*", "(10)", "tilt at which the bit gauge meets the wall", above=0.0, at_most=pi / 2, nominal=0.01, key="bit.tilt_limit_deg", field="bit.tilt_limit"),
+    Quantity("lateral_steering_resistance", "input", "", "η", "(4)", "lateral over axial drilling resistance", above=0.0, nominal=10.0, slope=True, key="bit.lateral_steering_resistance", field="bit.lateral_steering_resistance"),
+    Quantity("angular_steering_resistance", "input", "", "χ", "(4)", "angular over axial drilling resistance", above=0.0, slope=True, key="bit.angular_steering_resistance", field="bit.angular_steering_resistance"),
+    Quantity("bit_tilt_limit", "input", "rad", "ψ*", "(10)", "tilt at which the bit gauge meets the wall", above=0.0, at_most=pi / 2, nominal=0.01, slope=True, key="bit.tilt_limit_deg", field="bit.tilt_limit"),
     Quantity("weight_on_bit", "input", "N", "W", "(3)", "all of the weight on bit, which presses the BHA along its axis; 0: the active weight", size="axial", at_least=0.0, nominal=1e5, key="drilling.weight_on_bit", field="weight_on_bit"),
     Quantity("bit_walk_angle", "input", "rad", "ϖ", "", "walk angle: from the lateral penetration of the bit to the lateral force, positive from the high side to the right looking down the hole", at_least=-MOST_WALK, at_most=MOST_WALK, nominal=0.1, start=0.0, size="space", key="bit.walk_angle_deg", field="bit.walk_angle"),
     Quantity("rss_toolface", "input", "rad", "γ", "", "side to which the pads push, looking down the hole: 0 up or north, π/2 to the right", size="space", start=0.0, key="rss.toolface_deg", field="schedule.rss_toolface"),
@@ -284,6 +284,8 @@ OUTPUTS = tuple(quantity for quantity in QUANTITIES if quantity.role == "output"
 PARAMETERS = tuple(quantity for quantity in QUANTITIES if quantity.role == "parameter")
 ACTING = tuple(name for q in INPUTS if q.acts for name in ((q.name, f"{q.name}_slope") if q.slope else (q.name,)))
 """What an engine is given for a leg: the inputs where it starts, and the changes per metre of those that may change."""
+SLOPES = tuple(f"{q.name}_slope" for q in INPUTS if q.slope)
+"""The changes per metre that an engine is given."""
 IN_SPACE_ONLY = tuple(q.name for q in INPUTS if q.size == "space")
 """The inputs that count only where the hole may leave its vertical plane."""
 ROCK = tuple(q.name for q in INPUTS if q.part == "bit" and q.name not in IN_SPACE_ONLY)

@@ -85,8 +85,8 @@ def try_step(law: Law, hole: Hole, xi: float, h: float, theta: float, Y: float, 
     average = Y - delayed[0][0]
     sine = Sine(average, sin(average), cos(average))
     J = law.jacobian(sine)
-    aheads = [xi - law.xi + t * h for t in radau.POINTS] if law.ramp else []
-    if law.growth:
+    aheads = [xi - law.xi + t * h for t in radau.POINTS] if law.inputs.ramp else []
+    if law.changes:
         return _try_ramp(law, J, Trial(Step(xi, h, (theta,), (Y,), xi + h), [], [], delayed, [], aheads, inf), options)
     frozen = sine.linear([Y - Y_1 for Y_1 in delayed[0]])
     allowed = (LESS_REST if law.xi > 0.0 else REST) * options.relative_tolerance * (abs(law.theta_rate.theta) + 1 / h)
@@ -132,7 +132,7 @@ def _error(
 
 
 def _try_ramp(law: Law, J: radau.Jacobian, trial: Trial, options: Options) -> Trial:
-    """A trial under a changing ηΠ, given its place and the delayed hole.
+    """A trial of a law that changes, given its place and the delayed hole.
 
     What the Jacobian, which is that at the start, neglects is added to the right-hand side until it is small. Where it
     does not become small, the error is made intolerable.
@@ -140,13 +140,14 @@ def _try_ramp(law: Law, J: radau.Jacobian, trial: Trial, options: Options) -> Tr
     (xi, h, (theta,), (Y,), *_), delayed, aheads = trial.step, trial.delayed, trial.aheads
     thetas, Ys = [theta] * len(aheads), [Y] * len(aheads)
     sines = [sin(Y - Y_1) for Y_1 in delayed[0]]
-    f_theta, f_Y = law.along(thetas, Ys, delayed, sines, aheads)
+    ratios = law.ratios_along(aheads)
+    f_theta, f_Y = law.along(thetas, Ys, delayed, sines, aheads, ratios)
     allowed, found = REST * options.relative_tolerance, False
     for _ in range(RAMP_ITERATIONS):
         parts = parts_theta, parts_Y = radau.collocate(h, J, f_theta, f_Y)
         thetas, Ys = radau.values(theta, parts_theta), radau.values(Y, parts_Y)
         sines = [sin(Y_t - Y_1) for Y_t, Y_1 in zip(Ys, delayed[0])]
-        rates, Thetas = law.along(thetas, Ys, delayed, sines, aheads)
+        rates, Thetas = law.along(thetas, Ys, delayed, sines, aheads, ratios)
         moved = [(theta_t - theta, Y_t - Y) for theta_t, Y_t in zip(thetas, Ys)]
         off_theta = [rate - f - J[0] * a - J[1] * b for rate, f, (a, b) in zip(rates, f_theta, moved)]
         off_Y = [Theta - f - J[2] * a - J[3] * b for Theta, f, (a, b) in zip(Thetas, f_Y, moved)]

@@ -263,7 +263,7 @@ def scale(bha: BottomHoleAssembly, bit: BitRock) -> Scaled:
         raise ParameterError(
             "bha",
             "must be the paper's uniform beam here; for others there are simulate with the native engine, summary, "
-            "steering, dogleg, hysteresis, study, boreprop-view and, without body contact, roots and stability",
+            "steering, dogleg, hysteresis, study, boreprop-view and, without body contact, roots, stability and spiral",
             bha.structure.beyond_the_paper,
         )
     l1 = bha.length_scale

@@ -30,7 +30,7 @@ class GroundIntegrator(Integrator):
             while True:
                 inputs, until = inputs_at(self.xi, self.layer)
                 end = min(xi, until)
-                if not self._inputs_here().same(inputs, end - self.xi if end > self.xi else 1.0):
+                if not self.inputs_here().same(inputs, end - self.xi if end > self.xi else 1.0):
                     self._steer(inputs)
                 if not self._leave_layer(end):
                     self.xi = end

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import astuple, fields
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from ..arrays import Floats
 from ..core.errors import BorepropError, ParameterError, error_of
 from ..core.ground import Ground, check_step
+from ..core.inputs import Slopes, slopes_of
 from ..core.options import Options, Statistics
 from ..core.problems import SENTENCES, Problem
-from ..core.quantities import ACTING, OUTPUTS, Structure, scalar_names, values_of
+from ..core.quantities import ACTING, OUTPUTS, SLOPES, Structure, scalar_names, values_of
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly, check_in_plane
 from .compiler import library_path, sources_digest
@@ -299,24 +300,16 @@ class NativeDrilling:
         rss_force: float,
         active_weight_on_bit: float,
         *,
-        rss_force_slope: float = 0.0,
-        active_weight_on_bit_slope: float = 0.0,
         weight_on_bit: float = 0.0,
         bit: BitRock | None = None,
+        **slopes: Unpack[Slopes],
     ) -> None:
         """Drill on under inputs from here, constant or linear in the drilled length, as `Drilling.advance`."""
-        self._advance(
-            drilled_length,
-            bit or self.bit,
-            rss_force=rss_force,
-            rss_force_slope=rss_force_slope,
-            active_weight_on_bit=active_weight_on_bit,
-            active_weight_on_bit_slope=active_weight_on_bit_slope,
-            weight_on_bit=weight_on_bit,
-        )
+        forces = {"rss_force": rss_force, "active_weight_on_bit": active_weight_on_bit, "weight_on_bit": weight_on_bit}
+        self._advance(drilled_length, forces, bit, slopes)
 
-    def _advance(self, drilled_length: float, bit: BitRock, **acting: float) -> None:
-        acting |= values_of("bit", bit)
+    def _advance(self, drilled_length: float, forces: Mapping[str, float], bit: BitRock | None, slopes: Slopes) -> None:
+        acting = {**forces, **values_of("bit", bit or self.bit), **dict(zip(SLOPES, slopes_of(slopes), strict=True))}
         inputs = [[acting.get(name, 0.0) for name in ACTING]]
         self.follow([drilled_length], inputs, [-1], np.empty((0, len(self._names))))
 

@@ -96,12 +96,12 @@ static inline double shortest_step(const Integrator *p, double xi) {
     return p->options.smallest_step * larger(1.0, xi);
 }
 
-/* The law of the next step. Under a changing ηΠ each step has its own, made where it starts. */
+/* The law of the next step. Where it changes along the way each step has its own, made where it starts. */
 static inline const Law *present_law(Integrator *p) {
     const State *now = &p->now;
     if (p->law_known) return &p->law;
-    double xi = now->inputs.eta_pi_slope == 0 ? now->inputs_xi : now->step.end;
-    ScaledInputs inputs = inputs_ahead(now->inputs, xi - now->inputs_xi);
+    double xi = law_changes(&now->inputs) ? now->step.end : now->inputs_xi;
+    ScaledInputs inputs = inputs_ahead(&now->inputs, xi - now->inputs_xi);
     make_law(&p->law, &p->scaled, &now->places, &p->modes, now->regime, inputs, xi);
     p->law_known = 1;
     return &p->law;
@@ -134,9 +134,7 @@ static inline void find_places(State *now, const Scaled *scaled, double xi) {
         places->s[i] = scaled->s[support_at(contact, scaled->n, i)];
         places->nearest = smaller(places->nearest, places->s[i]);
         if (i < scaled->n) continue;
-        Count *ahead = &now->kinks.ahead[i];
-        for (*ahead = oldest; *ahead < now->kinks.end; ++*ahead)
-            if (kink(&now->kinks, *ahead)->xi + places->s[i] > xi + MERGE) break;
+        now->kinks.ahead[i] = kink_beyond(&now->kinks, oldest, xi + MERGE - places->s[i]);
         now->hole.cursor[i] = find(&now->hole, xi - places->s[i]);
     }
 }
@@ -166,11 +164,11 @@ static inline Loads loads_at(const Integrator *p, double xi, const double x[COMP
 }
 
 /* The steering force with the bit at `xi`, ahead of where the inputs were taken over. */
-static inline double force_at(const State *now, double xi) {
-    return inputs_ahead(now->inputs, xi - now->inputs_xi).F_rss;
-}
+static inline double force_at(const State *now, double xi) { return F_rss_at(&now->inputs, xi - now->inputs_xi); }
 
 /* The inputs where the bit is. */
-static inline ScaledInputs inputs_here(const State *now) { return inputs_ahead(now->inputs, now->xi - now->inputs_xi); }
+static inline ScaledInputs inputs_here(const State *now) {
+    return inputs_ahead(&now->inputs, now->xi - now->inputs_xi);
+}
 
 #endif

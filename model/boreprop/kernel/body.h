@@ -123,15 +123,16 @@ static inline int switch_contact(Path *path, int i) {
 
 enum { MOST_SWITCHES = 1000 }; /* of a path: it takes three as a rule, and under a hundred where nearly all touch */
 
-/* Follow the contacts from t = 0 to 1, one switch after the other; 0 if more touch than there is room for, or there is no
-   end. A stabilizer that comes free, so that the beam buckles, goes to the other wall. */
-static inline int follow(const Beam *beam, Path *path) {
+/* Follow the contacts from t = 0 to 1, one switch after the other. A support that comes free, so that the beam buckles, goes
+   to the other wall. Returns what is in the way: TOO_CROWDED if more touch than there is room for, BUCKLES if the beam does
+   between those that touch first, NO_MODE if there is no end; else NO_PROBLEM. */
+static inline Code follow(const Beam *beam, Path *path) {
     double t = 0.0;
     int first = -1, wall = 0;
     for (int switches = 0; switches < MOST_SWITCHES; switches++) {
         double next = 1.0;
         if (!look_ahead(beam, path)) {
-            if (!wall) return 0;
+            if (!wall) return BUCKLES;
             path->of[first] = (signed char)-wall, path->touching++, wall = 0;
             continue;
         }
@@ -140,27 +141,27 @@ static inline int follow(const Beam *beam, Path *path) {
             double at = leaves_at(path, i, t);
             if (at < next) next = at, first = i;
         }
-        if (first < 0) return 1;
+        if (first < 0) return NO_PROBLEM;
         wall = path->of[first];
-        if (!switch_contact(path, first)) return 0;
+        if (!switch_contact(path, first)) return TOO_CROWDED;
         t = next;
     }
-    return 0;
+    return NO_MODE;
 }
 
-/* The contacts of all supports under loads, whose clearances are those of the modes; 0 if more touch than there is room
-   for, or none are found.
+/* The contacts of all supports under loads, whose clearances are those of the modes; returns what is in the way, as `follow`.
 
    First every stabilizer is held without clearance, so that the beam stands, and the load grows from nothing to its whole;
    then the clearances of the stabilizers open. */
-static inline int follow_load(const Modes *modes, const Bent *loads, int points, Path *path) {
+static inline Code follow_load(const Modes *modes, const Bent *loads, int points, Path *path) {
     int n = modes->beam.n;
     memset(path, 0, sizeof *path);
     path->n = n, path->supports = n + points, path->bending = *loads;
     memset(path->bending.y, 0, sizeof path->bending.y);
     for (int i = 0; i < n - 1; i++) path->of[i] = 1, path->touching++;
     for (int i = n; i < path->supports; i++) path->bent.y[i] = modes->y_star[i];
-    if (!follow(&modes->beam, path)) return 0;
+    Code problem = follow(&modes->beam, path);
+    if (problem) return problem;
     memcpy(path->bent.e, loads->e, sizeof loads->e);
     path->bent.F_rss = loads->F_rss, path->bent.g = loads->g, path->bent.end = loads->end;
     memset(&path->bending, 0, sizeof path->bending);
@@ -172,15 +173,26 @@ static inline int follow_load(const Modes *modes, const Bent *loads, int points,
 }
 
 /* The same, as the contacts of a regime. */
-static inline int search(const Modes *modes, const Bent *loads, int points, Contact *found) {
+static inline Code search(const Modes *modes, const Bent *loads, int points, Contact *found) {
     int n = modes->beam.n;
     Path path;
-    if (!follow_load(modes, loads, points, &path)) return 0;
+    Code problem = follow_load(modes, loads, points, &path);
+    if (problem) return problem;
     memset(found, 0, sizeof *found);
     for (int i = 0; i < n - 1; i++) found->of[i] = path.of[i];
     for (int k = 0; k < points; k++)
         if (path.of[n + k]) watch(found, n, k, path.of[n + k]);
-    return 1;
+    return NO_PROBLEM;
+}
+
+/* Say what was in the way of contacts of a beam under an axial load, with the bit at `place`, m. */
+APART static Status no_contacts(
+    Code code, const Scaled *scaled, Axial axial, double force_scale, double tolerance, double place, Problem *problem
+) {
+    if (code != BUCKLES) return met(problem, code, code == TOO_CROWDED ? (double)MAX_WATCHED : tolerance, place);
+    double most = buckling_weight(scaled, axial.cosine) * force_scale;
+    wrong(problem, BUCKLES, Q_WEIGHT_ON_BIT, 0, axial.W * force_scale, most);
+    return FAILED;
 }
 
 #endif

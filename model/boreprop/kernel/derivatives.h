@@ -15,11 +15,10 @@ static inline double inclination_at(const Drilling *d, int i) {
 /* Change of an output, or of the one with this index, per metre drilled; NaN if it may jump or bend on the way. */
 static inline double output_slope(const Drilling *d, const Present *at, Output which, int i) {
     const Scaled *scaled = &d->integrator.scaled;
-    double epsilon = d->integrator.now.inputs.epsilon;
     switch (which) {
         case OUT_DRILLED_LENGTH: return 1.0;
-        case OUT_BIT_INCLINATION: /* εηΠ θ' = M */
-            return row_value(&at->mode->M, &at->loads) / (epsilon * at->eta_pi * at->l1);
+        case OUT_BIT_INCLINATION: /* χΠ θ' = M */
+            return row_value(&at->mode->M, &at->loads) / (at->inputs.chi_pi * at->l1);
         case OUT_AVERAGE_INCLINATION: /* λ_i ⟨Θ⟩_i' = Θ(ξ − s_{i−1}) − Θ(ξ − s_i) */
             return ((i ? inclination_at(d, i - 1) : at->Theta) - inclination_at(d, i)) / (lambda_(scaled, i) * at->l1);
         case OUT_DISPLACEMENT: return sin(at->Theta);
@@ -46,10 +45,11 @@ static inline Sensed sensed_gain(const Drilling *d, const Present *at, int i) {
 static inline double output_gain(const Drilling *d, const Present *at, Output which, int i, Input input, double eta) {
     double by_force = input == IN_RSS_FORCE ? 1 / at->F_star : 0.0; /* of F_RSS */
     double of_eta_pi = input == IN_ACTIVE_WEIGHT_ON_BIT          ? eta_pi(&d->system, eta, 1.0)
-                       : input == IN_LATERAL_STEERING_RESISTANCE ? at->eta_pi / eta
+                       : input == IN_LATERAL_STEERING_RESISTANCE ? at->inputs.eta_pi / eta
                                                                  : 0.0;
     double F_0 = at->mode->F_0.rss * by_force, psi = 0.0; /* changes */
-    if (fabs(at->F_0 / at->eta_pi) <= d->integrator.now.inputs.psi_star) psi = (F_0 - at->psi * of_eta_pi) / at->eta_pi;
+    double stiffness = at->inputs.eta_pi;
+    if (fabs(at->F_0 / stiffness) <= at->inputs.psi_star) psi = (F_0 - at->psi * of_eta_pi) / stiffness;
     else if (input == IN_BIT_TILT_LIMIT) psi = at->psi > 0 ? 1.0 : -1.0;
     switch (which) {
         case OUT_BOREHOLE_INCLINATION: return -psi;

@@ -34,16 +34,16 @@ typedef struct {
     double lower, upper;
 } Bound;
 
-#define LONGEST_RAMP 0.1 /* by which share ηΠ changes within a step, at most */
+#define LONGEST_RAMP 0.1 /* by which share ηΠ, χΠ or ψ* changes within a step, at most */
 
 /* The right-hand side in one regime under given inputs, and the bounds within which it holds. */
 typedef struct {
-    int count, n, saturated, axial, stands;
+    int count, n, saturated, axial, stands, changes;
     const Modes *modes;
     double s_1, s_n, y_star[MAX_STABILIZERS], walk_cosine, walk_sine;
     ScaledInputs inputs;
     double inputs_xi; /* where the inputs are those that it was made under */
-    double longest;   /* step under a changing ηΠ */
+    double longest;   /* step of a law that changes */
     Touching touching;
     Linear q[MAX_STABILIZERS], M, F_0; /* without contacts */
     double relaxation;
@@ -55,7 +55,7 @@ typedef struct {
 /* How far the law's values change per change of Y(ξ−s_i), at most, and over which length θ forgets: those of a planar hole
    in which the same stabilizers touch. */
 static inline void find_gains(Law *law, const Mode *mode, const Places *places) {
-    double eta_pi = law->inputs.eta_pi, rate = 1 / (law->inputs.epsilon * eta_pi);
+    double eta_pi = law->inputs.eta_pi, rate = 1 / law->inputs.chi_pi;
     Linear M = linear_of(&mode->M, places), F_0 = linear_of(&mode->F_0, places);
     law->relaxation = 1 / fabs(rate * M.theta - (law->saturated ? 0.0 : F_0.Y / eta_pi));
     for (int i = 0; i < law->count; i++) {
@@ -81,14 +81,14 @@ static inline void make_law(
 ) {
     Contact nothing = {{0}, 0, {0}};
     const Mode *mode = mode_of(modes, nothing);
-    double growth = fabs(inputs.eta_pi_slope / inputs.eta_pi);
     int n = scaled->n;
     law->count = places->count, law->n = n, law->axial = scaled->axial, law->saturated = regime.saturation != 0;
     law->stands = mode->stands;
     law->modes = modes, law->inputs = inputs, law->inputs_xi = inputs_xi, law->bound_count = 0;
     law->s_1 = scaled->s[0], law->s_n = scaled->s[n - 1];
     law->walk_cosine = cos(inputs.walk), law->walk_sine = sin(inputs.walk);
-    law->longest = growth == 0 ? INFINITY : LONGEST_RAMP / growth;
+    law->changes = law_changes(&inputs);
+    law->longest = law->changes ? LONGEST_RAMP / growth_of(&inputs) : INFINITY;
     law->M = linear_of(&mode->M, places), law->F_0 = linear_of(&mode->F_0, places);
     law->touching = touching_of(modes, regime.contact);
     for (int i = 0; i < n - 1; i++) {
@@ -163,9 +163,10 @@ static inline int law_here(
     const Law *law, const double x[COMPONENTS], double ahead, const View *view, const Behind *behind,
     const double first[2], double s_1, int slopes, Reply *at
 ) {
-    ScaledInputs inputs = inputs_ahead(law->inputs, ahead);
+    ScaledInputs inputs = inputs_ahead(&law->inputs, ahead);
     int n = law->n, m = law->touching.touching;
     double a[2], eta_pi = at->eta_pi = inputs.eta_pi, by_F_0[2][2], answer[MOST_TOUCHING][MOST_TOUCHING];
+    at->psi_star = inputs.psi_star;
     double q_C[MAX_STABILIZERS][2], q_by[MOST_TOUCHING][COMPONENTS], M_by[2][COMPONENTS], F_0_by[2][COMPONENTS];
     for (int d = 0; d < 2; d++) a[d] = (x[LATERAL + d] - first[d]) / s_1 - x[ANGLE + d];
     Vector G = weight_across(view->down, a, law->axial, s_1), F_rss = pad_force(&inputs, view);
@@ -185,7 +186,7 @@ static inline int law_here(
             at->F_0[d] += law->modes->beam.F0_F[law->touching.C[k]] * at->F[k][d];
         }
     tilt_under(law, eta_pi, inputs.psi_star, at->F_0, at->psi, by_F_0);
-    double rate = 1 / (inputs.epsilon * eta_pi);
+    double rate = 1 / inputs.chi_pi;
     for (int d = 0; d < 2; d++) {
         at->rate[ANGLE + d] = rate * at->M[d];
         at->rate[LATERAL + d] = x[ANGLE + d] - at->psi[d];

@@ -38,9 +38,12 @@ static inline int check_aim(Inputs inputs, Problem *problem) {
 static inline int check_inputs(Inputs inputs, Problem *problem) {
     return check_rock(inputs, problem) && check_aim(inputs, problem) &&
            check_quantity(&INPUT_TABLE[IN_RSS_FORCE], 0, inputs.rss_force, problem) &&
-           check_finite(Q_RSS_FORCE_SLOPE, 0, inputs.rss_force_slope, problem) &&
            check_quantity(&INPUT_TABLE[IN_ACTIVE_WEIGHT_ON_BIT], 0, inputs.active_weight_on_bit, problem) &&
-           check_finite(Q_ACTIVE_WEIGHT_ON_BIT_SLOPE, 0, inputs.active_weight_on_bit_slope, problem);
+           check_finite(Q_RSS_FORCE_SLOPE, 0, inputs.rss_force_slope, problem) &&
+           check_finite(Q_ACTIVE_WEIGHT_ON_BIT_SLOPE, 0, inputs.active_weight_on_bit_slope, problem) &&
+           check_finite(Q_LATERAL_STEERING_RESISTANCE_SLOPE, 0, inputs.lateral_steering_resistance_slope, problem) &&
+           check_finite(Q_ANGULAR_STEERING_RESISTANCE_SLOPE, 0, inputs.angular_steering_resistance_slope, problem) &&
+           check_finite(Q_BIT_TILT_LIMIT_SLOPE, 0, inputs.bit_tilt_limit_slope, problem);
 }
 
 /* Take the inclination, of which this is the cosine, as that at which the weight acts along the beam. */
@@ -67,30 +70,44 @@ static inline int check_weight(const Drilling *d, Inputs inputs, Problem *proble
     return weight < most || wrong(problem, BUCKLES, Q_WEIGHT_ON_BIT, 0, weight, most);
 }
 
-/* Make the inputs dimensionless; 0, and the problem, if these numbers, or the inputs, are out of range. */
-static inline int take_given(Drilling *d, Inputs inputs, Problem *problem) {
-    const System *system = &d->system;
-    double F_star = force_scale(system), eta = inputs.lateral_steering_resistance;
-    if (!memcmp(&inputs, &d->given, sizeof inputs)) return 1;
+/* The inputs as the paper's numbers. */
+static inline ScaledInputs scale_inputs(const System *system, Inputs given) {
+    double F_star = force_scale(system), l1 = length_scale(system);
+    double eta = given.lateral_steering_resistance, eta_slope = given.lateral_steering_resistance_slope;
+    double chi = given.angular_steering_resistance, chi_slope = given.angular_steering_resistance_slope;
+    double weight = given.active_weight_on_bit, weight_slope = given.active_weight_on_bit_slope;
     ScaledInputs scaled = {
-        inputs.rss_force / F_star,
-        inputs.rss_force_slope * length_scale(system) / F_star,
-        eta_pi(system, eta, inputs.active_weight_on_bit),
-        eta_pi(system, eta, inputs.active_weight_on_bit_slope) * length_scale(system),
-        inputs.angular_steering_resistance / eta,
-        inputs.bit_tilt_limit,
-        system->structure.axial ? whole_weight(inputs) / F_star : 0.0,
+        .F_rss = given.rss_force / F_star,
+        .eta_pi = eta_pi(system, eta, weight),
+        .chi_pi = chi / eta * eta_pi(system, eta, weight),
+        .psi_star = given.bit_tilt_limit,
+        .F_rss_slope = given.rss_force_slope * l1 / F_star,
+        .eta_pi_slope = (eta * weight_slope + eta_slope * weight) / F_star * l1,
+        .chi_pi_slope = (chi * weight_slope + chi_slope * weight) / F_star * l1,
+        .psi_star_slope = given.bit_tilt_limit_slope * l1,
+        .eta_pi_curve = eta_slope * weight_slope / F_star * l1 * l1,
+        .chi_pi_curve = chi_slope * weight_slope / F_star * l1 * l1,
+        .W = system->structure.axial ? whole_weight(given) / F_star : 0.0,
 #ifdef SPACE
-        inputs.rss_toolface,
-        inputs.toolface_reference,
-        inputs.bit_walk_angle,
+        .toolface = given.rss_toolface,
+        .reference = given.toolface_reference,
+        .walk = given.bit_walk_angle,
 #endif
     };
-    if (!check_inputs(inputs, problem) || (system->structure.axial && !check_weight(d, inputs, problem)) ||
+    return scaled;
+}
+
+/* Make the inputs dimensionless; 0, and the problem, if these numbers, or the inputs, are out of range. */
+static inline int take_given(Drilling *d, Inputs inputs, Problem *problem) {
+    if (!memcmp(&inputs, &d->given, sizeof inputs)) return 1;
+    ScaledInputs scaled = scale_inputs(&d->system, inputs);
+    if (!check_inputs(inputs, problem) || (d->system.structure.axial && !check_weight(d, inputs, problem)) ||
         !check_finite(Q_SCALED_FORCE, 0, scaled.F_rss, problem) ||
         !check_finite(Q_SCALED_SLOPE, 0, scaled.F_rss_slope, problem) ||
         !check_positive(Q_ETA_PI, scaled.eta_pi, problem) ||
-        !check_finite(Q_ETA_PI_SLOPE, 0, scaled.eta_pi_slope, problem) ||
+        !check_finite(Q_ETA_PI_CHANGE, 0, scaled.eta_pi_slope + scaled.eta_pi_curve, problem) ||
+        !check_finite(Q_CHI_PI_CHANGE, 0, scaled.chi_pi_slope + scaled.chi_pi_curve, problem) ||
+        !check_finite(Q_PSI_STAR_CHANGE, 0, scaled.psi_star_slope, problem) ||
         !check_finite(Q_INVERSE_ETA_PI, 0, 1 / scaled.eta_pi, problem))
         return 0;
     d->given = inputs, d->scaled = scaled;
@@ -171,10 +188,8 @@ static inline Status drill_through(Drilling *d, double xi, Inputs given, Problem
     if (!is_ahead(d, xi) && !set_out(p)) return FULL;
     if (d->system.structure.axial) given.weight_on_bit = whole_weight(given);
     do {
-        double until, way = (now->xi - start) * l1;
-        Inputs inputs = rock_in(&d->ground, now->layer, given);
-        inputs.rss_force += inputs.rss_force_slope * way;
-        inputs.active_weight_on_bit += inputs.active_weight_on_bit_slope * way;
+        double until;
+        Inputs inputs = rock_in(&d->ground, now->layer, given_ahead(given, (now->xi - start) * l1));
         int good = wear_off(&d->ground, now->xi * l1, xi * l1, &inputs, &until, problem);
         Status status = good && take_given(d, inputs, problem) ? DONE : FAILED;
         end = smaller(xi, until / l1);
@@ -238,9 +253,10 @@ static inline void drilling_cancel(Drilling *d) { go_back(&d->integrator); }
 #else
 /* What the outputs are computed from: the state where the bit is. */
 typedef struct {
-    double l1, F_star, eta_pi, theta, Y, Theta, psi, F_0, F[MAX_PLACES], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
+    double l1, F_star, theta, Y, Theta, psi, F_0, F[MAX_PLACES], x, z, earlier; /* earlier: Θ one ℓ₁ ago */
     double body_force, body_place, wall_distance; /* the largest force on the body and where it acts; the least gap */
     Sensed sensed[MAX_SENSORS];
+    ScaledInputs inputs;
     Loads loads;
     const Mode *mode;
 } Present;
@@ -271,8 +287,8 @@ static inline Present present(Drilling *d) {
     at.mode = settle(&p->modes, &at.loads, now->regime.contact);
     at.F_0 = row_value(&at.mode->F_0, &at.loads);
     contact_forces(at.mode, &at.loads, at.F);
-    at.eta_pi = inputs_here(now).eta_pi;
-    at.psi = bit_tilt(at.F_0, at.eta_pi, now->inputs.psi_star);
+    at.inputs = inputs_here(now);
+    at.psi = bit_tilt(at.F_0, at.inputs.eta_pi, at.inputs.psi_star);
     at.Theta = at.theta - at.psi;
     position(now, path);
     at.x = path[0], at.z = path[1];
@@ -285,7 +301,7 @@ static inline Present present(Drilling *d) {
 /* One output, the value with this index if it has several. If an output of the table were missing, it would not compile. */
 static inline double output(const Drilling *d, const Present *at, Output which, int i) {
     const Scaled *scaled = &d->integrator.scaled;
-    const ScaledInputs *inputs = &d->integrator.now.inputs;
+    const ScaledInputs *inputs = &at->inputs;
     const Loads *loads = &at->loads;
     double l1 = at->l1, F_star = at->F_star;
     switch (which) {
@@ -299,7 +315,7 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_STABILIZER_FORCE: return at->F[i] * F_star;
         case OUT_STABILIZER_CONTACT: return wall(at->F[i]);
         case OUT_BIT_TILT_SATURATION:
-            return side_beyond(at->F_0 / at->eta_pi, -inputs->psi_star, inputs->psi_star, ROUNDING);
+            return side_beyond(at->F_0 / inputs->eta_pi, -inputs->psi_star, inputs->psi_star, ROUNDING);
         case OUT_BIT_LATERAL_FORCE: return at->F_0 * F_star;
         case OUT_BIT_MOMENT: return -row_value(&at->mode->M, loads) * F_star * l1;
         case OUT_BOREHOLE_CURVATURE: return (at->Theta - at->earlier) / l1;
@@ -311,7 +327,7 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_SENSOR_CLEARANCE: return (scaled->sensor[i].clearance - fabs(at->sensed[i].offset)) * l1;
         case OUT_DISPLACEMENT: return at->x * l1;
         case OUT_TRUE_VERTICAL_DEPTH: return at->z * l1;
-        case OUT_ETA_PI: return at->eta_pi;
+        case OUT_ETA_PI: return inputs->eta_pi;
         case OUT_FORMATION: return d->integrator.now.layer;
         /* in space only */
         case OUT_BIT_AZIMUTH:

@@ -51,11 +51,24 @@ static inline int stands_in(const Ground *ground, int layer, int k, double given
     return ground->there && ground->rock[ROCK * layer + k] != 0 && given == ground->own[k];
 }
 
-/* The rock in a layer where these inputs are given. */
+/* The rock in a layer where these inputs are given; for a property that changes along the way no layer stands in. */
 static inline Inputs rock_in(const Ground *ground, int layer, Inputs given) {
     double *own[ROCK] = {&given.lateral_steering_resistance, &given.angular_steering_resistance, &given.bit_tilt_limit};
+    double slope[ROCK] = {
+        given.lateral_steering_resistance_slope, given.angular_steering_resistance_slope, given.bit_tilt_limit_slope
+    };
     for (int k = 0; k < ROCK; k++)
-        if (stands_in(ground, layer, k, *own[k])) *own[k] = ground->rock[ROCK * layer + k];
+        if (slope[k] == 0 && stands_in(ground, layer, k, *own[k])) *own[k] = ground->rock[ROCK * layer + k];
+    return given;
+}
+
+/* The inputs a length `way`, m, ahead of where these are given. */
+static inline Inputs given_ahead(Inputs given, double way) {
+    given.rss_force += given.rss_force_slope * way;
+    given.active_weight_on_bit += given.active_weight_on_bit_slope * way;
+    given.lateral_steering_resistance += given.lateral_steering_resistance_slope * way;
+    given.angular_steering_resistance += given.angular_steering_resistance_slope * way;
+    given.bit_tilt_limit += given.bit_tilt_limit_slope * way;
     return given;
 }
 

@@ -75,10 +75,12 @@ static inline void take_kinks(const Hole *hole, Kinks *kinks) {
     }
 }
 
-/* Add the piece that was drilled last; the piece before ends where it starts. */
-static inline void append(Hole *hole, const Step *step, ScaledInputs inputs) {
+/* Add the piece that was drilled last, `ahead` of where these inputs were taken over; the piece before ends where it
+   starts. */
+static inline void append(Hole *hole, const Step *step, const ScaledInputs *inputs, double ahead) {
     Piece *drilled = piece(hole, hole->end++);
-    drilled->start = step->xi, drilled->rate = 1 / step->h, drilled->inputs = inputs;
+    drilled->start = step->xi, drilled->rate = 1 / step->h, drilled->inputs = *inputs;
+    go_ahead(&drilled->inputs, ahead);
     memcpy(drilled->x, step->x, sizeof drilled->x);
 }
 

@@ -100,10 +100,9 @@ static inline Plan first_plan(const Step *last, int kink, const Law *law, double
 /* Choose the length of the trial: as planned, but no kink lies within it, and none is left a short step ahead. */
 static inline void choose_length(const Integrator *p, const Law *law, double xi, Plan *plan) {
     double largest = smaller(smaller(p->options.largest_step, p->now.places.nearest), law->longest);
+    int many = p->now.inputs_xi > 0 || p->now.regime.contact.watched; /* kinks */
     double h = smaller(plan->planned, largest);
-    Harm harm = harm_of(h, p->options.theta_weight, p->now.inputs_xi > 0);
-    double tolerance = p->options.relative_tolerance;
-    double way = next_kink(&p->now.kinks, &p->now.places, law->gains, &harm, tolerance, xi, 2 * h) - xi;
+    double way = reach(&p->now.kinks, &p->now.places, law->gains, &p->options, many, xi, &h);
     double longest = plan->repeated ? h : smaller(STRETCH * h, largest);
     if (way < 2 * h) h = way <= longest ? way : way / 2;
     plan->h = h;
@@ -203,7 +202,8 @@ static inline Status find_step(
 }
 
 /* See that no point of the body that is not watched has come through the wall along a trial step: where one has, it is
-   watched and the step tried again. Remember how far from the wall they are then. */
+   watched and the step tried again, where too many have for that, over a shorter length, along which fewer do. Remember how
+   far from the wall they are then. */
 static inline Status keep_clear(
     Integrator *p, const Step *last, int kink, const double x[COMPONENTS], Plan *plan, Trial *trial, Problem *problem
 ) {
@@ -212,11 +212,14 @@ static inline Status keep_clear(
         find_body_after(p, trial, body);
         look_around(p, &trial->step, body);
         int beyond = p->around.near ? watch_beyond(p, last->end) : 0; /* those beyond are near */
-        if (beyond < 0) return met(problem, TOO_CROWDED, MAX_WATCHED, last->end * p->length_scale);
         if (!beyond) break;
+        double shorter = plan->h / CLOSER;
         p->now.rejected++;
         forget_seen(p);
         *plan = first_plan(last, kink, present_law(p), p->options.layers);
+        if (beyond < 0) plan->planned = shorter, plan->repeated = 1;
+        if (beyond < 0 && shorter < shortest_step(p, last->end))
+            return met(problem, TOO_CROWDED, MAX_WATCHED, last->end * p->length_scale);
         Status status = find_step(p, last->end, x, plan, trial, problem);
         if (status != DONE) return status;
     }
@@ -234,7 +237,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     if (!has_room(p)) return FULL;
     read_sensors(p, last.end);
     int kink = leave(p, &last, x);
-    if (now->inputs.eta_pi_slope != 0) p->law_known = 0;
+    if (p->law.changes) p->law_known = 0;
     Plan plan = first_plan(&last, kink, present_law(p), p->options.layers);
     Status status = find_step(p, last.end, x, &plan, &trial, problem);
     if (status == DONE && p->scaled.points) status = keep_clear(p, &last, kink, x, &plan, &trial, problem);
@@ -246,7 +249,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
         larger(plan.h < plan.resumed ? plan.resumed : 0.0, plan.h * smaller(growth(trial.error), LARGEST_GROWTH));
     step_state(step, step->end, end);
     if (turns_over(present_law(p), &trial, end)) return failed(p, TURNS_OVER, step->end, problem);
-    append(&now->hole, step, inputs_ahead(now->inputs, last.end - now->inputs_xi));
+    append(&now->hole, step, &now->inputs, last.end - now->inputs_xi);
     if (kink <= SMOOTHEST_KINK)
         add_kink(&now->kinks, p->scaled.n, last.end, kink, step_jump(&last, step, kink, last.end));
     now->accepted++;

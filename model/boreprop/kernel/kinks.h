@@ -28,6 +28,16 @@ static inline Kink *kink(const Kinks *kinks, Count k) { return &kinks->ring[k & 
 /* Number of the oldest kink that is kept: the one that the last stabilizer will pass next. */
 static inline Count first_kink(const Kinks *kinks, int n) { return kinks->ahead[n - 1]; }
 
+/* Number of the first kink beyond `xi`, from number `low` on. */
+static inline Count kink_beyond(const Kinks *kinks, Count low, double xi) {
+    for (Count high = kinks->end; low < high;) {
+        Count middle = low + (high - low) / 2;
+        if (kink(kinks, middle)->xi > xi) high = middle;
+        else low = middle + 1;
+    }
+    return low;
+}
+
 /* Mark a jump, which the stabilizers will pass; jumps at one place in one derivative add up. */
 static inline void add_kink(Kinks *kinks, int n, double xi, int order, double jump) {
     Kink added = {xi, jump, order}, *last = kink(kinks, kinks->end - 1);
@@ -62,8 +72,9 @@ typedef struct {
 } Harm;
 
 /* Of a step of length `h`, where errors of θ have this weight. It is no more than what a kink changes over twice the step,
-   which counts before inputs change on the way: kinks are few there, and runs keep their steps to the last bit. */
-static inline Harm harm_of(double h, double theta_weight, int changed) {
+   which counts where there are not many: before inputs change on the way, while no point of the body is watched.
+   Such runs keep their steps to the last bit. */
+static inline Harm harm_of(double h, double theta_weight, int many) {
     static const double factorial[] = {1, 1, 2, 6, 24};
     Harm harm = {{0}};
     double power = h, twice = 2 * h;
@@ -71,7 +82,7 @@ static inline Harm harm_of(double h, double theta_weight, int changed) {
         twice *= 2 * h;
         harm.by[m] = twice / factorial[m + 1];
         double errs = power * larger(PASSED_Y[m] * h, theta_weight * PASSED_THETA[m]);
-        if (changed) harm.by[m] = smaller(harm.by[m], errs);
+        if (many) harm.by[m] = smaller(harm.by[m], errs);
         power *= h;
     }
     return harm;
@@ -92,6 +103,20 @@ static inline double next_kink(
             if (gains[i] * next->jump * harm->by[(int)next->order] > tolerance) first = at;
         }
     return first;
+}
+
+/* How far the next kink is that a step from `xi` must not pass, of the length `h` at most, which it gives. Where there are
+   `many` kinks, the length is halved until the step goes farther than to half of it: a shorter step may pass a kink that a
+   longer one may not. */
+static inline double reach(
+    const Kinks *kinks, const Places *places, const double *gains, const Options *options, int many, double xi,
+    double *h
+) {
+    for (;; *h /= 2) {
+        Harm harm = harm_of(*h, options->theta_weight, many);
+        double way = next_kink(kinks, places, gains, &harm, options->relative_tolerance, xi, 2 * *h) - xi;
+        if (!many || way > *h / 2) return way;
+    }
 }
 
 #endif

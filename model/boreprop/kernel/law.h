@@ -44,17 +44,19 @@ typedef struct {
     double lower, upper;
 } Bound;
 
-#define LONGEST_RAMP 0.1 /* by which share ηΠ changes within a step, at most: it then takes about six iterations */
+/* By which share ηΠ, χΠ or ψ* changes within a step, at most: it then takes about six iterations. */
+#define LONGEST_RAMP 0.1
 
 /* The right-hand side in one regime under given inputs, and the bounds within which it holds. */
 typedef struct {
     int count, last; /* of places, and that of the last stabilizer, which is the tilt's */
     int saturated;
-    int stands;       /* the BHA does not buckle between its contacts */
-    int axial;        /* whether the sine is that of θ */
-    double inputs_xi; /* where the inputs are those that it was made under */
-    double growth;    /* of ηΠ per ξ, over ηΠ there */
-    double longest;   /* step under a changing ηΠ */
+    int stands;          /* the BHA does not buckle between its contacts */
+    int axial;           /* whether the sine is that of θ */
+    int changes;         /* along the way, since its inputs do */
+    ScaledInputs inputs; /* under which it was made, and … */
+    double inputs_xi;    /* … where they are these */
+    double longest;      /* step of a law that changes */
     Linear theta_rate, Theta;
     double relaxation; /* length over which θ forgets */
     int bound_count;
@@ -70,9 +72,10 @@ static inline void less_tilt(Linear *Theta, const Linear *psi, int count) {
     for (int i = 0; i < count; i++) Theta->delayed[i] = -psi->delayed[i];
 }
 
-/* Θ = θ − ψ, with a saturated ψ. */
-static inline void less_limit(Linear *Theta, double psi, int count) {
-    Theta->theta = 1.0, Theta->Y = Theta->g = Theta->slope = 0.0, Theta->constant = -psi;
+/* Θ = θ − ψ, with a ψ that is saturated on this side. */
+static inline void less_limit(Linear *Theta, int side, ScaledInputs inputs, int count) {
+    Theta->theta = 1.0, Theta->Y = Theta->g = 0.0;
+    Theta->constant = -side * inputs.psi_star, Theta->slope = -side * inputs.psi_star_slope;
     for (int i = 0; i < count; i++) Theta->delayed[i] = 0.0;
 }
 
@@ -96,13 +99,13 @@ static inline void make_law(
     Bound *of_tilt = &law->bounds[0];
     law->count = count, law->last = n - 1, law->axial = scaled->axial, law->inputs_xi = inputs_xi, law->bound_count = 1;
     law->saturated = regime.saturation != 0, law->stands = mode->stands;
-    law->growth = inputs.eta_pi_slope / inputs.eta_pi;
-    law->longest = law->growth == 0 ? INFINITY : LONGEST_RAMP / fabs(law->growth);
-    make_linear(&law->theta_rate, &mode->M, places, inputs, 1 / (inputs.epsilon * inputs.eta_pi));
+    law->inputs = inputs, law->changes = law_changes(&inputs);
+    law->longest = law->changes ? LONGEST_RAMP / growth_of(&inputs) : INFINITY;
+    make_linear(&law->theta_rate, &mode->M, places, inputs, 1 / inputs.chi_pi);
     of_tilt->part = n - 1;
     make_linear(&of_tilt->value, &mode->F_0, places, inputs, 1 / inputs.eta_pi);
     saturation_bounds(regime.saturation, inputs.psi_star, &of_tilt->lower, &of_tilt->upper);
-    if (regime.saturation) less_limit(&law->Theta, regime.saturation * inputs.psi_star, count);
+    if (regime.saturation) less_limit(&law->Theta, regime.saturation, inputs, count);
     else less_tilt(&law->Theta, &of_tilt->value, count);
     law->relaxation = 1 / fabs(law->theta_rate.theta + law->Theta.Y);
     for (int i = 0; i < count; i++) {
@@ -117,8 +120,15 @@ static inline void make_law(
     find_gains(law);
 }
 
-/* ηΠ where a law was made over that a length `ahead` of there. M and F_0 are divided by ηΠ. */
-static inline double eta_pi_ratio(const Law *law, double ahead) { return 1 / (1 + law->growth * ahead); }
+/* By what F_0/(ηΠ), as under the inputs of a law that changes, is multiplied a length `ahead` of where they were taken
+   over, to be bounded there as well by the ψ* of these: by their ηΠψ* over that ahead. */
+APART static double tilt_ratio(const Law *law, double ahead) {
+    const ScaledInputs *own = &law->inputs;
+    return own->eta_pi * own->psi_star / (eta_pi_at(own, ahead) * psi_star_at(own, ahead));
+}
+
+/* Whether a bounded value is to be multiplied by it. */
+static inline int is_on_ramp(const Law *law, const Bound *bound) { return law->changes && bound->part == law->last; }
 
 /* A bounded value at one place of a trial step. */
 static inline double law_at(
@@ -131,7 +141,7 @@ static inline double law_at(
     double value = f->theta * x[ANGLE] + f->Y * x[LATERAL] + f->g * sine + f->constant;
     for (int i = 0; i < law->count; i++) value += f->delayed[i] * delayed[i][0];
     value += f->slope * (xi - law->inputs_xi);
-    return law->growth != 0 && bound->part == law->last ? value * eta_pi_ratio(law, xi - law->inputs_xi) : value;
+    return is_on_ramp(law, bound) ? value * tilt_ratio(law, xi - law->inputs_xi) : value;
 }
 
 /* Add the terms of all places but the first, and that of a force which changes along the step. */
@@ -143,7 +153,7 @@ static inline void add_others(const Linear *f, int count, const Trial *trial, do
         for (int k = 0; k < POINTS; k++) values[k] += f->slope * trial->ahead[k];
 }
 
-/* The values of a row at the points of a trial step, by the ηΠ where the law was made. */
+/* The values of a row at the points of a trial step, by the ηΠ and χΠ where the law was made. */
 static inline void linear_along(const Linear *f, int count, const Trial *trial, double values[POINTS]) {
     const double *theta = trial->x[ANGLE], *Y = trial->x[LATERAL], *Y_1 = trial->delayed[0][0];
     for (int k = 0; k < POINTS; k++)
@@ -154,8 +164,8 @@ static inline void linear_along(const Linear *f, int count, const Trial *trial, 
 /* A bounded value at the points of a trial step. */
 static inline void law_along(const Law *law, const Bound *bound, const Trial *trial, double values[POINTS]) {
     linear_along(&bound->value, law->count, trial, values);
-    if (law->growth == 0 || bound->part != law->last) return;
-    for (int k = 0; k < POINTS; k++) values[k] *= eta_pi_ratio(law, trial->ahead[k]);
+    if (!is_on_ramp(law, bound)) return;
+    for (int k = 0; k < POINTS; k++) values[k] *= tilt_ratio(law, trial->ahead[k]);
 }
 
 /* The same of a part of the right-hand side, with (θ, Y) frozen at the start of the step. */
@@ -217,21 +227,37 @@ static inline void sines_along(const Law *law, Trial *trial) {
     for (int k = 0; k < POINTS; k++) trial->sines[k] = sin(law->axial ? theta[k] : Y[k] - Y_1[k]);
 }
 
-/* θ' and Y' at the points of a trial step under a changing ηΠ. */
-static inline void rates_along(const Law *law, const Trial *trial, double theta_rate[POINTS], double Theta[POINTS]) {
+/* Of a law that changes, by what M/χΠ and F_0/(ηΠ) as under its inputs are multiplied at the points of a trial step. */
+typedef struct {
+    double M[POINTS], F_0[POINTS];
+} Ratios;
+
+static inline Ratios ratios_along(const Law *law, const Trial *trial) {
+    const ScaledInputs *own = &law->inputs;
+    Ratios ratios;
+    for (int k = 0; k < POINTS; k++) {
+        ratios.M[k] = own->chi_pi / chi_pi_at(own, trial->ahead[k]);
+        ratios.F_0[k] = law->saturated ? 1.0 : own->eta_pi / eta_pi_at(own, trial->ahead[k]);
+    }
+    return ratios;
+}
+
+/* θ' and Y' at the points of a trial step of a law that changes. */
+static inline void rates_along(
+    const Law *law, const Ratios *ratios, const Trial *trial, double theta_rate[POINTS], double Theta[POINTS]
+) {
     const double *theta = trial->x[ANGLE];
     linear_along(&law->theta_rate, law->count, trial, theta_rate);
     linear_along(&law->Theta, law->count, trial, Theta);
     for (int k = 0; k < POINTS; k++) {
-        double ratio = eta_pi_ratio(law, trial->ahead[k]);
-        theta_rate[k] *= ratio;
-        if (!law->saturated) Theta[k] = theta[k] + ratio * (Theta[k] - theta[k]);
+        theta_rate[k] *= ratios->M[k];
+        Theta[k] = theta[k] + ratios->F_0[k] * (Theta[k] - theta[k]);
     }
 }
 
 #define RAMP_ITERATIONS 20 /* at most; each gains a digit or more */
 
-/* Collocation under a changing ηΠ: what the Jacobian, which is that at the start, neglects is added to the right-hand
+/* Collocation of a law that changes: what the Jacobian, which is that at the start, neglects is added to the right-hand
    side until it is small. Returns whether it is; gives the right-hand side with the state frozen, and the parts. */
 APART static int collocate_on_ramp(
     const Law *law, const Options *options, const double x[COMPONENTS], Jacobian J, Trial *trial,
@@ -239,16 +265,17 @@ APART static int collocate_on_ramp(
 ) {
     double h = trial->step.h, *theta = trial->x[ANGLE], *Y = trial->x[LATERAL];
     double rate[POINTS], Theta[POINTS], allowed = REST * options->relative_tolerance;
+    Ratios ratios = ratios_along(law, trial);
     for (int k = 0; k < POINTS; k++) theta[k] = x[ANGLE], Y[k] = x[LATERAL];
     sines_along(law, trial);
-    rates_along(law, trial, f_theta, f_Y);
+    rates_along(law, &ratios, trial, f_theta, f_Y);
     for (int iteration = 0; iteration < RAMP_ITERATIONS; iteration++) {
         double off_theta = 0.0, off_Y = 0.0;
         collocate(h, J, f_theta, f_Y, parts_theta, parts_Y);
         radau_values(x[ANGLE], parts_theta, theta);
         radau_values(x[LATERAL], parts_Y, Y);
         sines_along(law, trial);
-        rates_along(law, trial, rate, Theta);
+        rates_along(law, &ratios, trial, rate, Theta);
         for (int k = 0; k < POINTS; k++) {
             double moved_theta = theta[k] - x[ANGLE], moved_Y = Y[k] - x[LATERAL];
             rate[k] -= f_theta[k] + J.theta_theta * moved_theta + J.theta_Y * moved_Y;
@@ -280,7 +307,7 @@ static inline void law_try(
         trial->ahead[k] = trial->step.xi - law->inputs_xi + POINT[k] * h;
         frozen[k] = tangent.sine + tangent.cosine * (x[tangent.part] - tangent.behind[k] - tangent.from);
     }
-    int ramp = law->growth != 0;
+    int ramp = law->changes;
     int found = ramp && collocate_on_ramp(law, options, x, J, trial, f_theta, f_Y, parts_theta, parts_Y);
     for (int iteration = 0; !ramp && iteration < ITERATIONS; iteration++) {
         linear_frozen(rate, law->count, x, trial, frozen, f_theta);

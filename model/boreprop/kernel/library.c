@@ -83,8 +83,13 @@ Count boreprop_lie(
     if (!bha) met(problem, NO_MEMORY, MOST_PIECES, 0.0);
     else if (lay(bha, &system, weight_on_bit, inclination, problem)) {
         int width = support_count(bha) + 2;
-        while (k < rows && lie(bha, loads + k * width, answers + k * width, count, s, shapes + k * count)) k++;
-        if (k < rows) met(problem, TOO_CROWDED, MAX_WATCHED, 0.0);
+        Code code = NO_PROBLEM;
+        for (; k < rows; k++) {
+            code = lie(bha, loads + k * width, answers + k * width, count, s, shapes + k * count);
+            if (code) break;
+        }
+        if (code)
+            no_contacts(code, &bha->scaled, bha->modes.axial, bha->F_star, system.relative_tolerance, 0.0, problem);
     }
     free(bha);
     return k;

@@ -31,8 +31,8 @@ static inline int lay(Lying *bha, const System *system, double weight_on_bit, do
 
 /* How it lies where the bit's axis is off the hole by `loads`, m, at each support, then F_RSS, N, and g: contact forces,
    N, then F_0, N, and M, N·m, into `answers`; its distance from the bit's axis at increasing places `s`, m, into `shape`,
-   m. Returns 0 if no contacts are found. */
-static inline int lie(
+   m. Returns what is in the way of contacts, as `follow_load`. */
+static inline Code lie(
     const Lying *bha, const double *loads, double *answers, Count count, const double *s, double *shape
 ) {
     const Beam *beam = &bha->modes.beam;
@@ -42,7 +42,8 @@ static inline int lie(
     Bent bent = {.F_rss = bending.F_rss, .g = bending.g, .end = beam->end};
     Path path;
     for (int i = 0; i < supports; i++) bent.e[i] = loads[i] / l1;
-    if (!follow_load(&bha->modes, &bent, bha->scaled.points, &path)) return 0;
+    Code problem = follow_load(&bha->modes, &bent, bha->scaled.points, &path);
+    if (problem) return problem;
     bending.M = path.start.M + path.rate.M, bending.F_0 = path.start.F_0 + path.rate.F_0;
     for (int i = 0; i < supports; i++) {
         bending.F[i] = path.of[i] ? path.start.of[i] + path.rate.of[i] : 0.0;
@@ -50,7 +51,7 @@ static inline int lie(
     }
     answers[supports] = bending.F_0 * bha->F_star, answers[supports + 1] = bending.M * bha->F_star * l1;
     beam_shape(beam, &bending, supports, l1, count, s, shape);
-    return 1;
+    return NO_PROBLEM;
 }
 
 #endif

@@ -55,10 +55,12 @@ static inline Status steer(Integrator *p, ScaledInputs inputs, Problem *problem)
 
 /* Whether other inputs than those along the next `way` act from where the bit is. */
 static inline int are_others(const State *now, ScaledInputs inputs, double way) {
-    int changed = inputs.F_rss != now->inputs.F_rss || inputs.eta_pi != now->inputs.eta_pi;
-    if (are_ramps(&inputs) || are_ramps(&now->inputs))
-        changed = !same_ramps(inputs_here(now), inputs, way > 0 ? way : 1.0);
-    changed |= inputs.epsilon != now->inputs.epsilon || inputs.psi_star != now->inputs.psi_star;
+    int changed = inputs.F_rss != now->inputs.F_rss || inputs.eta_pi != now->inputs.eta_pi ||
+                  inputs.chi_pi != now->inputs.chi_pi || inputs.psi_star != now->inputs.psi_star;
+    if (are_ramps(&inputs) || are_ramps(&now->inputs)) {
+        ScaledInputs here = inputs_here(now);
+        changed = !same_ramps(&here, &inputs, way > 0 ? way : 1.0);
+    }
     return changed || inputs.W != now->inputs.W || aims_anew(&inputs, &now->inputs);
 }
 
@@ -144,7 +146,7 @@ static inline void prepare(
 ) {
     Axial unloaded = {0.0, 0.0};
     memset(&p->now, 0, sizeof p->now);
-    p->law_known = p->exit_known = p->under_way = 0;
+    p->law.changes = p->law_known = p->exit_known = p->under_way = 0;
     p->scaled = *scaled;
     load_beam(&p->modes, scaled, unloaded);
     memcpy(p->modes.y_star, scaled->y_star, sizeof p->modes.y_star);
@@ -165,7 +167,7 @@ static inline Status begin(Integrator *p, const Survey *survey, ScaledInputs inp
     find_places(now, &p->scaled, now->xi);
     if (p->scaled.points) start_noting(now);
     if (restart(p, inputs, x, heading.angle, problem) != DONE) {
-        wrong(problem, NO_START, Q_PARAMETERS, 0, NAN, NAN);
+        if (problem->code == NOT_FINITE) wrong(problem, NO_START, Q_PARAMETERS, 0, NAN, NAN);
         return FAILED;
     }
     read_sensors(p, now->xi);

@@ -8,7 +8,7 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "d48a3ab0fd45d78f" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "fe70ff8820f238f5" /* of this file, but for this line, and of problems.h */
 #define MOST_DRILLED 100000.0 /* m in a communication step */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: forces between closer ones are rounding errors */
 #define POINTS_ALONG_BHA 36 /* at which its distance from the hole is looked at */
@@ -58,8 +58,11 @@ typedef struct {
     double active_weight_on_bit; /* N: weight on bit that goes into drilling */
     double active_weight_on_bit_slope; /* N/m: its change per metre drilled */
     double lateral_steering_resistance; /* lateral over axial drilling resistance */
+    double lateral_steering_resistance_slope; /* /m: its change per metre drilled */
     double angular_steering_resistance; /* angular over axial drilling resistance */
+    double angular_steering_resistance_slope; /* /m: its change per metre drilled */
     double bit_tilt_limit; /* rad: tilt at which the bit gauge meets the wall */
+    double bit_tilt_limit_slope; /* rad/m: its change per metre drilled */
     double weight_on_bit; /* N: all of the weight on bit, which presses the BHA along its axis; 0: the active weight */
     double bit_walk_angle; /* rad: walk angle: from the lateral penetration of the bit to the lateral force, positive from the high side to the right looking down the hole */
     double rss_toolface; /* rad: side to which the pads push, looking down the hole: 0 up or north, π/2 to the right */

@@ -40,16 +40,16 @@ static inline double curvature_jump(
     Integrator *p, const double x[COMPONENTS], ScaledInputs before, ScaledInputs inputs
 ) {
     double bend = inputs.F_rss_slope - before.F_rss_slope, turn = inputs.eta_pi_slope - before.eta_pi_slope;
-    int on_ramp = (bend != 0 || turn != 0) && !p->now.regime.saturation, turns_anew = inputs.epsilon != before.epsilon;
-    double bent = 0.0; /* jump of Θ' = θ' − ψ' */
-    if (!on_ramp && !turns_anew) return 0.0;
+    int saturation = p->now.regime.saturation, on_ramp = bend != 0 || turn != 0, turns = turns_anew(&inputs, &before);
+    double bent = -saturation * (inputs.psi_star_slope - before.psi_star_slope); /* jump of Θ' = θ' − ψ' */
+    if ((saturation || !on_ramp) && !turns) return fabs(bent);
     Loads loads = loads_at(p, p->now.xi, x, inputs.F_rss);
     const Mode *mode = mode_of(&p->modes, p->now.regime.contact);
-    if (turns_anew) { /* θ' = M/(εηΠ) */
+    if (turns) { /* θ' = M/(εηΠ) */
         double moment = row_value(&mode->M, &loads);
-        bent = present_law(p)->Theta.theta * moment / inputs.eta_pi * (1 / inputs.epsilon - 1 / before.epsilon);
+        bent += present_law(p)->Theta.theta * moment / inputs.eta_pi * (1 / epsilon(&inputs) - 1 / epsilon(&before));
     }
-    if (on_ramp) { /* (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ */
+    if (on_ramp && !saturation) { /* (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ */
         double psi = row_value(&mode->F_0, &loads) / inputs.eta_pi;
         bent -= (bend * mode->F_0.rss - turn * psi) / inputs.eta_pi;
     }
@@ -66,7 +66,7 @@ static inline double earlier_inclination(Integrator *p, double xi) {
     }
     double ahead = larger(xi - at->start, 0.0), x[COMPONENTS];
     for (int c = 0; c < COMPONENTS; c++) x[c] = polynomial(at->x[c], ahead * at->rate);
-    ScaledInputs inputs = inputs_ahead(at->inputs, ahead);
+    ScaledInputs inputs = inputs_ahead(&at->inputs, ahead);
     Loads loads = loads_at(p, at->start + ahead, x, inputs.F_rss);
     bear(p, inputs.W);
     double Theta = inclination_under(p, x[ANGLE], &loads, inputs);

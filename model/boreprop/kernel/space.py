@@ -1,11 +1,13 @@
 """Drilling in space, by the kernel: the hole may leave its vertical plane."""
 
 from collections.abc import Sequence
+from typing import Unpack
 
 import numpy as np
 
 from ..core.errors import ParameterError
 from ..core.ground import Ground
+from ..core.inputs import Slopes
 from ..core.options import Options
 from ..core.quantities import TOOLFACE_REFERENCES
 from ..core.survey import Survey
@@ -72,23 +74,19 @@ class SpaceDrilling(NativeDrilling):
         *,
         rss_toolface: float = 0.0,
         toolface_reference: str = "gravity",
-        rss_force_slope: float = 0.0,
-        active_weight_on_bit_slope: float = 0.0,
         weight_on_bit: float = 0.0,
         bit: BitRock | None = None,
+        **slopes: Unpack[Slopes],
     ) -> None:
-        """Drill on under inputs from here; force and weight constant or linear in the drilled length."""
-        self._advance(
-            drilled_length,
-            bit or self.bit,
-            rss_force=rss_force,
-            rss_force_slope=rss_force_slope,
-            active_weight_on_bit=active_weight_on_bit,
-            active_weight_on_bit_slope=active_weight_on_bit_slope,
-            weight_on_bit=weight_on_bit,
-            rss_toolface=rss_toolface,
-            toolface_reference=_reference(toolface_reference),
-        )
+        """Drill on under inputs from here, constant or linear in the drilled length; toolface and walk are constant."""
+        forces = {
+            "rss_force": rss_force,
+            "active_weight_on_bit": active_weight_on_bit,
+            "weight_on_bit": weight_on_bit,
+            "rss_toolface": rss_toolface,
+            "toolface_reference": _reference(toolface_reference),
+        }
+        self._advance(drilled_length, forces, bit, slopes)
 
 
 def _reference(name: str) -> float:

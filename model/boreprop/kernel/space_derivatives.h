@@ -37,9 +37,9 @@ static inline double mean_inclination_slope(const Drilling *d, const Present *at
 
 /* Change of an output, or of the one with this index, per metre drilled; NaN if it may jump or bend on the way. */
 static inline double output_slope(const Drilling *d, const Present *at, Output which, int i) {
-    double stiffness = d->integrator.now.inputs.epsilon * at->eta_pi, rate[2], turn[AXES];
-    for (int k = 0; k < 2; k++) rate[k] = at->is.at.M[k] / stiffness; /* εηΠ θ⃗' = M⃗ */
-    for (int axis = NORTH; axis <= DOWN; axis++) {                    /* d' = e₂ θ₂' + e₃ θ₃' */
+    double rate[2], turn[AXES];
+    for (int k = 0; k < 2; k++) rate[k] = at->is.at.M[k] / at->inputs.chi_pi; /* χΠ θ⃗' = M⃗ */
+    for (int axis = NORTH; axis <= DOWN; axis++) {                            /* d' = e₂ θ₂' + e₃ θ₃' */
         const double *row = at->is.frame.row[axis];
         turn[axis] = row[HIGH] * rate[0] + row[RIGHT] * rate[1];
     }

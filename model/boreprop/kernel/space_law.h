@@ -10,7 +10,7 @@ static inline double size_of(const double a[2]) { return hypot(a[0], a[1]); }
 /* A bounded value, from what the law has said. */
 static inline double bounded_value(const Law *law, const Bound *bound, const Reply *at) {
     int i = bound->part;
-    if (i == law->n - 1) return size_of(at->F_0) / at->eta_pi;
+    if (i == law->n - 1) return size_of(at->F_0) / at->eta_pi * (law->inputs.psi_star / at->psi_star);
     double delta[2] = {at->q[i][0], at->q[i][1]};
     for (int k = 0; k < law->touching.touching; k++) {
         if (law->touching.C[k] == i) return size_of(at->v[k]) - law->y_star[i];

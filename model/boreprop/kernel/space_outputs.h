@@ -4,8 +4,9 @@
 
 /* What the outputs are computed from: the state where the bit is. */
 typedef struct {
-    double l1, F_star, eta_pi, path[AXES], T[AXES], earlier[DIRECTIONS], x[COMPONENTS];
+    double l1, F_star, path[AXES], T[AXES], earlier[DIRECTIONS], x[COMPONENTS];
     double high[DIRECTIONS]; /* the side from which parts of forces and tilt are counted, in (e₂, e₃) */
+    ScaledInputs inputs;
     Response is;
 } Present;
 
@@ -25,9 +26,9 @@ static inline Present present(Drilling *d) {
     const State *now = &p->now;
     Present at;
     at.l1 = length_scale(&d->system), at.F_star = force_scale(&d->system);
-    at.eta_pi = inputs_here(now).eta_pi;
+    at.inputs = inputs_here(now);
     step_state(&now->step, now->xi, at.x);
-    at.is = respond(p, at.x, inputs_here(now));
+    at.is = respond(p, at.x, at.inputs);
     high_side(&at.is.frame, at.high);
     position(now, at.path);
     const Piece *own = piece(&now->hole, find(&now->hole, now->xi - 1.0));
@@ -102,7 +103,7 @@ static inline double output(const Drilling *d, const Present *at, Output which, 
         case OUT_EAST: return at->path[EAST] * l1;
         case OUT_DISPLACEMENT: return hypot(at->path[NORTH], at->path[EAST]) * l1;
         case OUT_TRUE_VERTICAL_DEPTH: return at->path[DOWN] * l1;
-        case OUT_ETA_PI: return at->eta_pi;
+        case OUT_ETA_PI: return at->inputs.eta_pi;
     }
     return NAN;
 }

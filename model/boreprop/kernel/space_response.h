@@ -77,21 +77,21 @@ static inline void slope_of_hole(
 static inline double curvature_jump(
     Integrator *p, const double x[COMPONENTS], ScaledInputs before, ScaledInputs inputs
 ) {
-    int on_ramp = inputs.F_rss_slope != before.F_rss_slope || inputs.eta_pi_slope != before.eta_pi_slope;
-    int turns_anew = inputs.epsilon != before.epsilon;
-    double bent = 0.0;
-    if (!on_ramp && !turns_anew) return 0.0;
+    int on_ramp = inputs.F_rss_slope != before.F_rss_slope || inputs.eta_pi_slope != before.eta_pi_slope ||
+                  inputs.psi_star_slope != before.psi_star_slope;
+    double bent = 0.0, turn = turns_anew(&inputs, &before) ? 1 - epsilon(&inputs) / epsilon(&before) : 0.0;
+    if (!on_ramp && turn == 0.0) return 0.0;
     Response here = respond(p, x, inputs);
     Reply now = here.at, soon = here.at, would = here.at;
     ScaledInputs other = inputs;
     other.F_rss_slope = before.F_rss_slope, other.eta_pi_slope = before.eta_pi_slope;
+    other.psi_star_slope = before.psi_star_slope;
     slope_of_hole(p, x, inputs, 0.0, &now);
     slope_of_hole(p, x, inputs, A_LITTLE, &soon);
     slope_of_hole(p, x, other, A_LITTLE, &would);
     for (int d = 0; d < DIRECTIONS; d++) {
         double jump = (soon.rate[LATERAL + d] - would.rate[LATERAL + d]) / A_LITTLE;
-        for (int c = 0; c < DIRECTIONS; c++)
-            jump += now.by[LATERAL + d][ANGLE + c] * now.rate[ANGLE + c] * (1 - inputs.epsilon / before.epsilon);
+        for (int c = 0; c < DIRECTIONS; c++) jump += now.by[LATERAL + d][ANGLE + c] * now.rate[ANGLE + c] * turn;
         bent = larger(bent, fabs(jump));
     }
     return bent;

@@ -19,6 +19,7 @@ typedef struct {
 
 enum { NUMBERS_OF_PIECE = sizeof(Piece) / sizeof(double), NUMBERS_OF_KINK = sizeof(Kink) / sizeof(double) };
 enum { NUMBERS_OF_INCLINATIONS = sizeof(Inclinations) / sizeof(double) };
+enum { NUMBERS_OF_INPUTS = sizeof(ScaledInputs) / sizeof(double) };
 
 /* Everything that evolves, with counts in place of the rings. */
 typedef struct {
@@ -83,17 +84,8 @@ static inline void pass_snapshot(Tape *tape, const Scaled *scaled, Snapshot *sna
     step->side = (int)pass_whole(tape, step->side, -1, 1);
     pass(tape, 1, &snapshot->drilled_length);
     pass(tape, 1, &now->xi);
-    pass(tape, 1, &now->inputs.F_rss);
-    pass(tape, 1, &now->inputs.F_rss_slope);
-    pass(tape, 1, &now->inputs.eta_pi);
-    pass(tape, 1, &now->inputs.eta_pi_slope);
-    pass(tape, 1, &now->inputs.epsilon);
-    pass(tape, 1, &now->inputs.psi_star);
-    pass(tape, 1, &now->inputs.W);
+    pass(tape, NUMBERS_OF_INPUTS, &now->inputs.F_rss);
 #ifdef SPACE
-    pass(tape, 1, &now->inputs.toolface);
-    pass(tape, 1, &now->inputs.reference);
-    pass(tape, 1, &now->inputs.walk);
     for (int axis = NORTH; axis <= DOWN; axis++) pass(tape, 3, step->frame.row[axis]);
 #endif
     pass(tape, 1, &now->cosine);
@@ -178,10 +170,11 @@ static inline int is_turned(const Step *step) {
 static inline int is_consistent(const Drilling *d, const Snapshot *snapshot) {
     const State *now = &snapshot->now;
     const Step *step = &now->step;
-    double xi = now->xi, eta_pi = inputs_here(now).eta_pi;
+    double xi = now->xi;
+    ScaledInputs here = inputs_here(now);
     if (!(fabs(snapshot->drilled_length / length_scale(&d->system) - xi) <= ROUNDING_OF_XI * xi)) return 0;
-    if (!(eta_pi > 0) || !isfinite(1 / eta_pi) || now->inputs_xi > xi) return 0;
-    if (!(now->inputs.epsilon > 0) || !isfinite(1 / now->inputs.epsilon) || !(now->inputs.psi_star > 0)) return 0;
+    if (!(here.eta_pi > 0) || !isfinite(1 / here.eta_pi) || now->inputs_xi > xi) return 0;
+    if (!(here.chi_pi > 0) || !isfinite(1 / here.chi_pi) || !(here.psi_star > 0)) return 0;
     if (d->system.structure.axial ? !(now->inputs.W > 0) || !(fabs(now->cosine) <= 1)
                                   : now->inputs.W != 0 || now->cosine != 0)
         return 0;

@@ -27,7 +27,7 @@ typedef struct {
 /* Whatever the law in space says at one place. */
 typedef struct {
     double rate[COMPONENTS], by[COMPONENTS][COMPONENTS]; /* θ⃗' and Θ⃗, and their derivatives by the state */
-    double M[DIRECTIONS], F_0[DIRECTIONS], psi[DIRECTIONS], G[DIRECTIONS], F_rss[DIRECTIONS], eta_pi;
+    double M[DIRECTIONS], F_0[DIRECTIONS], psi[DIRECTIONS], G[DIRECTIONS], F_rss[DIRECTIONS], eta_pi, psi_star;
     double q[MAX_STABILIZERS][DIRECTIONS]; /* of each stabilizer; the others by their number among those in contact */
     double v[MAX_STABILIZERS][DIRECTIONS], F[MAX_STABILIZERS][DIRECTIONS];
 } Reply;

@@ -257,7 +257,7 @@ static inline void choose_watched(Integrator *p, double xi) {
 }
 
 /* Watch every point that a trial step has brought through the wall unwatched, with the step to be tried again from `xi`;
-   returns how many there are, or −1 if there is no room. */
+   returns how many there are, or −1 if there is no room for all, and then none is. */
 static inline int watch_beyond(Integrator *p, double xi) {
     int n = p->scaled.n, found = 0;
     Contact contact = p->now.regime.contact;
@@ -284,8 +284,11 @@ static inline Status touch_down(Integrator *p, double xi, const double x[COMPONE
     memcpy(bent.e, loads.e, (size_t)n * sizeof *bent.e);
     for (int k = 0; k < points; k++)
         bent.e[n + k] = x[LATERAL] - hole_at_point(p, &p->now.step, xi, k, &nearer) - p->scaled.s[n + k] * x[ANGLE];
-    if (!search(&p->modes, &bent, points, &contact))
-        return met(problem, TOO_CROWDED, MAX_WATCHED, xi * p->length_scale);
+    Code code = search(&p->modes, &bent, points, &contact);
+    if (code) {
+        double tolerance = p->options.relative_tolerance, place = xi * p->length_scale;
+        return no_contacts(code, &p->scaled, p->modes.axial, p->force_scale, tolerance, place, problem);
+    }
     for (int k = 0; k < now->watched && contact.watched < MAX_WATCHED; k++)
         if (place_of(&contact, n, now->point[k]) < 0) watch(&contact, n, now->point[k], 0);
     change_places(p, contact, xi);

@@ -176,21 +176,57 @@ static inline double force_scale(const System *system) {
 /* From which side the toolface counts. */
 enum { FROM_HIGH_SIDE, FROM_NORTH, FROM_FRAME };
 
-/* The inputs where they were taken over: F_RSS and ηΠ, their changes per ξ, the ε = χ/η and ψ* of bit and rock, and the
-   weight on the bit W, which is zero if the axial load does not count. */
+/* The inputs where they were taken over: F_RSS, ηΠ, χΠ = εηΠ and ψ* with their changes per ξ, and those of ηΠ and χΠ,
+   which are products of two that change, per ξ²; and the weight on the bit W, which is zero if the axial load does not
+   count. */
 typedef struct {
-    double F_rss, F_rss_slope, eta_pi, eta_pi_slope, epsilon, psi_star, W;
+    double F_rss, eta_pi, chi_pi, psi_star;
+    double F_rss_slope, eta_pi_slope, chi_pi_slope, psi_star_slope, eta_pi_curve, chi_pi_curve, W;
 #ifdef SPACE
     double toolface, reference, walk; /* γ and where it counts from; ϖ */
 #endif
 } ScaledInputs;
 
-/* The inputs a length `ahead` of where they were taken over. */
-static inline ScaledInputs inputs_ahead(ScaledInputs inputs, double ahead) {
-    inputs.F_rss += inputs.F_rss_slope * ahead;
-    inputs.eta_pi += inputs.eta_pi_slope * ahead;
-    return inputs;
+/* F_RSS, ηΠ, χΠ and ψ* a length `ahead` of where inputs were taken over. */
+static inline double F_rss_at(const ScaledInputs *inputs, double ahead) {
+    return inputs->F_rss + ahead * inputs->F_rss_slope;
 }
+static inline double eta_pi_at(const ScaledInputs *inputs, double ahead) {
+    return inputs->eta_pi + ahead * (inputs->eta_pi_slope + ahead * inputs->eta_pi_curve);
+}
+static inline double chi_pi_at(const ScaledInputs *inputs, double ahead) {
+    return inputs->chi_pi + ahead * (inputs->chi_pi_slope + ahead * inputs->chi_pi_curve);
+}
+static inline double psi_star_at(const ScaledInputs *inputs, double ahead) {
+    return inputs->psi_star + ahead * inputs->psi_star_slope;
+}
+
+/* Whether more of the inputs changes along the way than the force, so that the law is another from place to place. */
+static inline int law_changes(const ScaledInputs *inputs) {
+    return inputs->eta_pi_slope != 0 || inputs->chi_pi_slope != 0 || inputs->psi_star_slope != 0 ||
+           inputs->eta_pi_curve != 0 || inputs->chi_pi_curve != 0;
+}
+
+/* Whether inputs change along the way. */
+static inline int are_ramps(const ScaledInputs *inputs) { return inputs->F_rss_slope != 0 || law_changes(inputs); }
+
+/* Let inputs be those a length `ahead` of where they were taken over. */
+static inline void go_ahead(ScaledInputs *inputs, double ahead) {
+    if (!are_ramps(inputs)) return;
+    inputs->F_rss = F_rss_at(inputs, ahead), inputs->psi_star = psi_star_at(inputs, ahead);
+    inputs->eta_pi = eta_pi_at(inputs, ahead), inputs->eta_pi_slope += 2 * ahead * inputs->eta_pi_curve;
+    inputs->chi_pi = chi_pi_at(inputs, ahead), inputs->chi_pi_slope += 2 * ahead * inputs->chi_pi_curve;
+}
+
+/* The inputs there. */
+static inline ScaledInputs inputs_ahead(const ScaledInputs *inputs, double ahead) {
+    ScaledInputs there = *inputs;
+    go_ahead(&there, ahead);
+    return there;
+}
+
+/* ε = χ/η. */
+static inline double epsilon(const ScaledInputs *inputs) { return inputs->chi_pi / inputs->eta_pi; }
 
 /* Whether the pads aim at another side, or the bit walks otherwise. */
 static inline int aims_anew(const ScaledInputs *inputs, const ScaledInputs *before) {
@@ -203,23 +239,36 @@ static inline int aims_anew(const ScaledInputs *inputs, const ScaledInputs *befo
 #endif
 }
 
-/* Whether inputs change along the way. */
-static inline int are_ramps(const ScaledInputs *inputs) {
-    return inputs->F_rss_slope != 0 || inputs->eta_pi_slope != 0;
+/* The largest share per ξ by which ηΠ, χΠ or ψ* changes, at first and at most on a short way. */
+static inline double growth_of(const ScaledInputs *inputs) {
+    double eta = fabs(inputs->eta_pi_slope / inputs->eta_pi), chi = fabs(inputs->chi_pi_slope / inputs->chi_pi);
+    if (inputs->eta_pi_curve != 0) eta += sqrt(fabs(inputs->eta_pi_curve / inputs->eta_pi));
+    if (inputs->chi_pi_curve != 0) chi += sqrt(fabs(inputs->chi_pi_curve / inputs->chi_pi));
+    return larger(larger(eta, chi), fabs(inputs->psi_star_slope / inputs->psi_star));
 }
 
-#define SAME 1e-12 /* relative: ramps that differ by less at both ends of a way differ by rounding */
+#define SAME 1e-12 /* relative: what differs by less differs by rounding */
 
-static inline int same_ramp(double a, double a_end, double b, double b_end) {
-    double most = SAME * larger(fabs(b), fabs(b_end));
-    return fabs(a - b) <= most && fabs(a_end - b_end) <= most;
+/* Whether ε is another, not by rounding. */
+static inline int turns_anew(const ScaledInputs *inputs, const ScaledInputs *before) {
+    return fabs(epsilon(inputs) - epsilon(before)) > SAME * epsilon(before);
 }
 
-/* Whether two pairs of inputs, of which one is a ramp, are the same along a way. */
-static inline int same_ramps(ScaledInputs a, ScaledInputs b, double way) {
-    ScaledInputs a_end = inputs_ahead(a, way), b_end = inputs_ahead(b, way);
-    return same_ramp(a.F_rss, a_end.F_rss, b.F_rss, b_end.F_rss) &&
-           same_ramp(a.eta_pi, a_end.eta_pi, b.eta_pi, b_end.eta_pi);
+/* Whether ramps of one value are the same along a way. */
+static inline int same_ramp(
+    double a, double a_slope, double a_curve, double b, double b_slope, double b_curve, double way
+) {
+    double end = b + way * (b_slope + way * b_curve);
+    double off = fabs(a - b) + way * (fabs(a_slope - b_slope) + way * fabs(a_curve - b_curve));
+    return off <= SAME * larger(fabs(b), fabs(end));
+}
+
+/* Whether two sets of inputs, of which one is a ramp, are the same along a way. */
+static inline int same_ramps(const ScaledInputs *a, const ScaledInputs *b, double way) {
+    return same_ramp(a->F_rss, a->F_rss_slope, 0.0, b->F_rss, b->F_rss_slope, 0.0, way) &&
+           same_ramp(a->eta_pi, a->eta_pi_slope, a->eta_pi_curve, b->eta_pi, b->eta_pi_slope, b->eta_pi_curve, way) &&
+           same_ramp(a->chi_pi, a->chi_pi_slope, a->chi_pi_curve, b->chi_pi, b->chi_pi_slope, b->chi_pi_curve, way) &&
+           same_ramp(a->psi_star, a->psi_star_slope, 0.0, b->psi_star, b->psi_star_slope, 0.0, way);
 }
 
 /* λ_i: distance from stabilizer i−1 (the bit) to stabilizer i, counted from 0 here. */

@@ -1,7 +1,7 @@
 """The engines that drill a case, behind one protocol: the model in Python, and the same as compiled code."""
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any, Protocol, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from ..case.case import Case
 from ..core.drilling import Drilling
 from ..core.errors import ParameterError
 from ..core.ground import Ground
+from ..core.inputs import Slopes
 from ..core.options import Options, Statistics
 from ..core.quantities import ACTING, TOOLFACE_REFERENCES, values_of
 from ..core.system import BitRock
@@ -41,10 +42,9 @@ class Engine(Protocol):
         rss_force: float,
         active_weight_on_bit: float,
         *,
-        rss_force_slope: float = 0.0,
-        active_weight_on_bit_slope: float = 0.0,
         weight_on_bit: float = 0.0,
         bit: BitRock | None = None,
+        **slopes: Unpack[Slopes],
     ) -> None:
         """Drill on under inputs from here, constant or linear in the drilled length."""
 

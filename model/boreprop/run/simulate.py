@@ -63,7 +63,8 @@ def simulate(
     -------
     Trajectory
         Columns `rss_force`, `active_weight_on_bit` and whatever else the case schedules, of bit and rock what changes,
-        and one for every output of the table of quantities, shape (rows,), SI units.
+        and one for every output of the table of quantities, shape (rows,), SI units. With wear `active_weight_on_bit`
+        is that of the sharp bit, as it is given; `eta_pi` shows what is left of it.
 
     Raises
     ------

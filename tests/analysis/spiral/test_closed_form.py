@@ -6,18 +6,22 @@ from math import degrees, inf, isnan, pi, radians
 
 import numpy as np
 import pytest
+from scipy.optimize import fsolve
 
 from boreprop.analysis.spiral.closed_form import Search, Spiral, Winding, spiral
 from boreprop.analysis.spiral.turning import MU, OMEGA, theta
+from boreprop.arrays import Floats
 from boreprop.case.case import Case
+from boreprop.core.beam import Beam
 from boreprop.core.errors import ParameterError
 from boreprop.core.survey import Survey
-from boreprop.core.system import BitRock, BottomHoleAssembly
+from boreprop.core.system import BitRock, BottomHoleAssembly, scale
 from boreprop.kernel.binding import available
 from boreprop.kernel.space import SpaceDrilling
 from reference.spatial import Drilling, System, tilted
 from spirals import paper_spiral
 
+BEAM = Beam(scale(paper_spiral().bha, paper_spiral().bit))
 STATIONS = 801  # of an existing hole that spirals, over the BHA: chords are off by 1e-6 of its inclination
 
 
@@ -94,13 +98,44 @@ def test_the_range_of_eta_pi_is_where_spirals_are(walk_deg: float) -> None:
     assert beyond.eta_pi_range(None)[1] == pytest.approx(highest, rel=1e-3)
 
 
+@pytest.mark.parametrize(("walk_deg", "end"), [(0.0, 0.132702), (10.0, 0.165559), (20.0, 0.202379)])
+def test_the_spiral_ends_where_its_equations_say_that_the_gauge_lets_go(walk_deg: float, end: float) -> None:
+    """The five equations of two stabilizers by MINPACK: μ changes its sign there, and the two are within 1e-6."""
+    case = paper_spiral(walk_deg=walk_deg)
+    own = search(case)
+    highest = own.eta_pi_range(own.at(case.eta_pi).own)[1]
+    start = [4.6, 0.027, -0.0076, -0.0056, 0.0]  # ω, |T|, ϑ, μ
+    below, there, above = (
+        fsolve(five_equations, start, args=(share * highest, radians(walk_deg)), xtol=1e-12)
+        for share in (0.99, 1.0, 1.01)
+    )
+    assert below[4] > 1e-4
+    assert there[4] == pytest.approx(0.0, abs=1e-7)
+    assert above[4] < -1e-4
+    assert highest == pytest.approx(end, abs=1e-6)
+
+
+def five_equations(x: Floats, eta_pi: float, walk: float) -> Floats:
+    """The equations of docs/model.md for the paper's beam, y* = 1e-3 and ψ* = 2°, with K(1 − y*/|q|) for the wall."""
+    omega, T, bit, mu = x[0], x[1], complex(x[2], x[3]), x[4]
+    beam, s = BEAM, np.array([1.0, 2.0])
+    B = (1 - np.exp(-1j * omega * s)) / (1j * omega)
+    e, g = B * T - s * bit, B[0] * T
+    q = e[0] + beam.delta_e[0] * e[1] + beam.delta_g[0] * g
+    F = -(1 - 1e-3 / abs(q)) / beam.K_inv[0][0] * q
+    M = beam.M_e * e[1] + beam.M_F[0] * F + beam.M_g * g
+    F_0 = beam.F0_e * e[1] + beam.F0_F[0] * F + beam.F0_g * g
+    moment, force = M - 0.1j * omega * eta_pi * bit, F_0 - (eta_pi * np.exp(1j * walk) + mu) * (bit - T)
+    return np.array([moment.real, moment.imag, force.real, force.imag, abs(bit - T) - radians(2.0)])
+
+
 def test_a_spiral_is_a_steady_state_of_a_simulation_in_space() -> None:
     for case in (paper_spiral(0.1, walk_deg=5.0), three_stabilizers()):
         own = search(case)
         x = own.at(case.eta_pi).own
         assert x is not None
         found = own.winding(x)
-        direction = found.hole_inclination * np.exp(1j * x[OMEGA] * np.linspace(-own.scaled.s[-1], 0.0, STATIONS))
+        direction = found.hole_inclination * np.exp(1j * x[OMEGA] * np.linspace(-own.turning.s[-1], 0.0, STATIONS))
         bit = np.array([found.hole_inclination * theta(x)]).view(float)
         drilling = Drilling(existing(own, direction, tilted(bit)), 0.002)
         drilling.theta = bit
@@ -140,7 +175,8 @@ def test_a_simulation_that_starts_on_a_spiral_keeps_its_pitch_and_radius(walk_de
 
 
 def existing(own: Search, direction: np.ndarray, frame: np.ndarray) -> System:
-    scaled, case = own.scaled, own.case
+    case = own.case
+    scaled = scale(case.bha, replace(case.bit, walk_angle=0.0))
     return System(
         s=scaled.s,
         y_star=scaled.y_star,
@@ -156,15 +192,10 @@ def existing(own: Search, direction: np.ndarray, frame: np.ndarray) -> System:
     )
 
 
-def test_the_opposite_walk_gives_the_mirror_image() -> None:
-    found, mirrored = spiral(paper_spiral(walk_deg=8.0), "left"), spiral(paper_spiral(walk_deg=-8.0), "right")
-    assert replace(mirrored, handedness="left") == found
-
-
-def test_a_bit_winds_to_the_side_to_which_it_walks() -> None:
-    assert spiral(paper_spiral(walk_deg=3.0)).handedness == "right"
-    assert spiral(paper_spiral(walk_deg=-3.0)).handedness == "left"
-    assert paper().handedness == "either"
+def test_a_bit_winds_to_the_side_to_which_it_walks_and_the_opposite_walk_gives_the_mirror_image() -> None:
+    right, left = spiral(paper_spiral(walk_deg=8.0)), spiral(paper_spiral(walk_deg=-8.0))
+    assert (right.handedness, left.handedness, paper().handedness) == ("right", "left", "either")
+    assert replace(left, handedness="right") == right
 
 
 def test_twice_the_clearance_and_tilt_limit_wind_twice_as_wide() -> None:
@@ -234,8 +265,8 @@ def test_random_systems_have_spirals_that_obey_the_laws(seed: int) -> None:
     own = search(case)
     x = own.at(case.eta_pi).own
     assert x is not None
-    touched, (e, G) = own.turning.contact(x), own.turning.loads(x)
-    delta = own.turning.q_e @ e + own.turning.q_g * G + own.turning.K_inv @ touched.F
+    touched = own.turning.contact(x)
+    delta = own.turning.bend(own.turning.offsets(x), theta(x)) + own.turning.beam.K_inv @ touched.F
     allowed = x[4] * own.turning.y
     assert (abs(delta) <= allowed * (1 + 1e-9)).all()
     np.testing.assert_allclose((delta.conj() * touched.F).real, -allowed * abs(touched.F), atol=1e-10)

@@ -26,5 +26,5 @@ def test_a_hole_that_does_not_ripple_has_no_growth() -> None:
 
 
 def test_a_bit_that_walks_leaves_the_plane_at_once() -> None:
-    with pytest.raises(ParameterError, match=r"^bit_walk_angle: must be 0"):
+    with pytest.raises(ParameterError, match=r"^bit_walk_angle: must be 0 for a ripple in a plane"):
         transverse_growth(paper_spiral(walk_deg=1.0))

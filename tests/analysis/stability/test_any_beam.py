@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from beams_as_built import in_sections
 from boreprop import paper_case
 from boreprop.analysis.stability.roots import critical_eta_pi, find_roots
 from boreprop.case.case import Case
@@ -15,19 +16,6 @@ from boreprop.run.simulate import simulate
 
 pytestmark = pytest.mark.usefixtures("kernel")
 PAPER = paper_case()
-
-
-def in_sections(case: Case, lengths: tuple[float, ...], stiffnesses: tuple[float, ...]) -> Case:
-    """The case with a beam in sections of these stiffnesses."""
-    count = len(lengths)
-    bha = replace(
-        case.bha,
-        section_lengths=lengths,
-        section_flexural_stiffnesses=stiffnesses,
-        section_distributed_weights=(case.bha.distributed_weight,) * count,
-        section_outer_diameters=(0.0,) * count,
-    )
-    return replace(case, bha=bha)
 
 
 @pytest.mark.parametrize("contact", [(), (1,)])
@@ -89,5 +77,5 @@ def test_a_body_that_may_touch_the_wall_has_no_roots() -> None:
         body_point_positions=(2.0,),
         body_point_clearances=(0.02,),
     )
-    with pytest.raises(ParameterError, match=r"^bha.body_contact: must be left out for roots and stability"):
+    with pytest.raises(ParameterError, match=r"^bha.body_contact: must be left out for roots, stability and spiral"):
         find_roots(replace(PAPER, bha=bha))

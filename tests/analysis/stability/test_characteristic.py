@@ -12,7 +12,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from boreprop.analysis.stability.characteristic import Characteristic, Crossings, zero_between
+from boreprop.analysis.stability.any_beam import AnyBeam
+from boreprop.analysis.stability.characteristic import Crossings, zero_between
 from boreprop.analysis.stability.chart import (
     respaced,
     unstable_roots,
@@ -29,7 +30,9 @@ from systems import scaled_systems
 def test_the_roots_counted_for_the_chart_are_those_that_are_found(
     scaled: Scaled, contact: list[int], saturated: bool, inclination: float, log_eta_pi: list[float]
 ) -> None:
-    characteristic = Characteristic.of(scaled, tuple(contact[: len(scaled.y_star)]), saturated, inclination)
+    characteristic = AnyBeam.of_the_paper(scaled).characteristic(
+        tuple(contact[: len(scaled.y_star)]), saturated, inclination
+    )
     assume(not 0.0 < abs(characteristic.m_g) < 1e-6)  # so little weight that rounding decides
     grid = 10 ** np.sort(log_eta_pi)
     for at, total, real in zip(grid, *unstable_roots(characteristic, grid), strict=True):
@@ -97,7 +100,7 @@ def test_at_a_critical_eta_pi_a_pair_of_roots_leaves_the_right_half_plane_for_go
     critical = critical_eta_pi(drilling(bha, bit), contact=numbers, saturated=saturated, inclination=inclination)
     least = critical.eta_pi if critical else 0.02
     assume(mode.top(least) * scaled.s[-1] < 3e4)
-    characteristic = Characteristic.of(scaled, touching, saturated, inclination)
+    characteristic = AnyBeam.of_the_paper(scaled).characteristic(touching, saturated, inclination)
     assume(not 0.0 < abs(characteristic.m_g) < 1e-6)  # so little weight that rounding decides
     if critical:
         assert mode.unstable(0.9999 * least, mode.top(0.9999 * least)) >= 2
@@ -114,7 +117,7 @@ def test_the_crossings_account_for_every_unstable_root(
     scaled, eta_pi = scale(bha, BitRock(20.0, 20.0 * epsilon, 0.02)), 10**log_eta_pi
     touching = tuple(contact[: len(scaled.y_star)])
     mode = LinearMode.of(scaled, touching, False, inclination)
-    characteristic = Characteristic.of(scaled, touching, False, inclination)
+    characteristic = AnyBeam.of_the_paper(scaled).characteristic(touching, False, inclination)
     assume(mode.top(eta_pi) * scaled.s[-1] < 3e4)
     near_zero = mode.determinant(np.array([1e-9, 1e-5], complex), eta_pi).real
     assume(near_zero[0] * near_zero[1] > 0 or not characteristic.m_g)
@@ -135,7 +138,7 @@ def test_two_crossings_that_are_about_to_vanish_are_both_found() -> None:
     """Where an edge of the chart turns back two crossings meet; they are found until they are next to each other."""
 
     def crossings(lambda2: float) -> Crossings:
-        found = Characteristic.of(scale(respaced(PAPER.bha, lambda2), PAPER.bit), (1,), False).crossings(0.03)
+        found = AnyBeam.of(respaced(PAPER.bha, lambda2), PAPER.bit).characteristic((1,)).crossings(0.03)
         return Crossings(*(column[found.omega < 5.8] for column in found))
 
     both, neither = 2.165, 2.175

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from matplotlib.colors import to_rgb
 from scipy.optimize import linprog
 
-from boreprop.analysis.stability.characteristic import Characteristic
+from boreprop.analysis.stability.any_beam import AnyBeam
 from boreprop.analysis.stability.chart import (
     DRIFT,
     OSCILLATORY,
@@ -84,7 +84,7 @@ def test_on_the_boundaries_of_the_chart_a_root_is_on_the_imaginary_axis(chart: C
         for at, lambda2 in points[:: len(points) // 20 + 1]:
             scaled = scale(respaced(PAPER.bha, lambda2), PAPER.bit)
             contact = (int(bool(panel.contact)),)
-            roots = rightmost_roots(Characteristic.of(scaled, contact, panel.saturated), float(at))
+            roots = rightmost_roots(AnyBeam.of_the_paper(scaled).characteristic(contact, panel.saturated), float(at))
             assert min(abs(root.real) for root in roots) < 1e-3
 
 

@@ -9,7 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from boreprop.analysis.stability.characteristic import Characteristic
+from boreprop.analysis.stability.any_beam import AnyBeam
 from boreprop.analysis.stability.roots import NEUTRAL, critical_eta_pi, find_roots, rightmost_roots, verdict
 from boreprop.core.errors import ParameterError
 from boreprop.core.modes import Regime
@@ -67,7 +67,9 @@ def test_roots_are_the_eigenvalues_of_the_discretised_equations(
     touching, eta_pi = tuple(contact[: len(scaled.y_star)]), 10**log_eta_pi
     mode = LinearMode.of(scaled, touching, saturated, inclination)
     top, nodes = 20.0, int(40 + 14 * scaled.s[-1])
-    found = np.array(rightmost_roots(Characteristic.of(scaled, touching, saturated, inclination), eta_pi))
+    found = np.array(
+        rightmost_roots(AnyBeam.of_the_paper(scaled).characteristic(touching, saturated, inclination), eta_pi)
+    )
     eigenvalues = mode.roots(eta_pi, nodes)
     assume(abs(eigenvalues.real + 0.5).min() > 1e-3)  # none on the edge
     assume(abs(abs(eigenvalues.imag) - top).min() > 1e-3)
@@ -87,7 +89,9 @@ def test_roots_are_polished(
 ) -> None:
     touching, eta_pi = tuple(contact[: len(scaled.y_star)]), 10**log_eta_pi
     mode = LinearMode.of(scaled, touching, saturated, inclination)
-    found = np.array(rightmost_roots(Characteristic.of(scaled, touching, saturated, inclination), eta_pi))
+    found = np.array(
+        rightmost_roots(AnyBeam.of_the_paper(scaled).characteristic(touching, saturated, inclination), eta_pi)
+    )
     found = found[abs(found) > 1e-3]  # nearer to zero the average over 1/ν is not to be trusted
     apart = abs(found[:, None] - np.concatenate([found, found.conj()]))
     found = found[np.where(apart == 0, 1.0, apart).min(axis=1, initial=1.0) > 0.01]
@@ -105,7 +109,7 @@ def test_many_roots_of_a_stiff_system_are_all_found() -> None:
 
 
 def test_where_no_root_lies_right_of_the_abscissa_the_next_ones_are_given() -> None:
-    characteristic = Characteristic.of(Scaled((1.0,), (), 0.2, 0.01, 0.1, 0.03), (), False)
+    characteristic = AnyBeam.of_the_paper(Scaled((1.0,), (), 0.2, 0.01, 0.1, 0.03)).characteristic(())
     assert rightmost_roots(characteristic, 1e-3) == pytest.approx([-0.53831458 + 5.37098080j])
     assert rightmost_roots(characteristic, 1e-3, -1.5)[0] == pytest.approx(-0.53831458 + 5.37098080j)
 
@@ -159,7 +163,7 @@ def test_small_disturbances_grow_and_oscillate_as_the_roots_say(scaled: Scaled, 
     signal, modes = simulated(scaled, eta_pi, 1e-4, 0.0, np.arange(15.0, 30.0, step))
     contact = int(scaled is TIGHT)
     assert modes == {((contact,), 0)}
-    roots = rightmost_roots(Characteristic.of(scaled, (contact,), False), eta_pi)
+    roots = rightmost_roots(AnyBeam.of_the_paper(scaled).characteristic((contact,), False), eta_pi)
     expected = max(roots[:2], key=lambda root: root.imag)
     assert fitted(signal, step, order) == pytest.approx(expected, abs=1e-3)
 
@@ -174,7 +178,7 @@ def test_with_saturated_tilt_two_runs_part_as_the_rightmost_root_says(scaled: Sc
         assert len(modes) == 1
         assert modes.pop()[1] != 0
         signals.append(signal)
-    expected = rightmost_roots(Characteristic.of(scaled, (int(scaled is TIGHT),), True), 0.1)[0]
+    expected = rightmost_roots(AnyBeam.of_the_paper(scaled).characteristic((int(scaled is TIGHT),), True), 0.1)[0]
     assert fitted(signals[1] - signals[0], step, 1) == pytest.approx(expected, abs=1e-3)
 
 

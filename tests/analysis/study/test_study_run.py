@@ -65,6 +65,15 @@ def test_key_figures_are_the_summary_of_a_run() -> None:
     assert figures["build_rate"] == summary.build_rate
     assert figures["largest_contact_force[1]"] == summary.largest_contact_force[0]
     assert figures["ripples"] == summary.rippling.ripples
+    assert {name.partition("[")[0] for name in figures} == set(FIGURES) - {"end_azimuth"}
+
+
+@pytest.mark.usefixtures("kernel")
+def test_in_space_there_is_an_azimuth_at_the_end() -> None:
+    case = paper_case()
+    survey = replace(case.survey, inclination=(0.5,) * 3, azimuth=(1.0,) * 3)
+    figures = key_figures(replace(case, survey=survey, length=20.0))
+    assert figures["end_azimuth"] == pytest.approx(1.0)
     assert {name.partition("[")[0] for name in figures} == set(FIGURES)
 
 

@@ -12,7 +12,6 @@ from math import log, pi
 import numpy as np
 
 from ...arrays import Floats
-from ...core.system import Scaled
 from ..stability.characteristic import SAMPLES, Characteristic
 from .turning import GAP, LOG_ETA_PI, MU, OMEGA, THETA, THETA_ACROSS, Turning, tilt
 
@@ -69,16 +68,16 @@ def solve(turning: Turning, x: Floats, *conditions: Condition) -> Floats:
     raise ArithmeticError("no spiral is found")
 
 
-def beginning(scaled: Scaled, turning: Turning, eta_pi: float, touching: tuple[int, ...]) -> Floats | None:
+def beginning(turning: Turning, eta_pi: float, touching: tuple[int, ...]) -> Floats | None:
     """A spiral to the right, with the stiffest gauge, where the equations are nearly linear; None if there is none.
 
     All stabilizers are held (1 for each in `touching`) at a gap of zero; or, at a gap at which the others (0) just do
     not touch, the rest hardly move. The stiffest gauge is that which lasts to the largest ηΠ and the widest gaps. Other
     spirals turn several times faster; those of the paper's case are unstable. |F_0/ψ| falls as 1/ω, so the search ends.
     """
-    held = Characteristic.of(scaled, touching, False)
-    spacing, best = 2 * pi / SAMPLES / scaled.s[-1], None
-    start, end = 0.5 * spacing, BLOCK / scaled.s[-1]
+    held = turning.beam.characteristic(touching)
+    spacing, best = 2 * pi / SAMPLES / held.s[-1], None
+    start, end = 0.5 * spacing, BLOCK / held.s[-1]
     while True:
         for x in _beginnings(held, turning, eta_pi, np.arange(start, end + spacing, spacing), touching):
             if best is None or x[MU] > best[MU]:

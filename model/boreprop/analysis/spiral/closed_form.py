@@ -6,7 +6,8 @@ whatever the hole of the case, and no force steers.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from contextlib import contextmanager
+from dataclasses import dataclass
 from math import exp, inf, isfinite, log, nan, pi
 from typing import NamedTuple
 
@@ -14,14 +15,13 @@ from ...arrays import Floats
 from ...case.case import Case
 from ...core.checks import check_number
 from ...core.errors import ParameterError
-from ...core.system import Scaled, scale
 from ...errors import SpiralNotFound
 from ..rippling import longest_wave
 from ..stability.roots import NEUTRAL, SMALLEST_ETA_PI, CriticalEtaPi
 from .branch import Condition, at_limit, beginning, follow, keep, meet
 from .stability import roots
 from .straight import critical, rightmost
-from .turning import GAP, LOG_ETA_PI, MU, OMEGA, Turning, theta, tilt
+from .turning import GAP, LOG_ETA_PI, MU, OMEGA, Turning, beam_of, theta, tilt, y_star_of
 
 HANDS = ("right", "left")
 WIDEST = 100.0  # gap: stabilizers that may move so far, compared with the inclination, touch no wall
@@ -135,7 +135,7 @@ def spiral(case: Case, handedness: str | None = None) -> Spiral:
     Raises
     ------
     ParameterError
-        If the beam is not the paper's, ηΠ is below 1e-4, or there is no such side.
+        If the body may touch the wall, the BHA buckles, ηΠ is below 1e-4, or there is no such side.
     SpiralNotFound
         If the equations could not be solved.
 
@@ -151,9 +151,15 @@ def spiral(case: Case, handedness: str | None = None) -> Spiral:
         raise ParameterError("handedness", "must be right or left", handedness)
     left = handedness == "left" if handedness else walk < 0
     side = HANDS[left] if walk or handedness else "either"
-    check_number("eta_pi", case.eta_pi, at_least=SMALLEST_ETA_PI)
-    try:
+    with solving(case):
         return Search(case, -walk if left else walk).found(side)
+
+
+@contextmanager
+def solving(case: Case) -> Iterator[None]:
+    """Turn the failure of an iteration into a `SpiralNotFound` that says what helps."""
+    try:
+        yield
     except ArithmeticError as error:
         where = f"the spiral at ηΠ = {case.eta_pi:.6g}"
         raise SpiralNotFound(f"{where}: {error}; use a slightly different active weight on bit") from error
@@ -163,11 +169,11 @@ class Search:
     """The spirals to the right of one drilling system."""
 
     def __init__(self, case: Case, walk: float) -> None:
+        check_number("eta_pi", case.eta_pi, at_least=SMALLEST_ETA_PI)
         self.case, self.walk, self.length_scale = case, walk, case.length_scale
-        self.scaled: Scaled = scale(case.bha, replace(case.bit, walk_angle=0.0))
-        self.turning = Turning(self.scaled, walk)
-        self.clearance = self.turning.widest
-        self.ratio = self.scaled.psi_star / self.clearance if self.clearance else inf
+        self.turning = Turning(beam_of(case), y_star_of(case), walk)
+        self.psi_star, self.clearance = case.bit.tilt_limit, self.turning.widest
+        self.ratio = self.psi_star / self.clearance if self.clearance else inf
 
     def found(self, handedness: str) -> Spiral:
         """All about the spiral of the case."""
@@ -203,7 +209,7 @@ class Search:
     def along(self, eta_pi: float, widest: float) -> "Found":
         """The spirals along a curve that begins with the stabilizers of no wider relative clearance on the wall."""
         fixed, touching = keep(LOG_ETA_PI, log(eta_pi)), tuple(int(y <= widest) for y in self.turning.y.tolist())
-        start = beginning(self.scaled, self.turning, eta_pi, touching)
+        start = beginning(self.turning, eta_pi, touching)
         if start is None or not self.clearance:
             return Found(start, None, nan if start is None else 0.0)
         met: list[Floats] = []  # spirals with the ratio of the case, of which the first has the stiffest gauge
@@ -239,20 +245,29 @@ class Search:
 
     def eta_pi_range(self, x: Floats | None) -> tuple[float, float]:
         """The ηΠ between which there is a spiral, from x on if that is one; 0 for a least one below 1e-4."""
-        eta_pi = self.case.eta_pi
-        for _ in range(MOST_DIVISIONS):
-            if x is not None:
-                break
-            eta_pi /= LESS
-            x = self.at(eta_pi).own if eta_pi >= SMALLEST_ETA_PI else None
-        if x is None:
-            return nan, nan
-        fixed = at_limit(self.ratio) if self.clearance else keep(GAP, 0.0)
-        lowest, highest = (self.end(x, fixed, side) for side in (-1.0, 1.0))
+        x = self.elsewhere() if x is None else x
+        lowest, highest = (nan if x is None else self.end(x, side) for side in (-1.0, 1.0))
         return (0.0 if lowest < SMALLEST_ETA_PI else lowest), highest
 
-    def end(self, x: Floats, fixed: Condition, side: float) -> float:
-        """The ηΠ at which a curve of spirals ends, towards larger (side 1) or smaller ones (−1)."""
+    def largest_eta_pi(self) -> float:
+        """The largest ηΠ with a spiral, nan if none is found."""
+        own = self.at(self.case.eta_pi).own
+        x = self.elsewhere() if own is None else own
+        return nan if x is None else self.end(x, 1.0)
+
+    def elsewhere(self) -> Floats | None:
+        """A spiral at a smaller ηΠ than the case's."""
+        eta_pi = self.case.eta_pi
+        for _ in range(MOST_DIVISIONS):
+            eta_pi /= LESS
+            x = self.at(eta_pi).own if eta_pi >= SMALLEST_ETA_PI else None
+            if x is not None:
+                return x
+        return None
+
+    def end(self, x: Floats, side: float) -> float:
+        """The ηΠ at which the spirals end, from x on, towards larger (side 1) or smaller ones (−1)."""
+        fixed = at_limit(self.ratio) if self.clearance else keep(GAP, 0.0)
         last = x
         for point in follow(self.turning, x, fixed, LOG_ETA_PI, side):
             if point[MU] <= 0:
@@ -267,12 +282,12 @@ class Search:
 
     def widest_clearance(self, least_ratio: float) -> float:
         """The largest clearance with which there is a spiral, m."""
-        return self.scaled.psi_star / least_ratio * self.length_scale if least_ratio else inf
+        return self.psi_star / least_ratio * self.length_scale if least_ratio else inf
 
     def critical(self) -> CriticalEtaPi | None:
         """The largest ηΠ at which a small spiral keeps itself up in a straight hole."""
         bha = self.case.bha
-        found = critical(self.scaled, self.walk, longest_wave(bha) / self.length_scale)
+        found = critical(self.turning.beam, self.walk, longest_wave(bha) / self.length_scale)
         if found is None:
             return None
         weight = found.eta_pi * bha.force_scale / self.case.bit.lateral_steering_resistance
@@ -280,13 +295,12 @@ class Search:
 
     def straight_growth(self) -> float:
         """The growth of the fastest small spiral about a straight hole, per metre."""
-        return rightmost(self.scaled, self.walk, self.case.eta_pi).real / self.length_scale
+        return rightmost(self.turning.beam, self.walk, self.case.eta_pi).real / self.length_scale
 
     def winding(self, x: Floats) -> Winding:
         """What x is in SI units."""
-        inclination = self.clearance / float(x[GAP]) if x[GAP] > 0 else self.scaled.psi_star / tilt(x)
+        inclination = self.clearance / float(x[GAP]) if x[GAP] > 0 else self.psi_star / tilt(x)
         touched, force = self.turning.contact(x), inclination * self.case.bha.force_scale
-        e, G = self.turning.loads(x)
         growth = float(roots(self.turning, x)[0].real)
         return Winding(
             pitch=2 * pi / float(x[OMEGA]) * self.length_scale,
@@ -295,7 +309,8 @@ class Search:
             bit_inclination=inclination * abs(theta(x)),
             bit_tilt=inclination * tilt(x),
             stabilizer_force=tuple((force * abs(touched.F)).tolist()),
-            bit_lateral_force=force * float(abs(self.turning.response(e, G, touched.F).F_0)),
+            bit_lateral_force=force
+            * float(abs(self.turning.response(self.turning.offsets(x), theta(x), touched.F).F_0)),
             growth=growth / self.length_scale,
             stable=growth < NEUTRAL,
         )

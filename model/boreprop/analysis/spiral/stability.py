@@ -64,8 +64,8 @@ def rates(turning: Turning, x: Floats) -> Floats:
             seen[k] = unit
             y, u = seen[0], seen[-1]
             e = y - np.exp(-1j * omega * turning.s) * seen[1:-1] - turning.s * u
-            change = turning.change(touched, e, e[0] + turning.s[0] * u)
-            turn = change.M / (turning.epsilon * eta_pi)
+            change = turning.change(touched, e, u)
+            turn = change.M / (turning.beam.epsilon * eta_pi)
             rate = [-1j * omega * y + u - tilts(turning, x, psi, change), -1j * omega * u + turn]
             columns.append(real(np.array(rate)))
     return np.column_stack(columns)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Complexes, Floats
-from ...core.system import Scaled
+from ..stability.any_beam import AnyBeam
 from ..stability.characteristic import Characteristic
 from ..stability.roots import SMALLEST_ETA_PI, rightmost_roots, usual_abscissa
 
@@ -57,18 +57,18 @@ class Critical(NamedTuple):
     omega: float
 
 
-def held(scaled: Scaled, walk: float) -> Characteristic:
+def held(beam: AnyBeam, walk: float) -> Characteristic:
     """The characteristic function of a straight vertical hole with all stabilizers on the wall."""
-    return Characteristic.of(scaled, (1,) * (len(scaled.s) - 1), False, walk=walk)
+    return beam.characteristic((1,) * (len(beam.s) - 1), walk=walk)
 
 
-def critical(scaled: Scaled, walk: float, longest: float) -> Critical | None:
+def critical(beam: AnyBeam, walk: float, longest: float) -> Critical | None:
     """The largest ηΠ at which a small spiral to the right keeps itself up; None if there is none above 1e-4.
 
     `longest` is the longest pitch that counts, in ℓ₁: a bit that walks also makes the whole hole drift around the
     vertical, in pitches of thousands of ℓ₁.
     """
-    function = held(scaled, walk)
+    function = held(beam, walk)
     for smallest in LARGEST_ETA_PI:
         crossings = function.crossings(smallest)
         fast = np.flatnonzero(crossings.omega > 2 * pi / longest)
@@ -77,7 +77,7 @@ def critical(scaled: Scaled, walk: float, longest: float) -> Critical | None:
     return None
 
 
-def rightmost(scaled: Scaled, walk: float, eta_pi: float) -> complex:
+def rightmost(beam: AnyBeam, walk: float, eta_pi: float) -> complex:
     """The root farthest right of those whose disturbance winds to the right, per ℓ₁.
 
     Raises
@@ -85,8 +85,8 @@ def rightmost(scaled: Scaled, walk: float, eta_pi: float) -> complex:
     RootsNotFound
         As by `rightmost_roots`.
     """
-    right = held(scaled, walk)
-    both = Both(right, held(scaled, -walk)) if walk else None
+    right = held(beam, walk)
+    both = Both(right, held(beam, -walk)) if walk else None
     step = abscissa = usual_abscissa(right)
     while True:
         for root in rightmost_roots(both or right, eta_pi, abscissa):

@@ -15,13 +15,15 @@ import numpy as np
 
 from ...arrays import Complexes, Floats
 from ...case.case import Case
-from ...core.beam import Beam
+from ...core.errors import ParameterError
 from ...core.survey import Survey
-from ...core.system import check_in_plane, scale
+from ...run.completion import case_of
 from ...run.simulate import simulate
 from ...run.trajectory import Trajectory
 from ..rippling import find_rippling
+from ..stability.any_beam import AnyBeam
 from .stability import eigenvalues
+from .turning import beam_of, y_star_of
 
 DOGLEG = radians(0.5)  # over ℓ₁, in the vertical hole from which the planar ripple starts
 SETTLED = 200.0  # ℓ₁ drilled until the planar ripple is periodic
@@ -48,12 +50,38 @@ class TransverseGrowth:
 
 
 def transverse_growth(case: Case) -> TransverseGrowth:
-    """Compute how fast the planar ripple of a case, in a vertical hole with a dogleg, grows out of its plane.
+    """Compute how fast the planar ripple of a case grows out of its plane, by Floquet multipliers.
 
-    Errors are those of `simulate`; a bit that walks has no planar ripple and is refused.
+    The ripple is drilled in a plane, from a vertical hole that ends with a dogleg of 0.5° over ℓ₁.
+
+    Parameters
+    ----------
+    case
+        The drilling system: BHA, bit and active weight on bit. Hole, force and length have no influence.
+
+    Returns
+    -------
+    TransverseGrowth
+        The growth of a small disturbance across the plane: > 0 if the hole leaves it and winds.
+
+    Raises
+    ------
+    ParameterError
+        If the bit walks, so that there is no planar ripple, the body may touch the wall, or the BHA buckles.
+    Stopped
+        If the case cannot be drilled.
+
+    Examples
+    --------
+    >>> from boreprop import paper_case, transverse_growth
+    >>> found = transverse_growth(paper_case())
+    >>> round(found.growth, 3), round(found.wavelength, 2)
+    (0.085, 5.07)
     """
-    check_in_plane(case.bit)
-    l1 = case.length_scale
+    if case.bit.walk_angle:
+        constraint = "must be 0 for a ripple in a plane, which a bit that walks leaves at once"
+        raise ParameterError("bit_walk_angle", constraint, case.bit.walk_angle)
+    beam, l1 = beam_of(case), case.length_scale
     alone = replace(case, schedule=type(case.schedule)(), inputs=None, formations=(), wear=None, dimensions=2)
     vertical = replace(alone, survey=Survey((0.0, l1), (0.0, DOGLEG)))
     run = simulate(vertical, length=SETTLED * l1, sample_interval=FINE * l1)
@@ -61,7 +89,7 @@ def transverse_growth(case: Case) -> TransverseGrowth:
         return TransverseGrowth(nan, nan)
     start, period = last_period(run["drilled_length"] / l1, run["bit_inclination"])
     at: Floats = start + period / PARTS * np.arange(PARTS + 1.0)
-    multipliers: Complexes = eigenvalues(over_a_period(*coefficients(vertical, run, at), case, period))
+    multipliers: Complexes = eigenvalues(over_a_period(*coefficients(beam, run, at), beam, case.eta_pi, period))
     for _ in range(NEUTRAL):
         multipliers = np.delete(multipliers, np.argmin(abs(multipliers - 1.0)))
     return TransverseGrowth(float(np.log(abs(multipliers).max())) / period / l1, period * l1)
@@ -75,36 +103,30 @@ def last_period(xi: Floats, inclination: Floats) -> tuple[float, float]:
     return float(places[-2]), float(places[-1] - places[-1 - WAVES]) / WAVES
 
 
-def coefficients(case: Case, run: Trajectory, at: Floats) -> tuple[Floats, Floats]:
-    """M⊥ and ψ⊥ by the offsets e_i and by ⟨Θ⟩_1 across the plane, at each of some places, shape (k, n + 1)."""
-    scaled, force_scale, eta_pi = scale(case.bha, case.bit), case.bha.force_scale, case.eta_pi
-    beam, n = Beam(scaled), len(scaled.s)
-    xi = run["drilled_length"] / case.length_scale
+def coefficients(beam: AnyBeam, run: Trajectory, at: Floats) -> tuple[Floats, Floats]:
+    """M⊥ and ψ⊥ by the offsets e_i and by θ across the plane, at each of some places, shape (k, n + 1)."""
+    case = case_of(run)
+    force_scale, eta_pi = case.bha.force_scale, case.eta_pi
+    n, xi, y_star = len(beam.s), run["drilled_length"] / case.length_scale, y_star_of(case)
     F = np.array([np.interp(at, xi, run[f"stabilizer_force[{i}]"]) for i in range(1, n)]).reshape(n - 1, -1).T
-    F_0 = np.interp(at, xi, run["bit_lateral_force"]) / force_scale
-    q = np.column_stack([np.eye(n)[:-1], beam.delta_g])
-    q[:, n - 1] += beam.delta_e
-    F = abs(F) / force_scale
-    rows_M, rows_psi = np.zeros((2, len(at), n + 1))
-    rows_M[:, n - 1], rows_M[:, n] = beam.M_e, beam.M_g
-    rows_psi[:, n - 1], rows_psi[:, n] = beam.F0_e, beam.F0_g
+    F_0, F = np.interp(at, xi, run["bit_lateral_force"]) / force_scale, abs(F) / force_scale
+    q, *free = beam.rows()
+    rows_M, rows_psi = (np.tile(row, (len(at), 1)) for row in free)
     for k, forces in enumerate(F):
         touching = np.flatnonzero(forces > 0)
-        stiff = np.array(beam.K_inv).reshape(n - 1, n - 1)[np.ix_(touching, touching)]
-        stiff = stiff + np.diag(np.array(scaled.y_star)[touching] / forces[touching])
+        stiff = beam.K_inv[np.ix_(touching, touching)] + np.diag(y_star[touching] / forces[touching])
         across = -np.linalg.solve(stiff, q[touching])
-        rows_M[k] += np.array(beam.M_F)[touching] @ across
-        rows_psi[k] += np.array(beam.F0_F)[touching] @ across
-    return rows_M, rows_psi / np.maximum(eta_pi, abs(F_0) / scaled.psi_star)[:, None]
+        rows_M[k] += beam.M_F[touching] @ across
+        rows_psi[k] += beam.F0_F[touching] @ across
+    return rows_M, rows_psi / np.maximum(eta_pi, abs(F_0) / case.bit.tilt_limit)[:, None]
 
 
-def over_a_period(rows_M: Floats, rows_psi: Floats, case: Case, period: float) -> Floats:
+def over_a_period(rows_M: Floats, rows_psi: Floats, beam: AnyBeam, eta_pi: float, period: float) -> Floats:
     """The matrix that takes θ⊥ and the history of Y⊥, on a grid back to λ and a little beyond, over one period.
 
     The trapezoidal rule; delayed values between the points of the grid are those of cubics.
     """
-    scaled, step = scale(case.bha, case.bit), period / PARTS
-    s, drag = np.array(scaled.s), scaled.epsilon * case.eta_pi
+    s, step, drag = beam.s, period / PARTS, beam.epsilon * eta_pi
     length = int(np.ceil(s[-1] / step)) + 3
     size = length + 1  # Y at 0, −1, …, −(length − 1) steps, then θ
     history: Floats = np.eye(length, size)
@@ -114,24 +136,18 @@ def over_a_period(rows_M: Floats, rows_psi: Floats, case: Case, period: float) -
     def rates(k: int) -> tuple[Floats, Floats]:
         """What θ′ and Y′ are of θ and Y, and of the delayed Y."""
         M, psi = rows_M[k] / drag, rows_psi[k]
-        by_Y = np.array([M.sum(), -psi.sum()])
-        by_theta = np.array([-M[:-1] @ s, 1.0 + psi[:-1] @ s])
-        return np.column_stack([by_theta, by_Y]), np.array([[*-M[:-1]], [*psi[:-1]]])
-
-    def delayed(terms: Floats, k: int, behind: Floats) -> Floats:
-        """What θ′ and Y′ are of the delayed Y, with the weight."""
-        weight = np.array([-rows_M[k, -1] / drag, rows_psi[k, -1]])
-        total: Floats = terms @ behind + np.outer(weight, behind[0])
-        return total
+        by_Y = np.array([M[:-1].sum(), -psi[:-1].sum()])
+        by_theta = np.array([M[-1] - M[:-1] @ s, 1.0 - psi[-1] + psi[:-1] @ s])
+        return np.column_stack([by_theta, by_Y]), np.array([-M[:-1], psi[:-1]])
 
     jacobian, terms = rates(0)
-    slope = jacobian @ np.vstack([theta, history[0]]) + delayed(terms, 0, np.array([d @ history for d in delays]))
+    slope = jacobian @ np.vstack([theta, history[0]]) + terms @ [d @ history for d in delays]
     for k in range(1, PARTS + 1):
         jacobian, terms = rates(k)
         ahead = np.array([d[1:] @ history[:-1] for d in delays])  # the grid has moved on by a step
-        known = np.vstack([theta, history[0]]) + step / 2 * (slope + delayed(terms, k, ahead))
+        known = np.vstack([theta, history[0]]) + step / 2 * (slope + terms @ ahead)
         theta, Y = new = np.linalg.solve(np.eye(2) - step / 2 * jacobian, known)
-        slope = jacobian @ new + delayed(terms, k, ahead)
+        slope = jacobian @ new + terms @ ahead
         history = np.vstack([Y, history[:-1]])
     return np.vstack([history, theta])
 

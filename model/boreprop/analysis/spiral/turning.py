@@ -4,8 +4,9 @@ Vectors across the vertical are complex numbers: real to one side, imaginary to 
 down the hole. In a spiral Θ = T e^{iωξ} and θ = ϑ e^{iωξ}; with p = iω and B_i = (1 − e^{−p s_i})/p the offsets are
 e_i = B_i T − s_i ϑ, and
 
-    M(e, F, B_1 T) = p εηΠ ϑ ,   F_0(e, F, B_1 T) = (ηΠ e^{iϖ} + μ)(ϑ − T) .
+    M(e, F, g) = p εηΠ ϑ ,   F_0(e, F, g) = (ηΠ e^{iϖ} + μ)(ϑ − T) ,
 
+where g, the angle of the weight, is B_1 T = e_1/s_1 + ϑ, or ϑ under an axial load.
 F are the contact forces in a round hole, see `discs`, and μ >= 0 is the stiffness with which the gauge holds a tilt
 that has come to its limit. The equations are homogeneous in T, ϑ, F and y*, so T is 1 here, and y* is a `gap` that is
 common to all stabilizers, times their clearances over the largest one. A case has ψ*/y*, which is |ϑ − 1| over the gap.
@@ -17,8 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Complexes, Floats
-from ...core.beam import Beam
-from ...core.system import Scaled
+from ...case.case import Case
+from ...core.errors import ParameterError
+from ..lying import pressing_weight
+from ..stability.any_beam import AnyBeam
 from ..stability.characteristic import lag
 from .discs import Contact, contact, real
 
@@ -40,22 +43,40 @@ class Residual(NamedTuple):
     slopes: Floats  # by the unknowns, shape (4, 6)
 
 
-class Turning:
-    """The equations of one drilling system whose bit walks by ϖ."""
+def beam_of(case: Case) -> AnyBeam:
+    """The beam of a case in a vertical hole, where all stabilizers may move within discs.
 
-    def __init__(self, scaled: Scaled, walk: float) -> None:
-        beam, n = Beam(scaled), len(scaled.s)
-        self.s, self.epsilon = np.array(scaled.s), scaled.epsilon
+    Raises
+    ------
+    ParameterError
+        As by `AnyBeam.of`; if the BHA buckles between bit and last stabilizer, since no wall holds it sideways; or if
+        the last stabilizer lies to the low side, which a vertical hole does not have.
+    """
+    weight, offset = pressing_weight(case), case.bha.end_deflection
+    if offset:
+        constraint = "must be 0 for a spiral, since a vertical hole has no low side"
+        raise ParameterError("bha.end_deflection", constraint, offset)
+    beam = AnyBeam.of(case.bha, case.bit, weight)
+    if np.linalg.eigvalsh(beam.K_inv).min(initial=1.0) <= 0.0:
+        constraint = "must be less for a spiral, since the BHA buckles between bit and last stabilizer"
+        raise ParameterError("weight_on_bit", constraint, weight)
+    return beam
+
+
+def y_star_of(case: Case) -> Floats:
+    """The clearances y* of a case."""
+    return np.array(case.bha.stabilizer_clearances) / case.length_scale
+
+
+class Turning:
+    """The equations of one drilling system, whose stabilizers have the clearances y* and whose bit walks by ϖ."""
+
+    def __init__(self, beam: AnyBeam, y_star: Floats, walk: float) -> None:
+        self.beam, self.rows, self.s = beam, beam.rows(), beam.s
         self.walk: complex = np.exp(1j * walk)  # e^{iϖ}
-        self.widest = max(scaled.y_star, default=0.0)
-        self.y = np.array(scaled.y_star) / (self.widest or 1.0)
-        self.K_inv = np.array(beam.K_inv).reshape(n - 1, n - 1)
-        self.q_e = np.eye(n)[:-1]
-        self.q_e[:, -1] += beam.delta_e
-        self.q_g = np.array(beam.delta_g)
-        self.M_e, self.M_F, self.M_g = beam.M_e, np.array(beam.M_F), beam.M_g
-        self._near = np.zeros(n - 1, complex)  # contact forces, from which the next ones are sought
-        self.F0_e, self.F0_F, self.F0_g = beam.F0_e, np.array(beam.F0_F), beam.F0_g
+        self.widest = float(y_star.max(initial=0.0))
+        self.y = y_star / (self.widest or 1.0)
+        self._near = np.zeros(len(y_star), complex)  # contact forces, from which the next ones are sought
 
     def lags(self, x: Floats) -> tuple[Complexes, Complexes]:
         """B_i, and its derivative by p."""
@@ -63,61 +84,64 @@ class Turning:
         B, slopes = np.array(values)[:, :, 0].T
         return B, slopes
 
-    def loads(self, x: Floats) -> tuple[Complexes, complex]:
-        """The offsets e_i, and the direction of the weight, B_1."""
-        B, _ = self.lags(x)
-        return B - self.s * theta(x), complex(B[0])
+    def offsets(self, x: Floats) -> Complexes:
+        """The offsets e_i."""
+        offsets: Complexes = self.lags(x)[0] - self.s * theta(x)
+        return offsets
+
+    def bend(self, e: Complexes, bit: complex) -> Complexes:
+        """The deflections q̃ without contact."""
+        q: Complexes = self.rows.q @ np.append(e, bit)
+        return q
 
     def contact(self, x: Floats) -> Contact:
         """The contact forces in a spiral."""
-        return self.contact_under(*self.loads(x), x[GAP])
+        return self.contact_under(self.offsets(x), theta(x), x[GAP])
 
-    def contact_under(self, e: Complexes, G: complex, gap: float) -> Contact:
-        """The contact forces under offsets and weight."""
-        found = contact(self.K_inv, self.q_e @ e + self.q_g * G, gap * self.y, self._near)
+    def contact_under(self, e: Complexes, bit: complex, gap: float) -> Contact:
+        """The contact forces under offsets and a direction of the bit."""
+        found = contact(self.beam.K_inv, self.bend(e, bit), gap * self.y, self._near)
         self._near = found.F
         return found
 
     def free_gap(self, x: Floats, held: NDArray[np.bool_]) -> float:
         """The least gap at which stabilizers that are not held do not touch; 0 if all are held."""
-        e, G = self.loads(x)
-        q, free = self.q_e @ e + self.q_g * G, ~held
+        q, free, K_inv = self.bend(self.offsets(x), theta(x)), ~held, self.beam.K_inv
         if not free.any():
             return 0.0
         F = np.zeros(len(q), complex)
-        F[held] = -np.linalg.solve(self.K_inv[np.ix_(held, held)], q[held])
-        return float((abs(q + self.K_inv @ F)[free] / self.y[free]).max())
+        F[held] = -np.linalg.solve(K_inv[np.ix_(held, held)], q[held])
+        return float((abs(q + K_inv @ F)[free] / self.y[free]).max())
 
-    def response(self, e: Complexes, G: complex, F: Complexes) -> Response:
-        """M and F_0 under offsets, weight and contact forces; or their changes with those."""
-        return Response(
-            self.M_e * e[-1] + self.M_F @ F + self.M_g * G, self.F0_e * e[-1] + self.F0_F @ F + self.F0_g * G, F
-        )
+    def response(self, e: Complexes, bit: complex, F: Complexes) -> Response:
+        """M and F_0 under offsets, a direction of the bit and contact forces; or their changes with those."""
+        by = np.append(e, bit)
+        return Response(self.rows.M @ by + self.beam.M_F @ F, self.rows.F_0 @ by + self.beam.F0_F @ F, F)
 
-    def change(self, touched: Contact, e: Complexes, G: complex, y: Floats | None = None) -> Response:
-        """The changes of M, F_0 and F with those of the offsets, of the weight and of the clearances."""
+    def change(self, touched: Contact, e: Complexes, bit: complex, y: Floats | None = None) -> Response:
+        """The changes of M, F_0 and F with those of the offsets, of the bit's direction and of the clearances."""
         dy = np.zeros(len(self.y)) if y is None else y
-        return self.response(e, G, touched.change(self.q_e @ e + self.q_g * G, dy))
+        return self.response(e, bit, touched.change(self.bend(e, bit), dy))
 
     def residual(self, x: Floats) -> Residual:
         """Both equations at x."""
         p, eta_pi, mu, bit = 1j * x[OMEGA], np.exp(x[LOG_ETA_PI]), x[MU], theta(x)
-        stiffness, psi, drag = eta_pi * self.walk + mu, bit - 1.0, self.epsilon * eta_pi
+        stiffness, psi, drag = eta_pi * self.walk + mu, bit - 1.0, self.beam.epsilon * eta_pi
         B, slopes = self.lags(x)
-        e, G = B - self.s * bit, complex(B[0])
-        touched = self.contact_under(e, G, x[GAP])
-        M, F_0, _ = self.response(e, G, touched.F)
-        still = np.zeros(len(self.s), complex)
+        e = B - self.s * bit
+        touched = self.contact_under(e, bit, x[GAP])
+        M, F_0, _ = self.response(e, bit, touched.F)
+        still, along, faster = (np.asarray(each, complex) for each in (0 * self.s, -self.s, 1j * slopes))
         columns = []
-        for (de, dG, dy), turning, tilting in (
-            ((1j * slopes, 1j * slopes[0], None), 1j * drag * bit, 0.0),
-            ((-self.s + 0j, 0.0, None), p * drag, stiffness),
-            ((-1j * self.s, 0.0, None), 1j * p * drag, 1j * stiffness),
+        for (de, dbit, dy), turning, tilting in (
+            ((faster, 0.0, None), 1j * drag * bit, 0.0),
+            ((along, 1.0, None), p * drag, stiffness),
+            ((1j * along, 1j, None), 1j * p * drag, 1j * stiffness),
             ((still, 0.0, None), 0.0, psi),
             ((still, 0.0, self.y), 0.0, 0.0),
             ((still, 0.0, None), p * drag * bit, eta_pi * self.walk * psi),
         ):
-            dM, dF_0, _ = self.change(touched, de, dG, dy)
+            dM, dF_0, _ = self.change(touched, de, dbit, dy)
             columns.append(real(np.array([dM - turning, dF_0 - tilting])))
         value = real(np.array([M - p * drag * bit, F_0 - stiffness * psi]))
         return Residual(value, np.column_stack(columns))

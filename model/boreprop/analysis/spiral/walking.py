@@ -9,9 +9,7 @@ from numpy.typing import ArrayLike
 from ...arrays import Floats
 from ...case.case import Case
 from ...core.checks import check_increasing, check_quantity
-from ..rippling import longest_wave
-from .closed_form import Search
-from .straight import critical
+from .closed_form import Search, solving
 
 
 @dataclass(frozen=True)
@@ -35,15 +33,47 @@ class WalkChart:
 
 
 def walk_chart(case: Case, walk_angle: ArrayLike, progress: Callable[[float], None] = lambda _: None) -> WalkChart:
-    """Find where spirals end, over the walk angle, rad; `progress` is called with the fraction done."""
+    """Find up to which ηΠ a vertical hole winds to the right, for bits that walk by different angles.
+
+    Those to the left are there for the opposite angle.
+
+    Parameters
+    ----------
+    case
+        The drilling system; its own walk angle has no influence.
+    walk_angle
+        ϖ, rad, increasing, shape (k,).
+    progress
+        Is called with the fraction that is done.
+
+    Returns
+    -------
+    WalkChart
+        The critical ηΠ of small spirals and the largest one with the spiral of the case, for each angle.
+
+    Raises
+    ------
+    ParameterError
+        If the angles do not increase or are out of range, or as by `spiral`.
+    SpiralNotFound
+        If the equations could not be solved.
+
+    Examples
+    --------
+    >>> from math import radians
+    >>> from boreprop import paper_case, walk_chart
+    >>> walk_chart(paper_case(), [radians(-10.0), radians(10.0)]).critical_eta_pi.round(3)
+    array([0.118, 0.18 ])
+    """
     angles = np.asarray(walk_angle, float)
     check_increasing("bit_walk_angle", tuple(angles.tolist()))
     check_quantity("bit_walk_angle", tuple(angles.tolist()))
     limits, ends = [], []
     for angle in angles.tolist():
-        search = Search(case, angle)
-        limit = critical(search.scaled, angle, longest_wave(case.bha) / case.length_scale)
-        limits.append(limit.eta_pi if limit else np.nan)
-        ends.append(search.eta_pi_range(search.at(case.eta_pi).own)[1])
+        with solving(case):
+            search = Search(case, angle)
+            limit = search.critical()
+            limits.append(limit.eta_pi if limit else np.nan)
+            ends.append(search.largest_eta_pi())
         progress(len(ends) / len(angles))
     return WalkChart(angles, np.array(limits), np.array(ends))

@@ -30,10 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Complexes, Floats
-from ...core.beam import Beam
 from ...core.linear import dot
-from ...core.modes import Mode
-from ...core.system import Scaled
 
 NEAR_ZERO = 1e-4  # |ν| below which B and B′ are taken from their series, where the closed form of B′ cancels
 FREQUENCIES = np.concatenate([[0.0], np.logspace(-3.0, 9.0, 300)])  # Im ν at which bounds on the roots are evaluated
@@ -70,23 +67,6 @@ class Characteristic:
     epsilon: float
     saturated: bool
     walk: float = 0.0  # ϖ
-
-    @classmethod
-    def of(
-        cls,
-        scaled: Scaled,
-        contact: tuple[int, ...],
-        saturated: bool,
-        inclination: float = 0.0,
-        walk: float = 0.0,
-    ) -> "Characteristic":
-        """That of the mode with `contact` (0 where a stabilizer is free) in a straight hole of `inclination`, rad.
-
-        A bit that walks, by so many rad, has one in a vertical hole.
-        """
-        mode, weight = Mode(Beam(scaled), scaled.y_star, contact), upright(inclination)
-        M, F_0 = ((list(row.e), row.g * weight) for row in (mode.M, mode.F_0))
-        return cls.made_of(list(scaled.s), M, F_0, scaled.epsilon, saturated, walk=walk)
 
     @classmethod
     def made_of(

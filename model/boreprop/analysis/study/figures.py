@@ -23,6 +23,7 @@ ANGLE, CURVATURE, FORCE, LENGTH = (
 
 FIGURES = {  # name → unit and meaning
     "end_inclination": (ANGLE, "inclination at the end"),
+    "end_azimuth": (ANGLE, "azimuth at the end"),
     "build_rate": (CURVATURE, "build rate, mean"),
     "largest_build_rate": (CURVATURE, f"build rate, largest over {BUILD_LENGTH:g} m"),
     "largest_contact_force": (FORCE, "largest contact force"),
@@ -52,9 +53,11 @@ def key_figures(case: Case, relative_tolerance: float = RELATIVE_TOLERANCE) -> d
     run = simulate(case, relative_tolerance=relative_tolerance)
     summary = sum_up(run, last_wave(run))
     wave = summary.rippling
+    in_space = {} if summary.end_azimuth is None else {"end_azimuth": summary.end_azimuth}
     stabilizers = list(enumerate(zip(summary.largest_contact_force, summary.contact_share, strict=True), 1))
     return {
         "end_inclination": summary.end_inclination,
+        **in_space,
         "build_rate": summary.build_rate,
         "largest_build_rate": summary.largest_build_rate,
         **{f"largest_contact_force[{i}]": force for i, (force, _) in stabilizers},
