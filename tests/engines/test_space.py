@@ -15,7 +15,6 @@ from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop.kernel.binding import NativeDrilling, available
 from boreprop.kernel.space import SpaceDrilling
-from fuzz_space import examine, examine_all
 from reference.spatial import CASES, Drilling, Push, read_reference, system_of
 from space_runs import SpatialCase, Vector, direction, pair, place, referred, rows_of
 
@@ -264,16 +263,6 @@ def test_contacts_and_tilt_keep_to_their_discs_all_the_way(walk: float) -> None:
         assert gauge @ psi >= -1e-13
         assert gauge @ psi == pytest.approx(np.hypot(*gauge) * case.psi_star, abs=1e-12)
     assert len(seen) > 2
-
-
-@pytest.mark.parametrize("number", [(11, 228), (1001, 2923), (1001, 3413), (1001, 3945)])
-def test_each_random_case_that_could_not_be_drilled_is_drilled(number: tuple[int, int]) -> None:
-    """A tilt that reaches its limit under hardly any force; stabilizers centimetres apart, one of which comes free."""
-    assert examine(*number)[1:] == ("drilled", None)
-
-
-def test_random_cases_in_space_do_not_fail() -> None:
-    assert [found for found in examine_all(3, range(20, 41)) if found[2]] == []
 
 
 # life
