@@ -3,8 +3,11 @@
     python tests/fuzz_space.py [--cases N] [--minutes M] [--seed S]
 
 Systems and tolerances are those of the near-bit and of the wide space of fuzz_engines.py; azimuths, walk angles, and
-toolfaces against gravity, north or the frame come to them. A bit that turns over is no failure. What goes wrong is told
-with the number of its case, which `drill(seed, number)` drills again, and ends in exit status 1.
+toolfaces against gravity, north or the frame come to them. Few runs are long, so that there are many. Of some cases
+it is looked at what must not matter: where the bit stops, whether the run is saved and another one goes on, where
+north is, and which side is right. A bit that turns over is no failure. Neither are many steps where the hole is rough;
+that a tighter tolerance needs fewer is one. What goes wrong is told with the number of its case, which
+`drill(draw(seed, number))` drills again, and ends in exit status 1.
 """
 
 import argparse
@@ -14,7 +17,7 @@ from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from itertools import count
-from math import isfinite, pi, radians
+from math import cos, isfinite, pi, radians, sin
 from random import Random
 from time import monotonic
 
@@ -26,11 +29,19 @@ from boreprop.core.options import Options
 from boreprop.core.quantities import TOOLFACE_REFERENCES
 from boreprop.core.survey import Survey
 from boreprop.kernel.space import SpaceDrilling
-from fuzz_engines import any_tolerance, near_bit, wide
-from space_runs import Outputs, pair
+from fuzz_engines import EXPLAINED, any_tolerance, near_bit, wide
+from space_runs import Outputs, Vector, direction, pair, place
 
-LENGTH = 300.0  # m, at most
+LENGTH = 300.0  # m, at most, …
+SHORT = 3.0  # … and in all but a few cases so many times the distance from the bit to the last stabilizer
+FEW = 0.01
 ROWS = 3  # looked at on each leg
+STEPS = 500  # for each ℓ₁ of a case, at most, …
+TIGHTER = 1e-2  # … unless so much less of the tolerance needs that many, too
+SYMMETRIC = 20  # every so many-th case is looked at for what must not matter
+HAIR, GROWS = 1e-12, 1e4  # relative; how much more than this a rounding may grow
+SAME = 100.0  # tolerances
+TURN = 2.0  # of the whole world, rad
 ROUNDING = 1e-9  # of the largest number in a condition of the discs
 BATCH = 20  # cases that a process gets at once
 
@@ -60,45 +71,55 @@ def draw(seed: int, number: int) -> SpaceCase:
         inclination = [0.0] * (stations - 1) + [radians(random.uniform(0.0, 2.0))]
         inclination = inclination if kind < 0.2 else inclination[::-1]
     walk = random.choice([0.0, radians(random.uniform(-30.0, 30.0)), radians(random.uniform(-85.0, 85.0))])
-    legs = len(case.schedule.drilled_length)
-    return SpaceCase(
-        replace(
-            case,
-            survey=Survey(case.survey.measured_depth, tuple(inclination)),
-            bit=replace(case.bit, walk_angle=walk),
-            length=min(case.length, LENGTH),
-        ),
-        tuple(azimuth),
-        tuple(random.choice([0.0, pi, random.uniform(-pi, pi), random.uniform(-pi, pi)]) for _ in range(legs)),
-        random.choice(TOOLFACE_REFERENCES),
-        any_tolerance(random),
+    toolfaces = tuple(
+        random.choice([0.0, pi, random.uniform(-pi, pi), random.uniform(-pi, pi)]) for _ in case.schedule.drilled_length
     )
+    reference, tolerance = random.choice(TOOLFACE_REFERENCES), any_tolerance(random)
+    longest = LENGTH if random.random() < FEW else SHORT * case.bha.stabilizer_positions[-1]
+    case = replace(
+        case,
+        survey=Survey(case.survey.measured_depth, tuple(inclination)),
+        bit=replace(case.bit, walk_angle=walk),
+        length=min(case.length, longest),
+    )
+    return SpaceCase(case, tuple(azimuth), toolfaces, reference, tolerance)
 
 
-def drill(seed: int, number: int) -> Iterator[Outputs]:
-    """The outputs along a case."""
-    given = draw(seed, number)
-    case, schedule = given.case, given.case.schedule
-    run = SpaceDrilling(
+def begin(given: SpaceCase) -> SpaceDrilling:
+    """The run of a case before its first step."""
+    case = given.case
+    steps = STEPS * (1 + case.length / case.length_scale)
+    return SpaceDrilling(
         case.bha,
         case.bit,
         case.survey,
         given.azimuth,
         active_weight_on_bit=case.active_weight_on_bit,
-        rss_force=schedule.rss_force[0],
+        rss_force=case.schedule.rss_force[0],
         rss_toolface=given.toolfaces[0],
         toolface_reference=given.reference,
-        options=Options(relative_tolerance=given.tolerance),
+        options=Options(relative_tolerance=given.tolerance, most_steps=int(steps)),
     )
-    ends = (*schedule.drilled_length[1:], case.length)
-    for begin, end, force, toolface in zip(
+
+
+def drill(given: SpaceCase, stops: int = 1, saves: bool = False) -> Iterator[Outputs]:
+    """The outputs along a case; its bit stops so many times from row to row, and another run may go on at each row."""
+    case, schedule, run = given.case, given.case.schedule, begin(given)
+    ends = [min(end, case.length) for end in (*schedule.drilled_length[1:], case.length)]
+    for start, end, force, toolface in zip(
         schedule.drilled_length, ends, schedule.rss_force, given.toolfaces, strict=True
     ):
-        for length in np.linspace(begin, min(end, case.length), ROWS + 1)[1:]:
-            if length > begin:
+        if end <= start:
+            return
+        lengths = np.linspace(start, end, ROWS + 1)
+        for row, length in enumerate(lengths[1:]):
+            for stop in [*np.linspace(lengths[row], length, stops + 1)[1:-1], length]:
                 aim = {"rss_toolface": toolface, "toolface_reference": given.reference}
-                run.advance(float(length), force, case.active_weight_on_bit, **aim)  # type: ignore[arg-type]
-                yield run.outputs()
+                run.advance(float(stop), force, case.active_weight_on_bit, **aim)  # type: ignore[arg-type]
+            if saves:
+                state, run = run.save(), begin(given)
+                run.restore(state)
+            yield run.outputs()
 
 
 def fault_of(row: Outputs, case: Case) -> str | None:
@@ -119,18 +140,84 @@ def fault_of(row: Outputs, case: Case) -> str | None:
     return None
 
 
+def way(given: SpaceCase, **how: int) -> Vector:
+    """Where the bit is and where it points along a case, row by row; ℓ₁ and no unit."""
+    rows: list[Outputs] = []
+    try:
+        rows.extend(drill(given, **how))  # type: ignore[arg-type]
+    except CannotContinue as stop:
+        if stop.code not in EXPLAINED:
+            raise
+    return np.array([[*place(row) / given.case.length_scale, *direction(row, "bit")] for row in rows]).reshape(-1, 6)
+
+
+def is_rough(given: SpaceCase) -> bool:
+    """Whether a case takes too many steps with a tighter tolerance, too."""
+    try:
+        for _ in drill(replace(given, tolerance=TIGHTER * given.tolerance)):
+            pass
+    except CannotContinue as stop:
+        return stop.code == "too many"
+    return False
+
+
+def what_matters(given: SpaceCase) -> str | None:
+    """What ought not to matter to a case and does, if anything."""
+    case, plain = given.case, way(given)
+    if not np.array_equal(plain, way(given, stops=3)):
+        return "where the bit stops matters"
+    if not np.array_equal(plain, way(given, saves=True)):
+        return "a saved run goes on to elsewhere"
+    others = {"right and left": mirrored(given), "a hair": replace(given, case=stiffer(case))}
+    if given.reference != "north":
+        others["north"] = replace(given, azimuth=tuple(angle + TURN for angle in given.azimuth))
+    back = {"right and left": np.diag([1.0, -1.0, 1.0]), "north": turn(-TURN), "a hair": np.eye(3)}
+    apart = {}
+    for name, other in others.items():
+        there = way(other)
+        rows = min(len(plain), len(there))
+        there = np.hstack([there[:rows, :3] @ back[name].T, there[:rows, 3:] @ back[name].T])
+        apart[name] = np.abs(there - plain[:rows]).max(axis=1, initial=0.0)
+    allowed = SAME * given.tolerance + GROWS * np.maximum.accumulate(apart.pop("a hair"))
+    for name, off in apart.items():
+        rows = min(len(off), len(allowed))
+        if (off[:rows] > allowed[:rows]).any():
+            return f"{name} matters: {off[:rows].max():g}, a hair {allowed[:rows].max() / GROWS:g}"
+    return None
+
+
+def mirrored(given: SpaceCase) -> SpaceCase:
+    """A case with east and west exchanged."""
+    bit = replace(given.case.bit, walk_angle=-given.case.bit.walk_angle)
+    azimuth, toolfaces = (tuple(-angle for angle in angles) for angles in (given.azimuth, given.toolfaces))
+    return replace(given, case=replace(given.case, bit=bit), azimuth=azimuth, toolfaces=toolfaces)
+
+
+def stiffer(case: Case) -> Case:
+    """A case with a BHA that is stiffer by a hair."""
+    return replace(case, bha=replace(case.bha, flexural_stiffness=case.bha.flexural_stiffness * (1 + HAIR)))
+
+
+def turn(angle: float) -> Vector:
+    """The matrix of a turn about the vertical, from north to east."""
+    return np.array([[cos(angle), -sin(angle), 0.0], [sin(angle), cos(angle), 0.0], [0.0, 0.0, 1.0]])
+
+
 def examine(seed: int, number: int) -> tuple[int, str, str | None]:
     """What becomes of a case: its number, how it ends, and what is wrong."""
-    case = draw(seed, number).case
+    given, end = draw(seed, number), "drilled"
     try:
-        for row in drill(seed, number):
-            if fault := fault_of(row, case):
+        for row in drill(given):
+            if fault := fault_of(row, given.case):
                 return number, "wrong", fault
     except CannotContinue as stop:
-        return number, stop.code, None if stop.code == "turns over" else str(stop)
+        end = "rough" if stop.code == "too many" and is_rough(given) else stop.code
+        if end not in (*EXPLAINED, "rough"):
+            return number, end, str(stop)
     except Exception as error:  # whatever it is, it is what is looked for
         return number, type(error).__name__, str(error)
-    return number, "drilled", None
+    fault = what_matters(given) if number % SYMMETRIC == 0 and end != "rough" else None
+    return number, "asymmetric" if fault else end, fault
 
 
 def examine_all(seed: int, numbers: range) -> list[tuple[int, str, str | None]]:

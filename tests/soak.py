@@ -1,4 +1,4 @@
-"""Look for what the suite does not meet: its property tests with fresh examples, then both fuzzers, for a given time.
+"""Look for what the suite does not meet: its property tests with fresh examples, then the fuzzers, for a given time.
 
     python tests/soak.py [--minutes M] [--seed S]
 
@@ -21,8 +21,8 @@ from xml.etree import ElementTree
 
 TESTS = Path(__file__).parent
 PROPERTIES = [sys.executable, "-m", "pytest", "-n", "2", "-q", "-m", "hypothesis", "--hypothesis-profile=soak"]
-FUZZER = [sys.executable, str(TESTS / "fuzz_engines.py")]
-SPACES = ("near-bit", "wide")
+ENGINES, SPACE = ([sys.executable, str(TESTS / name)] for name in ("fuzz_engines.py", "fuzz_space.py"))
+FUZZERS = [[*ENGINES, "near-bit"], [*ENGINES, "wide"], [*ENGINES, "as-built"], SPACE]
 ROUNDS = 20
 FUZZERS_SHARE = 0.25  # of the time, at least
 PATIENCE = 60.0  # s that a process has to end after it was asked to
@@ -30,7 +30,7 @@ PATIENCE = 60.0  # s that a process has to end after it was asked to
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the soak; the exit status."""
-    parser = argparse.ArgumentParser(description="Property tests with fresh examples, then both fuzzers.")
+    parser = argparse.ArgumentParser(description="Property tests with fresh examples, then the fuzzers.")
     parser.add_argument("--minutes", type=float, default=40.0, metavar="M")
     parser.add_argument("--seed", type=int, default=secrets.randbelow(2**31), metavar="S")
     options = parser.parse_args(arguments)
@@ -78,8 +78,8 @@ def has_failures(report: Path) -> bool:
 
 
 def fuzzers(seed: int, minutes: float) -> list[str]:
-    """Both fuzzers side by side; the commands of those that failed."""
-    commands = [[*FUZZER, space, "--minutes", f"{max(minutes, 0.0):.2f}", "--seed", str(seed)] for space in SPACES]
+    """The fuzzers side by side; the commands of those that failed."""
+    commands = [[*fuzzer, "--minutes", f"{max(minutes, 0.0):.2f}", "--seed", str(seed)] for fuzzer in FUZZERS]
     processes = [start(command) for command in commands]
     finish(processes)
     return [" ".join(command) for command, process in zip(commands, processes, strict=True) if process.returncode]

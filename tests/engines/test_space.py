@@ -63,6 +63,18 @@ def test_the_error_falls_with_the_tolerance_down_to_what_the_reference_is_printe
     assert tight < max(usual / 20, 4 * PRINTED)
 
 
+def test_the_error_falls_nearly_with_the_sixth_power_of_the_step_where_all_is_smooth() -> None:
+    """No contact, no saturation, and kinks where steps end; the frame turns, with the weight and the pads in it."""
+    smooth = SpatialCase(y_star=(1.0,), w=5e-3, eta_pi=0.3, psi_star=0.5, walk=0.3, force=8e-3, toolface=1.2)
+    smooth = replace(smooth, inclination=(0.5, 0.5, 0.51), azimuth=(1.0,) * 3)
+    ends = []
+    for options in ({"relative_tolerance": 1e-12}, *({"largest_step": h, "layers": 1e9} for h in (1 / 8, 1 / 32))):
+        [row] = smooth.rows([4.0], **{"relative_tolerance": 1e-2, **options})
+        ends.append(np.concatenate([direction(row, "bit"), place(row)]))
+    exact, coarse, fine = ends
+    assert abs(coarse - exact).max() > 4**5.5 * abs(fine - exact).max()
+
+
 # what the short program follows too
 
 

@@ -8,6 +8,7 @@ import pytest
 import soak
 
 PASSES, FAILS = [sys.executable, "-c", "pass"], [sys.executable, "-c", "raise SystemExit(1)"]
+SPACES = ("wide", "as-built")
 PROPERTY = """
 import time
 from hypothesis import given, strategies as st
@@ -23,7 +24,7 @@ def test_without_examples():
 
 def soaked(monkeypatch: pytest.MonkeyPatch, properties: list[str], fuzzer: list[str], minutes: str = "10") -> int:
     monkeypatch.setattr(soak, "PROPERTIES", properties)
-    monkeypatch.setattr(soak, "FUZZER", fuzzer)
+    monkeypatch.setattr(soak, "FUZZERS", [[*fuzzer, space] for space in SPACES])
     monkeypatch.setattr(soak, "ROUNDS", 2)
     return soak.main(["--minutes", minutes, "--seed", "7"])
 
@@ -71,7 +72,7 @@ def test_a_failing_fuzzer_is_named_with_its_seed(
 ) -> None:
     assert soaked(monkeypatch, PASSES, FAILS) == 1
     told = capfd.readouterr().out
-    for space in soak.SPACES:
+    for space in SPACES:
         assert f" {space} --minutes " in told
     assert told.count("--seed 7\n") == 2
 

@@ -17,7 +17,7 @@ enum { MOST_TOUCHING = 2 * MAX_PLACES }; /* numbers: two for each support in con
 /* The direction of a vector whose length is known to be at least `least` while its regime holds: a function w of the
    square of the length. It is one over the length from REACHED of that on. Below, where a trial step goes too far, it stays
    nearly the same, so that what it gives is nearly that of the regime beyond. Gives w, and twice its derivative. */
-#define REACHED 0.8
+#define REACHED 0.99
 static inline void direction_factors(double square, double least, double *w, double *bend) {
     double inner = REACHED * least, from = inner * inner;
     if (square >= from) {
@@ -86,10 +86,10 @@ static inline Touching touching_of(const Modes *modes, const Contact *contact) {
 
 #define SAME_OFFSET 1e-14 /* relative: so near to the solution no correction brings v nearer */
 enum { MOST_CORRECTIONS = 15, SMOOTHER = 14, MOST_HALVINGS = 40 };
-/* Over the largest v: after a change as small as this the next would be below rounding, and one that is NEARLY as small and
-   does not shrink is rounding itself, which stabilizers close together enlarge. */
+/* Over the largest v: after a change as small as this the next would be below rounding. Stabilizers close together enlarge
+   the rounding of v, but not that of the equations, over their largest terms. */
 #define NEXT_IS_NOTHING 1e-8
-#define NEARLY 1e-3
+#define BALANCED 2e-15
 #define SHARPER 0.1 /* of μ, from step to step: after SMOOTHER of them it is rounding */
 
 /* The minimum that F is, with |F_i| made smooth: √(|F_i|² + μ²), in forces times √k_i. */
@@ -190,17 +190,21 @@ static inline void fill_rows(
 
 /* Newton's method from the guess in `v`; returns 0 if it finds nothing. */
 static inline int correct_contacts(const Touching *of, double q[MAX_PLACES][2], double v[MAX_PLACES][2], Walls *walls) {
-    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1], before = INFINITY;
+    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1];
     int m = of->touching, size = 2 * m, found = 0;
     for (int correction = 0; correction < MOST_CORRECTIONS && !found; correction++) {
         double change = 0.0, scale = 0.0;
+        int balanced = 1;
         fill_rows(of, walls, matrix);
         for (int a = 0; a < m; a++)
             for (int d = 0; d < 2; d++) {
-                double *rest = &matrix[2 * a + d][size];
+                double *rest = &matrix[2 * a + d][size], terms = fabs(q[a][d]) + fabs(v[a][d]);
                 *rest = q[a][d] - v[a][d];
-                for (int b = 0; b < m; b++)
-                    if (a != b) *rest -= of->K_inv[a][b] / of->k[b] * walls->beyond[b][d];
+                for (int b = 0; b < m; b++) {
+                    double term = a == b ? 0.0 : of->K_inv[a][b] / of->k[b] * walls->beyond[b][d];
+                    *rest -= term, terms += fabs(term);
+                }
+                balanced &= fabs(*rest) <= BALANCED * terms;
             }
         if (!solve_touching(size, 1, matrix)) return 0;
         for (int a = 0; a < m; a++)
@@ -210,8 +214,7 @@ static inline int correct_contacts(const Touching *of, double q[MAX_PLACES][2], 
                 change = larger(change, fabs(by)), scale = larger(scale, larger(fabs(v[a][d]), of->y[a]));
             }
         if (!isfinite(change)) return 0;
-        found = change <= NEXT_IS_NOTHING * scale || (change <= NEARLY * scale && change > before / 2);
-        before = change;
+        found = change <= NEXT_IS_NOTHING * scale || balanced;
         find_walls(of, v, walls);
     }
     return found;

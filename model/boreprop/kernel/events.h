@@ -47,6 +47,7 @@ static inline double crossing(
     for (int k = 0; k < MOST_TRIES; k++) {
         c = (a * f_b - b * f_a) / (f_b - f_a);
         double f_c = side * (value(what, c) - limit);
+        if (isnan(f_c)) f_c = larger(f_a, f_b); /* a regime that has no answer is beyond its bounds */
         if (fabs(f_c) < CLOSE_ENOUGH || fabs(b - a) < CLOSE) break;
         if ((f_c > 0) == (f_b > 0)) {
             double weight = 1 - f_c / f_b;

@@ -26,6 +26,8 @@ static inline View view_at(const Views *views, double t) {
 enum { UNKNOWNS = S * COMPONENTS, MOST_ITERATIONS = 12 };
 #define REST 0.03      /* what may be neglected of the solution of a step, in tolerances: little beside its error */
 #define TOO_HARD 100.0 /* the error, over the tolerance, of a step that is not solved: the next is a third as long */
+#define AIMED 0.03     /* of ψ*: the error of a saturated tilt in a step, at most, … */
+#define NO_WAY 1e-3    /* … or what adds so many tolerances to Y */
 #define FARTHEST 2.0   /* over the last step, up to which its polynomial is taken as a guess */
 
 /* One step of Newton's method on all stages. */
@@ -184,12 +186,19 @@ static inline void guess_contacts(const Law *law, const double x[COMPONENTS], co
             memcpy(trial->at[point].v[k], v[law->touching.C[k]], sizeof v[0]);
 }
 
+/* How far a saturated tilt is from the law's in a trial step with these defects of Y, over what is allowed. It turns with F_0,
+   and fast where that is small: steps so short that no tilt makes an error in Y would not tell which regime follows. */
+static inline double astray(const Law *law, const Options *options, double h, const double defect[2]) {
+    double way = h * law->inputs.psi_star;
+    return hypot(defect[0], defect[1]) / (AIMED * way + NO_WAY * options->relative_tolerance);
+}
+
 /* Collocation from the state `x` over a trial step, whose place, length and delayed hole are given. */
 static inline void law_try(
     const Law *law, const Options *options, const Step *last, const double x[COMPONENTS], Trial *trial
 ) {
     const double h = trial->step.h, s_1 = law->s_1;
-    double defect[COMPONENTS];
+    double defect[COMPONENTS] = {0.0};
     Solving solving;
     for (int k = 0; k < POINTS; k++) {
         trial->ahead[k] = trial->step.xi - law->inputs_xi + POINT[k] * h;
@@ -202,13 +211,13 @@ static inline void law_try(
     const Reply *check = &trial->at[AT_CHECK];
     for (int c = 0; c < COMPONENTS && found; c++)
         defect[c] = polynomial_slope(solving.c[c], POINT[AT_CHECK]) - h * check->rate[c];
+    trial->error = law->saturated ? astray(law, options, h, &defect[LATERAL]) : 0.0;
     if (!found || !damp(h, check->by, defect)) {
         for (int c = 0; c < COMPONENTS; c++) memset(trial->step.x[c], 0, sizeof trial->step.x[c]);
         trial->error = TOO_HARD;
         return;
     }
     memcpy(trial->step.x, solving.c, sizeof trial->step.x);
-    trial->error = 0.0;
     for (int c = 0; c < COMPONENTS; c++) {
         double weight = c < LATERAL ? options->theta_weight : 1.0;
         trial->error = larger(trial->error, weight * fabs(defect[c]) / options->relative_tolerance);

@@ -14,7 +14,10 @@ from boreprop.arrays import Floats
 from boreprop.case.case import Case
 from boreprop.core.beam import Beam
 from boreprop.core.errors import ParameterError
+from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly, scale
+from boreprop.kernel.binding import available
+from boreprop.kernel.space import SpaceDrilling
 from reference.spatial import Drilling, System, tilted
 from spirals import paper_spiral
 
@@ -144,6 +147,31 @@ def test_a_spiral_is_a_steady_state_of_a_simulation_in_space() -> None:
             drilling.take_step()
         turned = found.hole_inclination * np.exp(0.2j * x[OMEGA])
         np.testing.assert_allclose(drilling.row().Theta, [turned.real, turned.imag], atol=1e-3 * found.hole_inclination)
+
+
+@pytest.mark.skipif(not available(), reason="the kernel is not built")
+@pytest.mark.parametrize("walk_deg", [0.0, 5.0])
+def test_a_simulation_that_starts_on_a_spiral_keeps_its_pitch_and_radius(walk_deg: float) -> None:
+    """Its inclination is small, as the closed form takes it: a radius is less by a sixth of the square of that."""
+    case = paper_spiral(0.05, tilt_limit_deg=0.5, walk_deg=walk_deg, clearance=2.5e-4)
+    found = spiral(case)
+    turns, places = np.arange(33) / 32, []
+    depth = np.linspace(0.0, case.bha.stabilizer_positions[-1], 41)
+    run = SpaceDrilling(
+        case.bha,
+        case.bit,
+        Survey(tuple(depth), (found.hole_inclination,) * 41),
+        tuple(2 * np.pi * (depth - depth[-1]) / found.pitch),
+        active_weight_on_bit=case.active_weight_on_bit,
+    )
+    for turn in 8 + turns:
+        run.advance(float(turn * found.pitch), 0.0, case.active_weight_on_bit)
+        places.append([run.outputs()[name] for name in ("north", "east")])
+    ahead = np.array(places) - np.outer(turns, np.array(places[-1]) - places[0])
+    around = (ahead[:-1] - ahead[:-1].mean(axis=0)) @ [1.0, 1.0j]
+    assert abs(around) == pytest.approx(np.full(32, found.radius), rel=1e-4)
+    angles = np.unwrap(np.angle(around))
+    assert angles[-1] - angles[0] == pytest.approx(2 * np.pi * 31 / 32, rel=1e-4)
 
 
 def existing(own: Search, direction: np.ndarray, frame: np.ndarray) -> System:
