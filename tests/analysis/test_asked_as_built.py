@@ -207,5 +207,5 @@ def test_the_search_for_ripples_presses_the_bha_with_all_of_the_weight() -> None
 
 
 def test_what_needs_the_papers_beam_says_what_does_not() -> None:
-    with pytest.raises(ParameterError, match="roots and stability, got 'section, axial_load, body_contact'"):
+    with pytest.raises(ParameterError, match="roots, stability and spiral, got 'section, axial_load, body_contact'"):
         build_rate_curve(pendulum(), 0.3, 1e4)

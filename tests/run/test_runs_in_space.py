@@ -60,7 +60,7 @@ def test_a_planar_case_in_space_is_the_planar_run(case: Case, changed: dict[str,
     for name in ("bit_inclination", "borehole_inclination", "displacement", "true_vertical_depth"):
         np.testing.assert_allclose(space[name], plane[name], atol=1e-6)
     for name in ("bit_tilt", "bit_lateral_force"):
-        np.testing.assert_allclose(space[f"{name}_high"], plane[name], atol=1e-6 * np.abs(plane[name]).max())
+        np.testing.assert_allclose(space[f"{name}_high"], plane[name], atol=3e-6 * np.abs(plane[name]).max())
         assert not space[f"{name}_right"].any()
     np.testing.assert_allclose(space["north"], plane["displacement"], atol=1e-6)
     for name in {"formation", "eta_pi", "stabilizer_clearance[1]"} & set(plane):

@@ -6,8 +6,6 @@ A binary says which sources it was made from. Needs the standard library only: t
 import re
 import struct
 from collections.abc import Iterable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from itertools import product
 from pathlib import Path
 
 from boreprop.errors import InputError
@@ -48,7 +46,7 @@ def binary_path(platform: str, folder: Path = BINARIES, in_space: bool = False) 
 
 
 def build_binaries(platforms: Iterable[str] = (), folder: Path = BINARIES) -> Iterator[Path]:
-    """Compile binaries, both of a platform at once, and take away those of other sources.
+    """Compile binaries, one after the other, and take away those of other sources.
 
     Parameters
     ----------
@@ -72,23 +70,23 @@ def build_binaries(platforms: Iterable[str] = (), folder: Path = BINARIES) -> It
         If a file cannot be written.
     """
     names = list(platforms)
-    for platform, in_space in product(PLATFORMS, LAWS):
-        if not is_compiled(platform, folder, in_space):
-            binary_path(platform, folder, in_space).unlink(missing_ok=True)
+    for platform in PLATFORMS:
+        for in_space in LAWS:
+            if not is_compiled(platform, folder, in_space):
+                binary_path(platform, folder, in_space).unlink(missing_ok=True)
+    if names:
+        for platform in names:
+            for in_space in LAWS:
+                yield build_binary(platform, folder, in_space)
+        return
     host = host_platform()
-    if not names and host is None:
+    if host is None:
         raise CompilerError(f"platform: must be one of {', '.join(PLATFORMS)}, got this machine, which is none")
-
-    def build(platform: str, in_space: bool) -> Path:
+    for in_space in LAWS:
         try:
-            return build_binary(platform, folder, in_space)
+            yield build_binary(host, folder, in_space)
         except NoCompilerError:
-            if names:
-                raise
-            return compile_binary(binary_path(platform, folder, in_space), None, in_space)
-
-    with ThreadPoolExecutor(len(LAWS)) as pool:
-        yield from pool.map(build, *zip(*product(names or [str(host)], LAWS), strict=True))
+            yield compile_binary(binary_path(host, folder, in_space), None, in_space)
 
 
 def build_binary(platform: str, folder: Path = BINARIES, in_space: bool = False) -> Path:

@@ -12,7 +12,7 @@ import subprocess
 import sys
 import sysconfig
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
 from dataclasses import dataclass
 from hashlib import sha256
 from importlib.util import find_spec
@@ -169,18 +169,31 @@ def compile_library(
             environment["ZIG_GLOBAL_CACHE_DIR"] = str(draft / "cache")
         compiles = [["-c", str(path), "-o", f"{path.stem}.o"] for path in sources]
         link = ["-shared", *(f"{path.stem}.o" for path in sources), "-o", output.name, *compiler.links]
-
-        def run(task: list[str]) -> None:
-            command = [*compiler.command, *flags, *task]
-            done = subprocess.run(command, cwd=draft, env=environment, capture_output=True, text=True, errors="replace")
-            if done.returncode:
-                raise CompilerError(f"{source}: must compile with {Path(command[0]).name}, got: {_gist(done.stderr)}")
-
-        with ThreadPoolExecutor(len(compiles)) as pool:
-            list(pool.map(run, compiles))
-        run(link)
+        for tasks in (compiles, [link]):
+            _run([[*compiler.command, *flags, *task] for task in tasks], source, draft, environment)
         os.replace(draft / output.name, output)
     return output
+
+
+def _run(commands: Sequence[Sequence[str]], source: Path, folder: Path, environment: Mapping[str, str]) -> None:
+    """Run commands of a compiler side by side in a folder, until all have ended or something ends this."""
+    with ExitStack() as stack:
+        begun = []
+        for command in commands:
+            process = subprocess.Popen(
+                command,
+                cwd=folder,
+                env=environment,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.PIPE,
+                errors="replace",
+            )
+            begun.append(stack.enter_context(process))
+            stack.callback(process.kill)
+        for process in begun:
+            _, messages = process.communicate()
+            if process.returncode:
+                raise CompilerError(f"{source}: must compile with {Path(commands[0][0]).name}, got: {_gist(messages)}")
 
 
 @dataclass(frozen=True)
