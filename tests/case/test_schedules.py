@@ -2,6 +2,7 @@
 
 import itertools
 from dataclasses import replace
+from math import radians
 from pathlib import Path
 
 import numpy as np
@@ -63,6 +64,16 @@ def test_inputs_stand_in_a_file_by_depth_in_the_units_of_the_rig(
     assert case.schedule.interpolation == interpolation
     assert case.active_weight_on_bit == found["active_weight_on_bit"][0]
     assert files_named(tmp_path / SOURCE) == [tmp_path / "log.csv"]
+
+
+def test_inputs_in_a_file_may_be_called_as_in_a_case_file(tmp_path: Path) -> None:
+    by_name, by_key = tmp_path / "name.csv", tmp_path / "key.csv"
+    by_name.write_text(
+        "drilled_length,rss_force,rss_toolface_deg,bit_tilt_limit_deg,bit_walk_angle_deg\n0,8e3,90,1,2\n"
+    )
+    by_key.write_text("drilled_length,force_kN,toolface_deg,tilt_limit_deg,walk_angle_deg\n0,8,90,1,2\n")
+    assert read_inputs(by_key) == read_inputs(by_name)
+    assert read_inputs(by_key)[0] == Schedule((0.0,), (8e3,), rss_toolface=(radians(90),))
 
 
 @pytest.mark.parametrize("suffix", ["csv", "parquet"])

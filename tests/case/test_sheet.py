@@ -2,6 +2,7 @@
 
 import csv
 import io
+from collections.abc import Callable
 from functools import partial
 from math import radians
 from pathlib import Path
@@ -12,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from boreprop.case.sheet import read_sheet
-from boreprop.case.tables import read_schedule, read_survey
+from boreprop.case.tables import read_inputs, read_schedule, read_survey
 from boreprop.core.survey import Survey
 from boreprop.errors import InputError
 
@@ -115,8 +116,28 @@ def test_other_units_are_converted(tmp_path: Path) -> None:
     schedule = read_schedule(file)
     assert schedule.drilled_length == pytest.approx((0.0, 30.48), rel=1e-15)
     assert schedule.rss_force == pytest.approx((4448.2216152605, 0.0), rel=1e-15)
+    file.write_text("drilled_length,force_klbf\n0,1\n")
+    assert read_schedule(file).rss_force == pytest.approx((4448.2216152605,), rel=1e-15)
     file.write_text("drilled_length,force_kN,force_lbf\n0,2.5,1000\n")
     assert read_schedule(file).rss_force == (2500.0,)
+
+
+@pytest.mark.parametrize(
+    ("read", "content", "heading"),
+    [
+        (read_inputs, "drilled_length,rss_force,active_weight_on_bit_kip\n0,1,2\n", "active_weight_on_bit_kip"),
+        (read_inputs, "drilled_length,rss_force,bit_tilt_limit_rad\n0,1,2\n", "bit_tilt_limit_rad"),
+        (read_schedule, "drilled_length,force,toolface\n0,1,2\n", "toolface"),
+        (read_survey, "measured_depth,inclination_deg,azimuth\n0,1,2\n", "azimuth"),
+    ],
+)
+def test_a_column_that_may_be_left_out_is_not_overlooked_for_its_unit(
+    tmp_path: Path, read: Callable[[Path], object], content: str, heading: str
+) -> None:
+    file = tmp_path / "table.csv"
+    file.write_text(content)
+    with pytest.raises(InputError, match=f"table.csv: must have the column .*, or none of it, got '{heading}'"):
+        read(file)
 
 
 SURVEY = b"measured_depth,inclination_deg\n2500,26\n"
