@@ -163,6 +163,10 @@ def test_a_survey_file_may_have_azimuths(one: Instance, tmp_path: Path) -> None:
     path.write_text("measured_depth,azimuth_deg,inclination_deg\n0,300,10\n40,361,10\n")
     with refused(one, f"{path}:3: azimuth_deg: must be between -360 and 360, got '361' (survey_file)"):
         one.initialize(survey_file=str(path))
+    one.slave.reset()
+    path.write_text("measured_depth,azimuth,inclination_deg\n0,300,10\n40,310,10\n")
+    with refused(one, f"{path}: must have the column 'azimuth_deg' (degrees), or none of it, got 'azimuth' (survey_fil"):
+        one.initialize(survey_file=str(path))
 
 
 def test_a_python_fmu_of_a_case_in_space_names_the_native_runtime(steered: Case, tmp_path: Path) -> None:
