@@ -25,8 +25,8 @@ from ..errors import InputError, shown
 from .body import place_points
 from .case import Case
 from .formations import file_degrees, lift_formations, lift_wear
-from .inputs import CLOSE, INTERPOLATIONS, InputSchedule, Schedule
-from .schedules import LENGTHS, NAMES_OF_COLUMNS, force_schedule, input_schedule
+from .inputs import CLOSE, INTERPOLATIONS, NAMES_OF_COLUMNS, InputSchedule, Schedule
+from .schedules import LENGTHS, force_schedule, input_schedule
 from .sections import lift_sections
 from .sensors import lift_sensors
 from .tables import BY_KEY, read_inputs, read_schedule, read_survey

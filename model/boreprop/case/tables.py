@@ -10,8 +10,8 @@ from ..core.errors import ParameterError
 from ..core.quantities import CLEARANCES, QUANTITIES, quantity_of
 from ..core.survey import Survey
 from ..errors import InputError, shown
-from .inputs import InputSchedule, Schedule
-from .schedules import LENGTHS, NAMES_OF_COLUMNS, force_schedule, input_schedule
+from .inputs import NAMES_OF_COLUMNS, InputSchedule, Schedule
+from .schedules import LENGTHS, force_schedule, input_schedule
 from .sheet import Sheet, read_sheet
 
 BY_KEY = {quantity.key: quantity for quantity in QUANTITIES if quantity.key}
