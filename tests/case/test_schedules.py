@@ -237,6 +237,12 @@ def test_what_is_wrong_with_steering_is_said(paper_text: str, rest: str, message
         )
 
 
+def test_the_whole_weight_is_named_by_its_own_key_beside_a_schedule(paper_text: str) -> None:
+    text = with_tables(paper_text, "weight_on_bit = 1e3\n" + INLINE)
+    with pytest.raises(InputError, match=r"case.toml: drilling.weight_on_bit: must be >= 2000, got 1000.0"):
+        parse_case(text, SOURCE)
+
+
 def test_a_negative_force_and_one_of_another_kind_are_refused() -> None:
     with pytest.raises(ParameterError, match=r"full_force: must be >= 0, got -1\.0"):
         force_schedule({"drilled_length": (0.0,), "duty": (1.0,), "toolface_deg": (0.0,)}, None, "held", -1.0)

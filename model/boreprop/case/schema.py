@@ -144,7 +144,9 @@ def _with_inputs(case: Case, document: Document, bit_depth: float, source: Path)
         _check_start(document, name, dict(inputs.inputs).get(name, ()) if inputs else (), source)
     _check_first_clearances(case, inputs, source)
     with _naming(where, source):
-        return replace(case, inputs=inputs)
+        scheduled = replace(case, weight_on_bit=0.0, inputs=inputs)
+    with _naming("drilling", source):
+        return replace(scheduled, weight_on_bit=case.weight_on_bit)
 
 
 def _check_start(document: Document, name: str, scheduled: tuple[float, ...], source: Path) -> None:
