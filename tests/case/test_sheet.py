@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from boreprop.case.inputs import NAMES_OF_COLUMNS
 from boreprop.case.sheet import read_sheet
 from boreprop.case.tables import read_inputs, read_schedule, read_survey
 from boreprop.core.survey import Survey
@@ -138,6 +139,22 @@ def test_a_column_that_may_be_left_out_is_not_overlooked_for_its_unit(
     file.write_text(content)
     with pytest.raises(InputError, match=f"table.csv: must have the column .*, or none of it, got '{heading}'"):
         read(file)
+
+
+@given(name=st.sampled_from(NAMES_OF_COLUMNS), end=st.from_regex(r"_[A-Za-z]{1,4}", fullmatch=True))
+@settings(max_examples=25)
+def test_an_input_with_any_ending_is_read_or_refused(name: str, end: str) -> None:
+    with TemporaryDirectory() as directory:
+        file = Path(directory, "table.csv")
+        file.write_text(f"drilled_length,rate_of_penetration,rss_force,{name}{end}\n0,1,1e3,1\n")
+        try:
+            _, inputs = read_inputs(file)
+        except InputError as error:
+            said = str(error)
+        else:
+            assert inputs is not None
+            said = f"read {[name for name, _ in inputs.inputs]} and rss_force, rss_toolface"
+    assert f"got '{name}{end}'" in said or name in said.partition("read ")[2]
 
 
 SURVEY = b"measured_depth,inclination_deg\n2500,26\n"
