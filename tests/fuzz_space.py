@@ -39,6 +39,7 @@ from space_runs import Outputs, Vector, direction, pair, place
 LENGTH = 300.0  # m, at most, …
 SHORT = 3.0  # … and in all but a few cases so many times the distance from the bit to the last stabilizer
 FEW = 0.01
+BUILT = 0.15  # of the length of a BHA as built
 ROWS = 3  # looked at on each leg
 STEPS = 500  # for each ℓ₁ of a case, at most, …
 TIGHTER = 1e-2  # … unless so much less of the tolerance needs that many, too
@@ -54,7 +55,10 @@ def draw(seed: int, number: int) -> tuple[Case, float]:
     """A case by its number, and its tolerance: now and then as built; in one of two, more changes along the way."""
     along = Random(f"space {seed} {number} along")
     case, tolerance = plain(seed, number) if along.random() < 0.85 else built_in_space(along)
-    return varied(along, case) if along.random() < 0.5 else case, tolerance
+    case = varied(along, case) if along.random() < 0.5 else case
+    if case.bha.body_point_positions:  # a body on the wall takes many steps
+        case = replace(case, length=BUILT * case.length)
+    return case, tolerance
 
 
 def plain(seed: int, number: int) -> tuple[Case, float]:
