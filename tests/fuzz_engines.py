@@ -5,10 +5,10 @@
 The near-bit space is that of BHAs with a stabilizer 0.8 to 2 m behind the bit under a low weight, over 300 m, now and
 then over 8 km; the wide one is of all that the model takes, over 10 ℓ₁; the as-built one is of BHAs in sections whose
 body may lie on the wall, most of them under an axial load up to nearly what they bear, over 60 m. All have force steps
-and tolerances between 1e-9 and 1e-5. The native engine runs every case; Python the first K, and each in which the
-native one stops, if the beam is the paper's. A bit that turns over is no failure, nor is a BHA that snaps from wall to
-wall or lies on the wall at more points than there is room for. What goes wrong is told with the case file that shows
-it, and ends in exit status 1.
+and tolerances between 1e-9 and 1e-5; half of them have besides what fuzz_along.py lets change along the way. The native
+engine runs every case; Python the first K, and each in which the native one stops, if the beam is the paper's. A bit
+that turns over is no failure, nor is a BHA that snaps from wall to wall or lies on the wall at more points than there
+is room for. What goes wrong is told with the case file that shows it, and ends in exit status 1.
 
 Some runs depend on their last digits: where the engines differ, the native one runs once more with a BHA that is
 stiffer and longer by 1e-12. Then rows count up to the first in which that moves a column by a tenth of what the engines
@@ -39,6 +39,7 @@ from boreprop.core.system import LEAST_SPAN, BitRock, BottomHoleAssembly
 from boreprop.kernel.binding import lie
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Stopped, Trajectory
+from fuzz_along import varied
 
 COMPARED = 50.0  # m at the start of a run, over which both engines are compared
 AGREEMENT = 1e-6  # of the largest value of a column
@@ -197,8 +198,10 @@ def examine(space: str, seed: int, number: int, compared: bool) -> Finding:
 
 
 def draw(space: str, seed: int, number: int) -> tuple[Case, float]:
-    """A case of a space and its tolerance, by number."""
-    return SPACES[space](Random(f"{space} {seed} {number}"))
+    """A case of a space and its tolerance, by number; in one of two, more changes along the way."""
+    case, tolerance = SPACES[space](Random(f"{space} {seed} {number}"))
+    along = Random(f"{space} {seed} {number} along")
+    return varied(along, case) if along.random() < 0.5 else case, tolerance
 
 
 def drilled(case: Case, tolerance: float, engine: str, interval: float) -> tuple[Trajectory, CannotContinue | None]:
@@ -240,7 +243,7 @@ def differing(one: Trajectory, other: Trajectory, share: float) -> NDArray[np.bo
     rows = min(one.row_count, other.row_count)
     bad = np.zeros(rows, dtype=bool)
     for name, column in other.columns.items():
-        if name.startswith(("stabilizer_contact", "bit_tilt_saturation")):
+        if name.startswith(("stabilizer_contact", "bit_tilt_saturation", "formation")):
             continue  # whole numbers: a row may lie on the event
         bad |= np.abs(one[name][:rows] - column[:rows]) > share * np.abs(column).max() + 1e-12
     return bad

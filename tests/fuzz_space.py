@@ -2,12 +2,13 @@
 
     python tests/fuzz_space.py [--cases N] [--minutes M] [--seed S]
 
-Systems and tolerances are those of the near-bit and of the wide space of fuzz_engines.py; azimuths, walk angles, and
-toolfaces against gravity, north or the frame come to them. Few runs are long, so that there are many. Of some cases
-it is looked at what must not matter: where the bit stops, whether the run is saved and another one goes on, where
-north is, and which side is right. A bit that turns over is no failure. Neither are many steps where the hole is rough;
-that a tighter tolerance needs fewer is one. What goes wrong is told with the number of its case, which
-`drill(draw(seed, number))` drills again, and ends in exit status 1.
+Systems and tolerances are those of fuzz_engines.py, most of the near-bit and of the wide space, some as built;
+azimuths, walk angles, and toolfaces against gravity, north or the frame come to them, and to half of them what
+fuzz_along.py lets change along the way. Few runs are long, so that there are many. Of some cases it is looked at what
+must not matter: where the bit stops, whether the run is saved and another one goes on, where north is, and which side
+is right. A bit that turns over is no failure. Neither are many steps where the hole is rough; that a tighter tolerance
+needs fewer is one. What goes wrong is told with the number of its case, which `drill(*draw(seed, number))` drills
+again, and ends in exit status 1.
 """
 
 import argparse
@@ -15,26 +16,30 @@ import sys
 from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, replace
-from itertools import count
+from dataclasses import replace
+from itertools import count, pairwise
 from math import cos, isfinite, pi, radians, sin
 from random import Random
 from time import monotonic
 
 import numpy as np
 
-from boreprop.case.case import Case
-from boreprop.core.errors import CannotContinue
+from boreprop.case.case import Case, Schedule
+from boreprop.core.errors import CannotContinue, ParameterError
 from boreprop.core.options import Options
-from boreprop.core.quantities import TOOLFACE_REFERENCES
+from boreprop.core.quantities import CLEARANCES, TOOLFACE_REFERENCES, fields_of, values_of
 from boreprop.core.survey import Survey
-from boreprop.kernel.space import SpaceDrilling
-from fuzz_engines import EXPLAINED, any_tolerance, near_bit, wide
+from boreprop.core.system import BitRock
+from boreprop.run.course import Course, acting, course_of
+from boreprop.run.engines import start_in_space
+from fuzz_along import varied
+from fuzz_engines import EXPLAINED, any_tolerance, as_built, near_bit, wide
 from space_runs import Outputs, Vector, direction, pair, place
 
 LENGTH = 300.0  # m, at most, …
 SHORT = 3.0  # … and in all but a few cases so many times the distance from the bit to the last stabilizer
 FEW = 0.01
+BUILT = 0.15  # of the length of a BHA as built
 ROWS = 3  # looked at on each leg
 STEPS = 500  # for each ℓ₁ of a case, at most, …
 TIGHTER = 1e-2  # … unless so much less of the tolerance needs that many, too
@@ -46,80 +51,99 @@ ROUNDING = 1e-9  # of the largest number in a condition of the discs
 BATCH = 20  # cases that a process gets at once
 
 
-@dataclass(frozen=True)
-class SpaceCase:
-    """A case with what it has in space besides."""
+def draw(seed: int, number: int) -> tuple[Case, float]:
+    """A case by its number, and its tolerance: now and then as built; in one of two, more changes along the way."""
+    along = Random(f"space {seed} {number} along")
+    case, tolerance = plain(seed, number) if along.random() < 0.85 else built_in_space(along)
+    case = varied(along, case) if along.random() < 0.5 else case
+    if case.bha.body_point_positions:  # a body on the wall takes many steps
+        case = replace(case, length=BUILT * case.length)
+    return case, tolerance
 
-    case: Case
-    azimuth: tuple[float, ...]
-    toolfaces: tuple[float, ...]  # one a leg
-    reference: str
-    tolerance: float
 
-
-def draw(seed: int, number: int) -> SpaceCase:
-    """A case by its number."""
+def plain(seed: int, number: int) -> tuple[Case, float]:
+    """A case by its number whose beam is the paper's, under forces that are held, and its tolerance."""
     random = Random(f"space {seed} {number}")
-    case, _ = (wide if random.random() < 0.6 else near_bit)(random)
+    return in_space(random, (wide if random.random() < 0.6 else near_bit)(random)[0])
+
+
+def built_in_space(random: Random) -> tuple[Case, float]:
+    """A case as built, under a weight that it bears in space, where a stabilizer on the wall holds to no side."""
+    case, tolerance = in_space(random, as_built(random)[0])
+    if case.bha.axial_load:
+        try:
+            start_in_space(replace(case, weight_on_bit=1e15), Options())
+        except ParameterError as error:
+            weight = random.uniform(0.3, 0.99) * (error.problem.limit if error.problem else 0.0)
+        if weight > 0.0:
+            return replace(
+                case, active_weight_on_bit=random.uniform(0.2, 1.0) * weight, weight_on_bit=weight
+            ), tolerance
+        case = replace(case, bha=replace(case.bha, axial_load=False))
+    return case, tolerance
+
+
+def in_space(random: Random, case: Case) -> tuple[Case, float]:
+    """A case in the plane with what it has in space besides, and a tolerance."""
     stations = len(case.survey.measured_depth)
     azimuth = [random.uniform(-pi, pi)]
     for _ in range(stations - 1):
         azimuth.append(azimuth[-1] + random.choice([0.0, radians(random.uniform(-5.0, 5.0))]))
     inclination = [angle if random.random() < 0.2 else abs(angle) for angle in case.survey.inclination]
-    kind = random.random()
+    kind = 1.0 if case.bha.axial_load else random.random()  # what a BHA bears depends on the inclination
     if kind < 0.3:  # nearly vertical, or from there to the vertical
         inclination = [0.0] * (stations - 1) + [radians(random.uniform(0.0, 2.0))]
         inclination = inclination if kind < 0.2 else inclination[::-1]
     walk = random.choice([0.0, radians(random.uniform(-30.0, 30.0)), radians(random.uniform(-85.0, 85.0))])
-    toolfaces = tuple(
-        random.choice([0.0, pi, random.uniform(-pi, pi), random.uniform(-pi, pi)]) for _ in case.schedule.drilled_length
-    )
-    reference, tolerance = random.choice(TOOLFACE_REFERENCES), any_tolerance(random)
+    lengths, forces = case.schedule.drilled_length, case.schedule.rss_force
+    toolfaces = tuple(random.choice([0.0, pi, random.uniform(-pi, pi), random.uniform(-pi, pi)]) for _ in lengths)
+    references, tolerance = (random.choice(TOOLFACE_REFERENCES),) * len(lengths), any_tolerance(random)
     longest = LENGTH if random.random() < FEW else SHORT * case.bha.stabilizer_positions[-1]
     case = replace(
         case,
-        survey=Survey(case.survey.measured_depth, tuple(inclination)),
+        survey=Survey(case.survey.measured_depth, tuple(inclination), tuple(azimuth)),
         bit=replace(case.bit, walk_angle=walk),
         length=min(case.length, longest),
+        schedule=Schedule(lengths, forces, "held", toolfaces, references),
+        dimensions=3,
     )
-    return SpaceCase(case, tuple(azimuth), toolfaces, reference, tolerance)
+    return case, tolerance
 
 
-def begin(given: SpaceCase) -> SpaceDrilling:
-    """The run of a case before its first step."""
-    case = given.case
-    steps = STEPS * (1 + case.length / case.length_scale)
-    return SpaceDrilling(
-        case.bha,
-        case.bit,
-        case.survey,
-        given.azimuth,
-        active_weight_on_bit=case.active_weight_on_bit,
-        rss_force=case.schedule.rss_force[0],
-        rss_toolface=given.toolfaces[0],
-        toolface_reference=given.reference,
-        options=Options(relative_tolerance=given.tolerance, most_steps=int(steps)),
-    )
+def drill(case: Case, tolerance: float, stops: int = 1, saves: bool = False) -> Iterator[tuple[Outputs, Case]]:
+    """Outputs along a case, and the case as it is there; the bit stops so many times from row to row.
 
-
-def drill(given: SpaceCase, stops: int = 1, saves: bool = False) -> Iterator[Outputs]:
-    """The outputs along a case; its bit stops so many times from row to row, and another run may go on at each row."""
-    case, schedule, run = given.case, given.case.schedule, begin(given)
-    ends = [min(end, case.length) for end in (*schedule.drilled_length[1:], case.length)]
-    for start, end, force, toolface in zip(
-        schedule.drilled_length, ends, schedule.rss_force, given.toolfaces, strict=True
-    ):
-        if end <= start:
+    Another run may go on at each row.
+    """
+    steps = int(STEPS * (1 + case.length / case.length_scale))
+    course, options = course_of(case), Options(relative_tolerance=tolerance, most_steps=steps)
+    run = start_in_space(case, options)
+    for piece, (start, end) in enumerate(pairwise([*course.starts, np.inf])):
+        if start >= case.length:
             return
-        lengths = np.linspace(start, end, ROWS + 1)
-        for row, length in enumerate(lengths[1:]):
-            for stop in [*np.linspace(lengths[row], length, stops + 1)[1:-1], length]:
-                aim = {"rss_toolface": toolface, "toolface_reference": given.reference}
-                run.advance(float(stop), force, case.active_weight_on_bit, **aim)  # type: ignore[arg-type]
+        here = as_on(case, course, start, piece)
+        run.change_clearances(here.bha.stabilizer_clearances)
+        lengths = np.linspace(start, min(end, case.length), ROWS + 1)
+        for row_start, row_end in pairwise(lengths):
+            for before, length in pairwise([*np.linspace(row_start, row_end, stops + 1)[:-1], row_end]):
+                inputs = acting(course, np.array([before]), np.array([piece], dtype=np.intc))
+                run.follow(np.array([length]), inputs, np.array([-1], dtype=np.intc), np.empty((0, len(run.outputs()))))
             if saves:
-                state, run = run.save(), begin(given)
+                state, run = run.save(), start_in_space(case, options)
                 run.restore(state)
-            yield run.outputs()
+            row = run.outputs()
+            yield row, as_on(case, course, row_end, piece, int(row.get("formation", 0)))
+
+
+def as_on(case: Case, course: Course, length: float, piece: int, layer: int = 0) -> Case:
+    """A case with bit and clearances as they are at a drilled length on a piece of its course, in a layer."""
+    values = course.at(np.array([length]), np.array([piece], dtype=np.intc))[0].tolist()
+    given = dict(zip(course.names, values, strict=True))
+    clearances = zip(CLEARANCES, case.bha.stabilizer_clearances, strict=False)
+    bha = replace(case.bha, stabilizer_clearances=tuple(given.get(name, own) for name, own in clearances))
+    bit = BitRock(**fields_of("bit", values_of("bit", case.bit) | given, case.structure))
+    bit = case.ground.bit_in(layer, bit) if case.ground else bit
+    return replace(case, bha=bha, bit=bit, inputs=None, formations=(), wear=None)
 
 
 def fault_of(row: Outputs, case: Case) -> str | None:
@@ -140,45 +164,47 @@ def fault_of(row: Outputs, case: Case) -> str | None:
     return None
 
 
-def way(given: SpaceCase, **how: int) -> Vector:
+def way(case: Case, tolerance: float, **how: int) -> Vector:
     """Where the bit is and where it points along a case, row by row; ℓ₁ and no unit."""
     rows: list[Outputs] = []
     try:
-        rows.extend(drill(given, **how))  # type: ignore[arg-type]
+        rows.extend(row for row, _ in drill(case, tolerance, **how))  # type: ignore[arg-type]
     except CannotContinue as stop:
         if stop.code not in EXPLAINED:
             raise
-    return np.array([[*place(row) / given.case.length_scale, *direction(row, "bit")] for row in rows]).reshape(-1, 6)
+    return np.array([[*place(row) / case.length_scale, *direction(row, "bit")] for row in rows]).reshape(-1, 6)
 
 
-def is_rough(given: SpaceCase) -> bool:
+def is_rough(case: Case, tolerance: float) -> bool:
     """Whether a case takes too many steps with a tighter tolerance, too."""
     try:
-        for _ in drill(replace(given, tolerance=TIGHTER * given.tolerance)):
+        for _ in drill(case, TIGHTER * tolerance):
             pass
     except CannotContinue as stop:
         return stop.code == "too many"
     return False
 
 
-def what_matters(given: SpaceCase) -> str | None:
+def what_matters(case: Case, tolerance: float) -> str | None:
     """What ought not to matter to a case and does, if anything."""
-    case, plain = given.case, way(given)
-    if not np.array_equal(plain, way(given, stops=3)):
+    here, stopping = way(case, tolerance), way(case, tolerance, stops=3)
+    even = not (course_of(case).slopes.any() or case.ground)  # on a ramp a stop rounds what acts
+    if even and not np.array_equal(here, stopping):
         return "where the bit stops matters"
-    if not np.array_equal(plain, way(given, saves=True)):
+    if not np.array_equal(here, way(case, tolerance, saves=True)):
         return "a saved run goes on to elsewhere"
-    others = {"right and left": mirrored(given), "a hair": replace(given, case=stiffer(case))}
-    if given.reference != "north":
-        others["north"] = replace(given, azimuth=tuple(angle + TURN for angle in given.azimuth))
-    back = {"right and left": np.diag([1.0, -1.0, 1.0]), "north": turn(-TURN), "a hair": np.eye(3)}
+    others = {"right and left": way(mirrored(case), tolerance), "a hair": way(stiffer(case), tolerance)}
+    others["where the bit stops"] = stopping
+    if "north" not in case.schedule.toolface_reference:
+        azimuth = tuple(angle + TURN for angle in case.survey.azimuth)
+        others["north"] = way(replace(case, survey=replace(case.survey, azimuth=azimuth)), tolerance)
+    back = {"right and left": np.diag([1.0, -1.0, 1.0]), "north": turn(-TURN)}
     apart = {}
-    for name, other in others.items():
-        there = way(other)
-        rows = min(len(plain), len(there))
-        there = np.hstack([there[:rows, :3] @ back[name].T, there[:rows, 3:] @ back[name].T])
-        apart[name] = np.abs(there - plain[:rows]).max(axis=1, initial=0.0)
-    allowed = SAME * given.tolerance + GROWS * np.maximum.accumulate(apart.pop("a hair"))
+    for name, there in others.items():
+        rows, to_here = min(len(here), len(there)), back.get(name, np.eye(3)).T
+        there = np.hstack([there[:rows, :3] @ to_here, there[:rows, 3:] @ to_here])
+        apart[name] = np.abs(there - here[:rows]).max(axis=1, initial=0.0)
+    allowed = SAME * tolerance + GROWS * np.maximum.accumulate(apart.pop("a hair"))
     for name, off in apart.items():
         rows = min(len(off), len(allowed))
         if (off[:rows] > allowed[:rows]).any():
@@ -186,16 +212,33 @@ def what_matters(given: SpaceCase) -> str | None:
     return None
 
 
-def mirrored(given: SpaceCase) -> SpaceCase:
+def mirrored(case: Case) -> Case:
     """A case with east and west exchanged."""
-    bit = replace(given.case.bit, walk_angle=-given.case.bit.walk_angle)
-    azimuth, toolfaces = (tuple(-angle for angle in angles) for angles in (given.azimuth, given.toolfaces))
-    return replace(given, case=replace(given.case, bit=bit), azimuth=azimuth, toolfaces=toolfaces)
+    azimuth, toolfaces = (
+        tuple(-angle for angle in angles) for angles in (case.survey.azimuth, case.schedule.rss_toolface)
+    )
+    inputs = case.inputs and replace(
+        case.inputs,
+        inputs=tuple(
+            (name, tuple(-value for value in values) if name == "bit_walk_angle" else values)
+            for name, values in case.inputs.inputs
+        ),
+    )
+    return replace(
+        case,
+        bit=replace(case.bit, walk_angle=-case.bit.walk_angle),
+        survey=replace(case.survey, azimuth=azimuth),
+        schedule=replace(case.schedule, rss_toolface=toolfaces),
+        inputs=inputs,
+    )
 
 
 def stiffer(case: Case) -> Case:
     """A case with a BHA that is stiffer by a hair."""
-    return replace(case, bha=replace(case.bha, flexural_stiffness=case.bha.flexural_stiffness * (1 + HAIR)))
+    bha, more = case.bha, 1 + HAIR
+    sections = tuple(stiffness * more for stiffness in bha.section_flexural_stiffnesses)
+    stiff = replace(bha, flexural_stiffness=bha.flexural_stiffness * more, section_flexural_stiffnesses=sections)
+    return replace(case, bha=stiff)
 
 
 def turn(angle: float) -> Vector:
@@ -205,19 +248,24 @@ def turn(angle: float) -> Vector:
 
 def examine(seed: int, number: int) -> tuple[int, str, str | None]:
     """What becomes of a case: its number, how it ends, and what is wrong."""
-    given, end = draw(seed, number), "drilled"
+    return number, *ending(*draw(seed, number), symmetric=number % SYMMETRIC == 0)
+
+
+def ending(case: Case, tolerance: float, symmetric: bool = False) -> tuple[str, str | None]:
+    """How a case ends, and what is wrong; if it is to be symmetric, also in what ought not to matter."""
+    end = "drilled"
     try:
-        for row in drill(given):
-            if fault := fault_of(row, given.case):
-                return number, "wrong", fault
+        for row, here in drill(case, tolerance):
+            if fault := fault_of(row, here):
+                return "wrong", fault
     except CannotContinue as stop:
-        end = "rough" if stop.code == "too many" and is_rough(given) else stop.code
+        end = "rough" if stop.code == "too many" and is_rough(case, tolerance) else stop.code
         if end not in (*EXPLAINED, "rough"):
-            return number, end, str(stop)
+            return end, str(stop)
     except Exception as error:  # whatever it is, it is what is looked for
-        return number, type(error).__name__, str(error)
-    fault = what_matters(given) if number % SYMMETRIC == 0 and end != "rough" else None
-    return number, "asymmetric" if fault else end, fault
+        return type(error).__name__, str(error)
+    fault = what_matters(case, tolerance) if symmetric and end != "rough" else None
+    return "asymmetric" if fault else end, fault
 
 
 def examine_all(seed: int, numbers: range) -> list[tuple[int, str, str | None]]:

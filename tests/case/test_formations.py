@@ -124,6 +124,12 @@ def test_a_bit_that_is_not_that_of_the_schedule_at_the_start_is_refused() -> Non
         parse_case(text, Path("case.toml"))
 
 
+def test_a_scheduled_limit_that_no_number_of_degrees_gives_is_read_back() -> None:
+    inputs = InputSchedule((0.0, 5.0), (("bit_tilt_limit", (0.00884345491329861, 0.01)),))
+    case = replace(paper_case(), inputs=inputs)
+    assert parse_case(dump_case(case), Path("case.toml")) == case
+
+
 DEEP = """
 [[formation]]
 true_vertical_depth         = 990.0

@@ -14,7 +14,7 @@ from beam_in_elements import Elements
 from beams_as_built import CASES, reference_bha, with_points
 from boreprop import paper_case
 from boreprop.arrays import Floats
-from boreprop.core.errors import CannotContinue
+from boreprop.core.errors import CannotContinue, ParameterError
 from boreprop.core.options import Options
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
@@ -239,3 +239,15 @@ def test_more_contacts_than_there_is_room_for_are_refused() -> None:
     )
     with pytest.raises(CannotContinue, match="more than 26 supports touch the wall"):
         SpaceDrilling(bha, PAPER.bit, Survey((0.0, 60.0), (1.5, 1.5)), active_weight_on_bit=5e3)
+
+
+@pytest.mark.parametrize(
+    "stabilizers", [(40.0,), (20.0, 40.0), (10.0, 20.0, 30.0, 40.0), (2.0, 11.0, 18.0, 27.0, 40.0)]
+)
+def test_a_bha_bears_what_it_bears_without_its_stabilizers(stabilizers: tuple[float, ...]) -> None:
+    """A clamped and hinged beam buckles under 4.4934² EI/ℓ²; held to no side it may be in a higher mode by far."""
+    bha = BottomHoleAssembly(stabilizers, (0.0,) * len(stabilizers[1:]), 0.5, 0.0, 1e7, axial_load=True)
+    with pytest.raises(ParameterError, match=r"^weight_on_bit: must be < .*, where the BHA buckles") as refused:
+        SpaceDrilling(bha, PAPER.bit, Survey((0.0,), (0.3,)), active_weight_on_bit=1e3, weight_on_bit=1e12)
+    assert refused.value.problem
+    assert refused.value.problem.limit == pytest.approx(4.493409458**2 * 1e7 / 40.0**2, rel=1e-5)

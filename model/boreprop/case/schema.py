@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, replace
 from difflib import get_close_matches
-from math import degrees, radians
+from math import degrees, isclose, radians
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -35,6 +35,7 @@ Document = dict[str, dict[str, Any]]  # table → key → value
 
 IN_DEGREES = {f"{name}_deg": name for name in NAMES_OF_COLUMNS if quantity_of(name).unit == "rad"}
 """Columns of a schedule in degrees → what they stand for."""
+ROUNDING = 1e-15  # relative: not every angle in radians is one in degrees
 DEEPEST = 100  # parts that a dotted key may have
 TABLES = ("bha", "bit", "drilling", "hole", "rss", "run")  # of a file, in the order in which they are written
 OF_FILES = ("hole.survey", "rss.schedule", "drilling.schedule")
@@ -158,7 +159,8 @@ def _check_start(document: Document, name: str, scheduled: tuple[float, ...], so
         raise InputError(f"{source}: {key}: must be given, got nothing")
     if written is None or not scheduled:
         return
-    if (_radians(written) if key.endswith("_deg") else written) != scheduled[0]:
+    given = _radians(written) if key.endswith("_deg") else written
+    if given != scheduled[0] and not (isinstance(given, float) and isclose(given, scheduled[0], rel_tol=ROUNDING)):
         start = file_degrees(scheduled[0]) if key.endswith("_deg") else scheduled[0]
         constraint = f"must be left out, or {start!r} as drilling.schedule has it at the start"
         raise InputError(f"{source}: {key}: {constraint}, got {shown(written)}")

@@ -53,10 +53,16 @@ static inline void carry(double h, double beta, double N, double rise, double lo
     line[SHEAR] += shear[1];
 }
 
+/* In how many parts a line is carried from node k on over a length. */
+static inline int part_count(const Nodes *nodes, int k, double length) {
+    double N = nodes->N[k], end = N + nodes->w[k] * nodes->cosine * length;
+    return 1 + (int)smaller(length * sqrt(3 * larger(fabs(N), fabs(end)) / nodes->beta[k]), 1e4);
+}
+
 /* Carry a line from node k on, not beyond the next, under the weight times g. */
 static inline void carry_from(const Nodes *nodes, int k, double length, double g, double line[PARTS]) {
-    double beta = nodes->beta[k], w = nodes->w[k], rise = w * nodes->cosine, end = nodes->N[k] + rise * length;
-    int parts = 1 + (int)smaller(length * sqrt(3 * larger(fabs(nodes->N[k]), fabs(end)) / beta), 1e4);
+    double beta = nodes->beta[k], w = nodes->w[k], rise = w * nodes->cosine;
+    int parts = part_count(nodes, k, length);
     double h = length / parts;
     for (int part = 0; part < parts; part++) carry(h, beta, nodes->N[k] + rise * (part * h), rise, -w * g, line);
 }
@@ -119,6 +125,26 @@ static inline void pass_stretch(const Stretch *stretch, double g, double line[PA
     for (int i = 0; i < PARTS; i++) line[i] = dot(PARTS, stretch->of[i], start) + g * stretch->load[i];
 }
 
+/* Of the lines under a unit moment and a unit shear at the start of a span: positive as long as one that ends where they are
+   does not buckle, clamped at both ends. It is zero where it buckles in any of its modes, one further on than the other. */
+static inline double clamped(const double bent[PARTS], const double sheared[PARTS]) {
+    return bent[DEFLECTION] * sheared[SLOPE_OF_BEAM] - sheared[DEFLECTION] * bent[SLOPE_OF_BEAM];
+}
+
+/* Whether a span, with these lines at node k, stands clamped wherever it may end before the next node: two modes are more
+   than two parts apart. */
+static inline int stands_along(const Nodes *nodes, int k, const double bent[PARTS], const double sheared[PARTS]) {
+    double length = nodes->s[k + 1] - nodes->s[k];
+    int parts = part_count(nodes, k, length);
+    for (int part = 1; part < parts; part++) {
+        double lines[2][PARTS];
+        memcpy(lines[0], bent, sizeof lines[0]), memcpy(lines[1], sheared, sizeof lines[1]);
+        for (int i = 0; i < 2; i++) carry_from(nodes, k, length * part / parts, 0.0, lines[i]);
+        if (!(clamped(lines[0], lines[1]) > 0)) return 0;
+    }
+    return 1;
+}
+
 /* Whether the beam stands: with every stabilizer held it does not buckle.
 
    Each span clamped at both ends must stand, which shows as a positive determinant all along it, and so must the turning
@@ -132,10 +158,11 @@ static inline int stands(const Scaled *scaled, Axial axial) {
         double turned[PARTS] = {0, 1, 0, 0}, bent[PARTS] = {0, 0, 1, 0}, sheared[PARTS] = {0, 0, 0, 1},
                determinant = 0.0;
         for (; nodes.s[k] < scaled->s[i]; k++) {
+            if (!stands_along(&nodes, k, bent, sheared)) return 0;
             pass_stretch(&nodes.above[k], 0.0, turned);
             pass_stretch(&nodes.above[k], 0.0, bent);
             pass_stretch(&nodes.above[k], 0.0, sheared);
-            determinant = bent[DEFLECTION] * sheared[SLOPE_OF_BEAM] - sheared[DEFLECTION] * bent[SLOPE_OF_BEAM];
+            determinant = clamped(bent, sheared);
             if (!(determinant > 0)) return 0;
         }
         /* moments at both ends under a unit turn of the start, and at the end under a unit turn of it */

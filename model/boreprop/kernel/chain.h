@@ -50,12 +50,11 @@ static inline Turned turned(const Span *span, double lines[UNITS][PARTS], int pa
     return sum;
 }
 
-/* A span, with the lines at its end; 0 if it buckles though it is clamped at both ends. */
-static inline int make_span(Span *span, double lines[UNITS][PARTS]) {
+/* A span that stands clamped at both ends, with the lines at its end. */
+static inline void make_span(Span *span, double lines[UNITS][PARTS]) {
     const double *t = lines[UNIT_SLOPE], *b = lines[UNIT_MOMENT], *s = lines[UNIT_SHEAR], *w = lines[UNIT_WEIGHT],
                  *p = lines[UNIT_PADS];
-    double determinant = b[DEFLECTION] * s[SLOPE_OF_BEAM] - s[DEFLECTION] * b[SLOPE_OF_BEAM];
-    if (!(determinant > 0)) return 0;
+    double determinant = clamped(b, s);
     double mv = s[SLOPE_OF_BEAM] / determinant, mf = -s[DEFLECTION] / determinant; /* m = mv Δv + mf Δφ */
     double qv = -b[SLOPE_OF_BEAM] / determinant, qf = b[DEFLECTION] / determinant;
     Turned m = {
@@ -68,7 +67,6 @@ static inline int make_span(Span *span, double lines[UNITS][PARTS]) {
     };
     span->m_start = m, span->q_start = q;
     span->m_end = turned(span, lines, MOMENT), span->q_end = turned(span, lines, SHEAR);
-    return 1;
 }
 
 /* Hold a beam at its last stabilizer and where `holds` says so of the first `supports`; 0 if it buckles between these. */
@@ -85,7 +83,9 @@ static inline int make_chain(Chain *chain, const Beam *beam, int supports, const
     lines[UNIT_SLOPE][SLOPE_OF_BEAM] = lines[UNIT_MOMENT][MOMENT] = lines[UNIT_SHEAR][SHEAR] = 1.0;
     for (int k = 0; k < nodes->count - 1; k++) {
         if (k == beam->pads) lines[UNIT_PADS][SHEAR] += 1.0;
+        if (!stands_along(nodes, k, lines[UNIT_MOMENT], lines[UNIT_SHEAR])) return 0;
         for (int unit = 0; unit < UNITS; unit++) pass_stretch(&nodes->above[k], unit == UNIT_WEIGHT, lines[unit]);
+        if (!(clamped(lines[UNIT_MOMENT], lines[UNIT_SHEAR]) > 0)) return 0;
         int support = at[k + 1], last = chain->spans;
         if (support < 0) continue;
         if (!holds[support] && support != beam->n - 1) {
@@ -94,7 +94,7 @@ static inline int make_chain(Chain *chain, const Beam *beam, int supports, const
             continue;
         }
         Span *span = &chain->span[last];
-        if (!make_span(span, lines)) return 0;
+        make_span(span, lines);
         chain->held[last] = support, chain->pivot[last] = span->m_end.end;
         if (last > 0) {
             chain->pivot[last - 1] -= span->m_start.start;

@@ -180,7 +180,13 @@ static inline Status find_step(
             continue;
         }
         choose_length(p, law, xi, plan);
-        if (plan->h < shortest) return failed(p, TOO_SHORT, xi, problem);
+        if (plan->h < shortest) { /* where other contacts hold, a regime may have no answer */
+            if (!lands(p) || plan->searched) return failed(p, TOO_SHORT, xi, problem);
+            plan->searched = 1, plan->switches = 0;
+            if (touch_down(p, xi, x, problem) != DONE) return FAILED;
+            plan->planned = p->options.layers * present_law(p)->relaxation;
+            continue;
+        }
         try_step(p, law, xi, plan->h, x, trial);
         if (!is_finite(trial)) return failed(p, NOT_FINITE, xi, problem);
         if (trial->error > 1.0) {
