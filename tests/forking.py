@@ -18,6 +18,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from functools import cache
 from importlib import import_module
+from io import TextIOWrapper
 from pathlib import Path
 from runpy import run_path
 from select import select
@@ -175,6 +176,9 @@ def begin(words: list[str], cwd: str, environment: Mapping[str, str], standard: 
     for number, file in enumerate(standard):
         os.dup2(file, number)
         os.close(file)
+    if encoding := environment.get("PYTHONIOENCODING"):
+        assert isinstance(sys.stdout, TextIOWrapper)
+        sys.stdout.reconfigure(encoding=encoding)
     if words[0] == "-c":
         sys.path[0], sys.argv[:] = "", ["-c", *words[2:]]
         exec(words[1], {"__name__": "__main__"})
