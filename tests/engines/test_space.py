@@ -57,6 +57,23 @@ def test_a_spiral_is_that_of_the_reference_as_far_as_its_errors_grow(name: str) 
     assert max(tight["bit"], tight["borehole"]) < 1e-5
 
 
+def winding(xi: Vector, north: Vector, east: Vector) -> tuple[float, float]:
+    """Pitch and radius of a spiral down a vertical hole by the directions of its last 10 ℓ₁."""
+    last = xi > xi[-1] - 10.0
+    T = (north + 1j * east)[last]
+    omega = float(np.polyfit(xi[last], np.unwrap(np.angle(T)), 1)[0])
+    return 2 * pi / omega, float(abs(T).mean() / abs(omega))
+
+
+@pytest.mark.parametrize("name", SPIRALS)
+def test_pitch_and_radius_of_a_spiral_are_those_of_the_reference(name: str) -> None:
+    expected = read_reference(name)
+    found = np.array([direction(row, "borehole") for row in rows_of(name, expected["xi"], relative_tolerance=1e-7)])
+    ours = winding(expected["xi"], found[:, 0], found[:, 1])
+    assert ours == pytest.approx(winding(expected["xi"], expected["T_n"], expected["T_e"]), rel=1e-4)
+    assert abs(ours[0]) == pytest.approx(1.394, rel=5e-3)  # and it does wind
+
+
 def test_the_error_falls_with_the_tolerance_down_to_what_the_reference_is_printed_with() -> None:
     loose, usual, tight = (errors("long_turn", tolerance)["bit"] for tolerance in (1e-6, 1e-8, 1e-10))
     assert usual < loose / 20

@@ -2,7 +2,7 @@
 #ifndef BOREPROP_DERIVATIVES_H
 #define BOREPROP_DERIVATIVES_H
 
-#include "drilling.h"
+#include "outputs.h"
 
 /* Slope Θ of the hole at stabilizer `i`, counted from 0. */
 static inline double inclination_at(const Drilling *d, int i) {

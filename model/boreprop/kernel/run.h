@@ -5,6 +5,7 @@
 #ifndef SPACE
 #include "sag.h"
 #endif
+#include "outputs.h"
 #include "state.h"
 
 typedef struct {

@@ -2,7 +2,7 @@
 #ifndef BOREPROP_SAG_H
 #define BOREPROP_SAG_H
 
-#include "drilling.h"
+#include "plane_outputs.h"
 #include "sentence.h"
 
 /* Where the axis of the BHA is farthest from that of the hole: its distance, positive to the high side, and the place,

@@ -2,7 +2,7 @@
 #ifndef BOREPROP_SPACE_DERIVATIVES_H
 #define BOREPROP_SPACE_DERIVATIVES_H
 
-#include "drilling.h"
+#include "outputs.h"
 
 #define A_STEP 1e-4 /* ℓ₁: over which the slope of a mean inclination is taken */
 

@@ -1,6 +1,8 @@
-/* The outputs where the bit is, in space. A part of drilling.h. */
+/* The outputs where the bit is, in space. */
 #ifndef BOREPROP_SPACE_OUTPUTS_H
 #define BOREPROP_SPACE_OUTPUTS_H
+
+#include "drilling.h"
 
 /* What the outputs are computed from: the state where the bit is. */
 typedef struct {
