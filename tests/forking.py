@@ -126,7 +126,7 @@ def _server(imported: tuple[str, ...]) -> socket.socket:
 def requests(link: socket.socket) -> dict[str, Any] | None:
     """For each request fork a guard; give what is asked for in the process that the guard forks."""
     gc.freeze()  # or each process would look for garbage in all that has been imported
-    signal.signal(signal.SIGCHLD, count)
+    signal.signal(signal.SIGCHLD, wait_for_guards)
     while True:
         text, files, _, _ = socket.recv_fds(link, 2**20, 4)
         if not text:
@@ -144,8 +144,8 @@ def requests(link: socket.socket) -> dict[str, Any] | None:
             os.close(file)
 
 
-def count(*_: object) -> None:
-    """Wait for guards that have ended: their time counts as that of the suite."""
+def wait_for_guards(*_: object) -> None:
+    """Of guards that have ended; so their time counts as that of the suite."""
     with suppress(ChildProcessError):
         while os.waitpid(-1, os.WNOHANG)[0]:
             pass
@@ -155,7 +155,7 @@ def guarded(standard: list[int], telling: int) -> None:
     """Fork and go on in the new process; the old one tells its number and, when it has ended, its exit status."""
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     if child := os.fork():
-        for file in standard:
+        for file in (0, 1, 2, *standard):
             os.close(file)
         os.write(telling, child.to_bytes(4, "big"))
         _, status = os.waitpid(child, 0)
