@@ -73,6 +73,11 @@ def test_one_azimuth_is_that_of_every_station(write: Write, tmp_path: Path) -> N
     assert by_file == columns
 
 
+def test_one_inclination_is_that_of_every_station(write: Write) -> None:
+    hole = "[hole]\nmeasured_depth = [0.0, 10.0, 20.0]\ninclination_deg = 30\n"
+    assert load_case(write(hole)).survey.inclination == (radians(30),) * 3
+
+
 def test_a_survey_in_a_file_may_have_azimuths_all_round(tmp_path: Path) -> None:
     path = tmp_path / "survey.csv"
     path.write_text("measured_depth,inclination_deg,azimuth_deg\n0,10,359\n100,20,181\n")
@@ -95,14 +100,21 @@ def test_an_azimuth_is_not_given_twice(write: Write, tmp_path: Path) -> None:
     [
         (HOLE + "azimuth_deg = [1.0]\n", "", r"azimuth_deg: must hold one value per measured_depth, 3 in all"),
         (HOLE + "azimuth_deg = 400.0\n", "", r"hole.azimuth_deg\[1\]: must be <= 360, got 400.0"),
-        (HOLE, FORCE + "toolface_deg = [90.0]\n", r"rss.toolface_deg: must hold one value per drilled_length"),
+        (
+            '[hole]\nsurvey = "survey.csv"\nazimuth_deg = 400.0\n',
+            "",
+            r"hole.azimuth_deg\[1\]: must be <= 360, got 400.0",
+        ),
+        (HOLE, FORCE + "toolface_deg = [90.0]\n", r"must hold one value per drilled_length, 2 in all, got \(90.0,\)"),
         (HOLE, FORCE + 'toolface_deg = 9\ntoolface_reference = "up"\n', r"must be gravity, north or frame, got 'up'"),
         (HOLE, FORCE + "toolface_deg = 9\ntoolface_reference = 1\n", r"rss.toolface_reference: .*got 1$"),
     ],
 )
 def test_wrong_azimuths_and_toolfaces_are_refused(write: Write, hole: str, rss: str, says: str) -> None:
+    path = write(hole, rss)
+    (path.parent / "survey.csv").write_text("measured_depth,inclination_deg\n0,10\n")
     with pytest.raises(InputError, match=says) as caught:
-        load_case(write(hole, rss))
+        load_case(path)
     assert "\n" not in str(caught.value)
 
 

@@ -147,7 +147,7 @@ def test_a_case_by_depth_is_the_same_case_by_drilled_length(by_depth: Text) -> N
         ("bit_depth = true", "", "hole.bit_depth: must be a valid number, got True"),
         ("bit_depth = [1]", "", "hole.bit_depth: must be a valid number, got [1]"),
         ("bit_depth = nan", "", "hole.bit_depth: must be a finite number, got nan"),
-        ("", "measured_depth = 1\nforce = [1]", "rss.measured_depth: must be a list, got 1"),
+        ("", "measured_depth = 1\nforce = [1]", "rss.measured_depth: must be a list, such as [1], got 1"),
         ("", 'measured_depth = [1, "x"]\nforce = [1, 2]', "rss.measured_depth[2]: must be a valid number, got 'x'"),
         ("", "measured_depth = [1]\nforce = [false]", "rss.force[1]: must be a valid number, got False"),
         ("", "measured_depth = [1, 1]\nforce = [1, 2]", "rss.measured_depth: must increase, got (1.0, 1.0)"),

@@ -2,6 +2,7 @@
 
 import itertools
 from dataclasses import replace
+from math import radians
 from pathlib import Path
 
 import numpy as np
@@ -63,6 +64,16 @@ def test_inputs_stand_in_a_file_by_depth_in_the_units_of_the_rig(
     assert case.schedule.interpolation == interpolation
     assert case.active_weight_on_bit == found["active_weight_on_bit"][0]
     assert files_named(tmp_path / SOURCE) == [tmp_path / "log.csv"]
+
+
+def test_inputs_in_a_file_may_be_called_as_in_a_case_file(tmp_path: Path) -> None:
+    by_name, by_key = tmp_path / "name.csv", tmp_path / "key.csv"
+    by_name.write_text(
+        "drilled_length,rss_force,rss_toolface_deg,bit_tilt_limit_deg,bit_walk_angle_deg\n0,8e3,90,1,2\n"
+    )
+    by_key.write_text("drilled_length,force_kN,toolface_deg,tilt_limit_deg,walk_angle_deg\n0,8,90,1,2\n")
+    assert read_inputs(by_key) == read_inputs(by_name)
+    assert read_inputs(by_key)[0] == Schedule((0.0,), (8e3,), rss_toolface=(radians(90),))
 
 
 @pytest.mark.parametrize("suffix", ["csv", "parquet"])
@@ -224,6 +235,12 @@ def test_what_is_wrong_with_steering_is_said(paper_text: str, rest: str, message
             text.replace("full_force = 2e4\n", "").replace(rest, "drilled_length=[0]\nduty=[1]\ntoolface_deg=[0]"),
             SOURCE,
         )
+
+
+def test_the_whole_weight_is_named_by_its_own_key_beside_a_schedule(paper_text: str) -> None:
+    text = with_tables(paper_text, "weight_on_bit = 1e3\n" + INLINE)
+    with pytest.raises(InputError, match=r"case.toml: drilling.weight_on_bit: must be >= 2000, got 1000.0"):
+        parse_case(text, SOURCE)
 
 
 def test_a_negative_force_and_one_of_another_kind_are_refused() -> None:

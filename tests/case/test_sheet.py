@@ -2,6 +2,7 @@
 
 import csv
 import io
+from collections.abc import Callable
 from functools import partial
 from math import radians
 from pathlib import Path
@@ -11,8 +12,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from boreprop.case.inputs import NAMES_OF_COLUMNS
 from boreprop.case.sheet import read_sheet
-from boreprop.case.tables import read_schedule, read_survey
+from boreprop.case.tables import read_inputs, read_schedule, read_survey
 from boreprop.core.survey import Survey
 from boreprop.errors import InputError
 
@@ -115,8 +117,44 @@ def test_other_units_are_converted(tmp_path: Path) -> None:
     schedule = read_schedule(file)
     assert schedule.drilled_length == pytest.approx((0.0, 30.48), rel=1e-15)
     assert schedule.rss_force == pytest.approx((4448.2216152605, 0.0), rel=1e-15)
+    file.write_text("drilled_length,force_klbf\n0,1\n")
+    assert read_schedule(file).rss_force == pytest.approx((4448.2216152605,), rel=1e-15)
     file.write_text("drilled_length,force_kN,force_lbf\n0,2.5,1000\n")
     assert read_schedule(file).rss_force == (2500.0,)
+
+
+@pytest.mark.parametrize(
+    ("read", "content", "heading"),
+    [
+        (read_inputs, "drilled_length,rss_force,active_weight_on_bit_kip\n0,1,2\n", "active_weight_on_bit_kip"),
+        (read_inputs, "drilled_length,rss_force,bit_tilt_limit_rad\n0,1,2\n", "bit_tilt_limit_rad"),
+        (read_schedule, "drilled_length,force,toolface\n0,1,2\n", "toolface"),
+        (read_survey, "measured_depth,inclination_deg,azimuth\n0,1,2\n", "azimuth"),
+    ],
+)
+def test_a_column_that_may_be_left_out_is_not_overlooked_for_its_unit(
+    tmp_path: Path, read: Callable[[Path], object], content: str, heading: str
+) -> None:
+    file = tmp_path / "table.csv"
+    file.write_text(content)
+    with pytest.raises(InputError, match=f"table.csv: must have the column .*, or none of it, got '{heading}'"):
+        read(file)
+
+
+@given(name=st.sampled_from(NAMES_OF_COLUMNS), end=st.from_regex(r"_[A-Za-z]{1,4}", fullmatch=True))
+@settings(max_examples=25)
+def test_an_input_with_any_ending_is_read_or_refused(name: str, end: str) -> None:
+    with TemporaryDirectory() as directory:
+        file = Path(directory, "table.csv")
+        file.write_text(f"drilled_length,rate_of_penetration,rss_force,{name}{end}\n0,1,1e3,1\n")
+        try:
+            _, inputs = read_inputs(file)
+        except InputError as error:
+            said = str(error)
+        else:
+            assert inputs is not None
+            said = f"read {[name for name, _ in inputs.inputs]} and rss_force, rss_toolface"
+    assert f"got '{name}{end}'" in said or name in said.partition("read ")[2]
 
 
 SURVEY = b"measured_depth,inclination_deg\n2500,26\n"

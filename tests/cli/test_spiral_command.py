@@ -8,6 +8,7 @@ from matplotlib.image import imread
 
 from boreprop.analysis.spiral.closed_form import spiral
 from boreprop.case.file import load_case
+from boreprop.report.tables.spiral import lines
 from conftest import Command, assert_refused
 from places import EXAMPLES
 
@@ -50,6 +51,11 @@ def test_a_case_without_a_spiral_has_none(command_here: Command, tmp_path: Path)
     document = json.loads(command_here("boreprop", "spiral", "stiff.toml", "--json").stdout)
     assert document["pitch"] is None
     assert document["edge"] is None
+    case = load_case(tmp_path / "stiff.toml")
+    [first, *others] = lines(case, spiral(case))
+    assert first == ("spiral", "none")
+    assert others
+    assert not any("none" in line for line in others)
 
 
 @pytest.mark.slow

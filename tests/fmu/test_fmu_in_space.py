@@ -12,6 +12,7 @@ from test_fmu_c_host import COMPILER
 
 from beams_as_built import with_points
 from boreprop.case.case import Case, InputSchedule, Schedule
+from boreprop.case.file import load_case
 from boreprop.core.quantities import INPUTS, OUTPUTS, scalar_names
 from boreprop.core.survey import Survey
 from boreprop.errors import InputError
@@ -19,10 +20,12 @@ from boreprop.run.results import read_trajectory
 from boreprop.run.simulate import simulate
 from boreprop_fmu.host.drive import FmuRun
 from boreprop_fmu.pack.build import build_fmu
+from boreprop_fmu.pack.documentation import assumptions, page
 from conftest import Command, Pack
 from flavours import NATIVE
 from fmu_host import Instance, instance
 from native_fmu import refused
+from places import EXAMPLES
 from scenarios import report
 
 pytestmark = pytest.mark.skipif(COMPILER is None, reason="no C compiler")
@@ -163,6 +166,24 @@ def test_a_survey_file_may_have_azimuths(one: Instance, tmp_path: Path) -> None:
     path.write_text("measured_depth,azimuth_deg,inclination_deg\n0,300,10\n40,361,10\n")
     with refused(one, f"{path}:3: azimuth_deg: must be between -360 and 360, got '361' (survey_file)"):
         one.initialize(survey_file=str(path))
+    one.slave.reset()
+    path.write_text("measured_depth,azimuth,inclination_deg\n0,300,10\n40,310,10\n")
+    with refused(
+        one, f"{path}: must have the column 'azimuth_deg' (degrees), or none of it, got 'azimuth' (survey_fil"
+    ):
+        one.initialize(survey_file=str(path))
+
+
+def test_its_page_says_of_the_case_what_holds_for_it(case: Case, steered: Case) -> None:
+    planar, space = (page(one, "Borehole", "native", {}) for one in (case, steered))
+    for text in ("a borehole in a vertical plane", "nothing holds the beam", "and the hole is planar"):
+        assert text in planar
+    assert "a borehole in space" in space
+    assert "planar" not in space
+    built = load_case(EXAMPLES / "pendulum.toml")
+    assert assumptions(replace(built, dimensions=3)) == (
+        "Friction and torque are left out, and the rock is the same in every direction."
+    )
 
 
 def test_a_python_fmu_of_a_case_in_space_names_the_native_runtime(steered: Case, tmp_path: Path) -> None:

@@ -79,6 +79,11 @@ def test_what_goes_wrong_is_one_kind_of_error() -> None:
             r"eta_pi: must be a list of at least one value, got \[\]",
         ),
         (lambda case: API.stability_chart(case, [0.1], [[1.0]]), "lambda2: must be a list of at least one value"),
+        (lambda case: API.walk_chart(case, 0.1), "walk_angle: must be a list of at least one value, got 0.1"),
+        (
+            lambda _: API.InputSchedule((0.0,), (("eta_pi", (0.1,)),)),
+            "inputs: must be some of rss_force, .*, got 'eta_pi'",
+        ),
         (lambda case: API.hysteresis(case, "eta_pi", [], 0.01), "values: must be at least one value of eta_pi"),
         (lambda case: API.critical_dogleg(case, side=0), "side: must be 1 or -1, got 0"),
         (lambda _: API.find_rippling([0.0, 1.0], [0.0]), r"inclination: .* got the shapes \(1,\) for \(2,\)"),

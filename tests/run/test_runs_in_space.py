@@ -193,7 +193,7 @@ def test_stations_of_a_level_turn(case: Case) -> None:
         "stabilizer_force[1]": zeros,
     }
     survey = Survey((0.0, 100.0), (pi / 2,) * 2, (0.0, 0.0))
-    run = Trajectory(columns, replace(case, survey=survey, dimensions=3))
+    run = Trajectory(columns, replace(case, survey=survey, dimensions=3, true_vertical_depth=2000.0))
     found = list_stations(run, 30.0, averaged_over=3.0)
     at = found.measured_depth - 100.0
     assert found.azimuth is not None
@@ -202,6 +202,7 @@ def test_stations_of_a_level_turn(case: Case) -> None:
     np.testing.assert_allclose(found.north, np.sin(rate * at) / rate, atol=1e-4)
     np.testing.assert_allclose(found.dogleg_severity[2:], rate, rtol=1e-4)
     np.testing.assert_allclose(found.inclination, pi / 2, atol=1e-9)
+    np.testing.assert_allclose(found.true_vertical_depth, 2000.0)  # level, at the depth of the bit at the start
 
 
 def test_a_survey_of_the_run_compares_by_its_inclination(turning: Trajectory) -> None:

@@ -32,7 +32,7 @@ def entries(tracks: Sequence[Track], planned: bool) -> list[Entry]:
         body = [("body on the wall", BODY)] if tracks[0].case.bha.body_point_positions else []
         own = [("RSS", RSS), *stabilizers, *body, ("dogleg severity", OLIVE)]
         if tracks[0].scales.space is not None:
-            own += [("size", GREY), ("walk rate, right, east", BLUE)]
+            own += [("magnitude", GREY), ("walk rate, right, east", BLUE)]
         return [("hole", HOLE), ("BHA, bit", BIT), *plan, *own]
     runs = [(shortened(track.name), track.colour or GREY) for track in tracks]
     numbers = [f"stabilizer {i}" for i in range(1, n)]

@@ -160,15 +160,17 @@ PLOTS_IN_SPACE = {
         "Build and walk rate, dogleg severity", ("build_rate", "walk_rate", "dogleg_severity"), (HOLE, BLUE, OLIVE)
     ),
     "distance_from_plan": Plot(
-        "Distance from the plan: size, high, right",
+        "Distance from the plan: magnitude, high, right",
         ("distance_from_plan", "distance_from_plan_high", "distance_from_plan_right"),
         (GREY, BIT, BLUE),
     ),
     "inclination_less_plan": PLOTS["inclination_less_plan"],
     "azimuth_less_plan": Plot("Azimuth less that of the plan", ("azimuth_less_plan",), (HOLE,)),
-    "bit_tilt": Plot("Bit tilt: size, high, right", ("bit_tilt", "bit_tilt_high", "bit_tilt_right"), (GREY, BIT, BLUE)),
+    "bit_tilt": Plot(
+        "Bit tilt: magnitude, high, right", ("bit_tilt", "bit_tilt_high", "bit_tilt_right"), (GREY, BIT, BLUE)
+    ),
     "bit_lateral_force": Plot(
-        "Bit side force: size, high, right",
+        "Bit side force: magnitude, high, right",
         ("bit_lateral_force", "bit_lateral_force_high", "bit_lateral_force_right"),
         (GREY, BIT, BLUE),
     ),

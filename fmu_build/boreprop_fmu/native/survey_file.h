@@ -36,7 +36,7 @@ static int is_blank(const char *field) { return field[strspn(field, " \t\v\f\r\n
 
 /* Positions of the columns in the header row, and how many values it has: 0 with `why` if a column is missing. */
 static int read_header(const char *path, char **from, int position[COLUMNS], char why[LINE]) {
-    char got[LINE / 4] = "", shown[SHOWN], *field;
+    char got[LINE / 4] = "", shown[SHOWN], other[SHOWN] = "", *field;
     int count = 0, more = **from != '\0';
     for (int i = 0; i < COLUMNS; i++) position[i] = -1;
     while (more) {
@@ -45,12 +45,17 @@ static int read_header(const char *path, char **from, int position[COLUMNS], cha
         for (size_t length = strlen(field); length && strchr(" \t", field[length - 1]);) field[--length] = '\0';
         for (int i = 0; i <= DIRECTIONS; i++)
             if (position[i] < 0 && !strcmp(field, COLUMN[i])) position[i] = count;
+        if (DIRECTIONS > 1 && !strncmp(field, "azimuth", 7)) quoted(field, other);
         if (strlen(got) + SHOWN < sizeof got) strcat(strcat(got, count ? ", " : ""), quoted(field, shown));
         count++;
     }
     for (int i = 0; i < REQUIRED; i++)
         if (position[i] < 0)
             return explain(why, "%s: must have a column '%s' (%s), got [%s]", path, COLUMN[i], PLAIN, got);
+    if (position[REQUIRED] < 0 && other[0])
+        return explain(
+            why, "%s: must have the column '%s' (degrees), or none of it, got %s", path, COLUMN[REQUIRED], other
+        );
     return count;
 }
 

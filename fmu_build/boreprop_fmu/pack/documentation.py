@@ -53,7 +53,8 @@ needed. On Linux, a host that is not Python itself must preload libpython. All t
     "native": {
         "inputs": """ A derivative of an input (fmi2SetRealInputDerivatives, first order) acts over the next step that
 is completed; a discarded step does not use it up. After that step the input keeps the value that it has reached. Over
-the step the rate of penetration is linear in time, force and active weight on bit are linear in the drilled length.
+the step the rate of penetration is linear in time, force, active weight on bit, and bit and rock are linear in the
+drilled length; the other inputs are held.
 fmi2GetDirectionalDerivative gives the change of any Real output with any input, as long as contacts and tilt saturation
 stay as they are. fmi2GetRealOutputDerivatives, first order, gives the change in time of the outputs that cannot jump:
 drilled_length, bit_inclination, average_inclination, displacement and true_vertical_depth.""",
@@ -71,6 +72,11 @@ ${identifier}_fmi2DoStep.""",
         "limits": "",
     },
 }
+IN_SPACE = """ In space θ, Θ, ψ, F and δ have two components across the bit, a disc takes the place of each pair of
+walls and limits, and the lateral law is F_0 = ηΠ e<sup>iϖ</sup> ψ with the walk angle ϖ of the bit. Names that end in
+_high and _right are parts to the high side and to the right of it, the names without these ends are magnitudes."""
+FREE_BODY = """Between bit, pads and stabilizers nothing holds the beam: a BHA whose body lies on the wall, such as a
+pendulum assembly with long collars, is not described. A published one drops 6.0 °/30 m here for 2.9 °/30 m. """
 LEFT_OUT = {  # docs/limits.md, whose numbers are tested
     "active weight on bit 30 kN": "+23 %",
     "active weight on bit 90 kN": "−18 %",
@@ -148,6 +154,9 @@ def page(case: Case, identifier: str, runtime: str, start: Mapping[str, float | 
     outside = f" Of this case, drilled on steadily: {warning}." if warning else ""
     left_out = "\n".join(f"<tr><td>{what}</td><td>{change}</td></tr>" for what, change in LEFT_OUT.items())
     own = {
+        "where": "in space" if case.in_space else "in a vertical plane",
+        "directions": IN_SPACE if case.in_space else "",
+        "assumptions": assumptions(case),
         "left_out": left_out,
         "case": facts,
         "identifier": identifier,
@@ -156,6 +165,20 @@ def page(case: Case, identifier: str, runtime: str, start: Mapping[str, float | 
     }
     texts = {name: Template(text).substitute(own) for name, text in TEXTS[runtime].items()}
     return frame.substitute(own, **texts)
+
+
+def assumptions(case: Case) -> str:
+    """What the model leaves out of a case, in sentences."""
+    bha = case.bha
+    held = [
+        "friction and torque are left out",
+        "the rock is the same in every direction",
+        *["the axial load does not change the stiffness of the beam"] * (not bha.axial_load),
+        *["the beam is the same all along"] * (not bha.section_lengths),
+        *["the hole is planar"] * (not case.in_space),
+    ]
+    text = f"{', '.join(held[:-1])}, and {held[-1]}."
+    return FREE_BODY * (not bha.body_point_positions) + text[0].upper() + text[1:]
 
 
 def _line(quantity: Quantity, names: list[str], start: Mapping[str, float | str]) -> str:

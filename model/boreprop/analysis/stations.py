@@ -38,8 +38,10 @@ class Stations:
         Measured depth, m.
     inclination
         Mean inclination, rad.
-    true_vertical_depth, displacement
-        Vertical and horizontal distance from the bit at the start of the run, m.
+    true_vertical_depth
+        True vertical depth, m, which counts from the bit at the start of the run unless its case gives the depth there.
+    displacement
+        Horizontal distance from the bit at the start of the run, m.
     dogleg_severity
         Magnitude of the curvature since the station before, rad/m, at least over the averaging length; in space the
         angle between the directions there, as in the method of minimum curvature, over the length.
@@ -110,7 +112,7 @@ def list_stations(
         averaging_length=over,
         measured_depth=depth,
         inclination=inclination,
-        true_vertical_depth=position[:, 1],
+        true_vertical_depth=case.true_vertical_depth + position[:, 1],
         displacement=position[:, 0],
         dogleg_severity=np.abs(turn) / (length - before),
         deviation=None if plan is None else off_plan(plan, hole, length, over),
@@ -126,13 +128,14 @@ def _in_space(
     before: Floats,
 ) -> Stations:
     """A run in space at stations, with the lengths from which the dogleg severity of each is taken."""
-    hole = hole_in_space(run, case_of(run).survey, 2 * over)
+    case = case_of(run)
+    hole = hole_in_space(run, case.survey, 2 * over)
     position, direction = hole.at(length), chord_direction(hole, length, over)
     return Stations(
         averaging_length=over,
         measured_depth=depth,
         inclination=inclination_of(direction),
-        true_vertical_depth=position[:, 2],
+        true_vertical_depth=case.true_vertical_depth + position[:, 2],
         displacement=np.hypot(position[:, 0], position[:, 1]),
         dogleg_severity=angle_between(chord_direction(hole, before, over), direction) / (length - before),
         deviation=None if plan is None else off_plan(plan, hole, length, over),

@@ -9,10 +9,12 @@ from typing import Any, NamedTuple
 
 from ..core.checks import check_increasing, check_number, check_part, check_value, checked_float
 from ..core.errors import ParameterError
-from ..core.quantities import TOOLFACE_REFERENCES, quantity_of
+from ..core.quantities import CLEARANCES, INPUTS, TOOLFACE_REFERENCES, quantity_of
 
 CLOSE = 0.005  # m: depths are given to the centimetre, so a first entry this little beyond the bit is at it
 INTERPOLATIONS = ("held", "linear")
+NAMES_OF_COLUMNS = (*(quantity.name for quantity in INPUTS), *CLEARANCES)
+"""What a schedule may give: inputs, and clearances."""
 RATE = "rate_of_penetration"
 UP_OR_DOWN = 1e-12  # sine of a toolface: degrees in radians are not exact
 
@@ -166,8 +168,9 @@ class InputSchedule:
     Raises
     ------
     ParameterError
-        If a value is out of range, the lengths do not start at 0 or do not increase, the shapes differ, there is no
-        such interpolation, or a rate of penetration is 0, with which no next entry would be reached.
+        If a name is of no input, a value is out of range, the lengths do not start at 0 or do not increase, the shapes
+        differ, there is no such interpolation, or a rate of penetration is 0, with which no next entry would be
+        reached.
 
     Examples
     --------
@@ -186,6 +189,8 @@ class InputSchedule:
     def __post_init__(self) -> None:
         _check_entries(self.drilled_length, dict(self.inputs), self.interpolation)
         for name, values in self.inputs:
+            if name not in NAMES_OF_COLUMNS:
+                raise ParameterError("inputs", f"must be some of {', '.join(NAMES_OF_COLUMNS)}", name)
             for index, value in enumerate(values, 1):
                 check_value(name, value, index)
             if name == RATE:

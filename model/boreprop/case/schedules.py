@@ -5,8 +5,8 @@ from math import radians
 
 from ..core.checks import check_number, check_quantity
 from ..core.errors import ParameterError
-from ..core.quantities import CLEARANCES, INPUTS, TOOLFACE_REFERENCES
-from .inputs import InputSchedule, Schedule, from_bit, signed
+from ..core.quantities import TOOLFACE_REFERENCES
+from .inputs import NAMES_OF_COLUMNS, InputSchedule, Schedule, from_bit, signed
 
 Column = tuple[float, ...]
 Columns = Mapping[str, Column]
@@ -16,9 +16,6 @@ LENGTHS = ("drilled_length", "measured_depth")
 
 SIDES = ("rss_toolface", "toolface_reference")
 """The columns that say to which side the force pushes; the second one by number, as the input of that name."""
-
-NAMES_OF_COLUMNS = (*(quantity.name for quantity in INPUTS), *CLEARANCES)
-"""What the other columns may give: inputs, and clearances."""
 
 
 def force_schedule(

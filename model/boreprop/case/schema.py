@@ -24,9 +24,9 @@ from ..core.survey import Survey
 from ..errors import InputError, shown
 from .body import place_points
 from .case import Case
-from .formations import lift_formations, lift_wear
-from .inputs import CLOSE, INTERPOLATIONS, InputSchedule, Schedule
-from .schedules import LENGTHS, NAMES_OF_COLUMNS, force_schedule, input_schedule
+from .formations import file_degrees, lift_formations, lift_wear
+from .inputs import CLOSE, INTERPOLATIONS, NAMES_OF_COLUMNS, InputSchedule, Schedule
+from .schedules import LENGTHS, force_schedule, input_schedule
 from .sections import lift_sections
 from .sensors import lift_sensors
 from .tables import BY_KEY, read_inputs, read_schedule, read_survey
@@ -144,7 +144,9 @@ def _with_inputs(case: Case, document: Document, bit_depth: float, source: Path)
         _check_start(document, name, dict(inputs.inputs).get(name, ()) if inputs else (), source)
     _check_first_clearances(case, inputs, source)
     with _naming(where, source):
-        return replace(case, inputs=inputs)
+        scheduled = replace(case, weight_on_bit=0.0, inputs=inputs)
+    with _naming("drilling", source):
+        return replace(scheduled, weight_on_bit=case.weight_on_bit)
 
 
 def _check_start(document: Document, name: str, scheduled: tuple[float, ...], source: Path) -> None:
@@ -157,7 +159,7 @@ def _check_start(document: Document, name: str, scheduled: tuple[float, ...], so
     if written is None or not scheduled:
         return
     if (_radians(written) if key.endswith("_deg") else written) != scheduled[0]:
-        start = degrees(scheduled[0]) if key.endswith("_deg") else scheduled[0]
+        start = file_degrees(scheduled[0]) if key.endswith("_deg") else scheduled[0]
         constraint = f"must be left out, or {start!r} as drilling.schedule has it at the start"
         raise InputError(f"{source}: {key}: {constraint}, got {shown(written)}")
 
@@ -193,8 +195,9 @@ def _case(document: Document, source: Path) -> Case:
 
 
 def repeat_angles(document: Document) -> None:
-    """Let an azimuth or a toolface that is one number stand for a column of it."""
-    for where, along in (("hole.azimuth_deg", ("measured_depth",)), ("rss.toolface_deg", LENGTHS)):
+    """Let an angle that is one number stand for a column of it."""
+    hole = ("measured_depth",)
+    for where, along in (("hole.inclination_deg", hole), ("hole.azimuth_deg", hole), ("rss.toolface_deg", LENGTHS)):
         name, _, key = where.partition(".")
         table = document.get(name, {})
         columns = [table[other] for other in along if isinstance(table.get(other), list)]
@@ -244,7 +247,11 @@ def _naming(table: str, source: Path) -> Iterator[None]:
         quantity = quantity_of(error.name)
         key = quantity.key.rpartition(".")[2] if table != "drilling.schedule" else quantity.name
         where = f"{table}.{key}{error.name.removeprefix(quantity.name)}"
-        raise InputError(f"{source}: {where}: {error.constraint}, got {shown(error.value)}") from error
+        constraint, value = error.constraint, error.value
+        if key.endswith("_deg") and isinstance(value, (float, tuple)):
+            value = tuple(map(file_degrees, value)) if isinstance(value, tuple) else file_degrees(value)
+            constraint = _in_degrees(quantity, value) or constraint
+        raise InputError(f"{source}: {where}: {constraint}, got {shown(value)}") from error
 
 
 def _no_toml(error: tomllib.TOMLDecodeError, text: str) -> str:
@@ -355,8 +362,9 @@ def _message(error: ErrorDetails, document: Document) -> str:
 def _wrong_type(error: ErrorDetails, where: str, index: int | None, document: Document) -> str:
     """The message for a value, or for the one with an index in a list, that is of another type."""
     where += f"[{index}]" if index else ""
-    constraint = "must be a list" if error["type"] == "tuple_type" else error["msg"].replace("Input should", "must")
-    return f"{where}: {constraint}, got {shown(_written(document, where))}"
+    value = shown(_written(document, where))
+    constraint = f"must be a list, such as [{value}]" if error["type"] == "tuple_type" else error["msg"]
+    return f"{where}: {constraint.replace('Input should', 'must')}, got {value}"
 
 
 def _out_of_range(error: ParameterError, document: Document) -> str:
@@ -365,6 +373,8 @@ def _out_of_range(error: ParameterError, document: Document) -> str:
     if quantity.key.endswith("_deg"):
         value = _written(document, where)
         constraint = _in_degrees(quantity, value) or constraint
+    if quantity.key.startswith("sensor."):  # sensor.position[1] stands under [[sensor]]
+        where = re.sub(r"^sensor(\..+)(\[\d+\])$", r"sensor\2\1", where)
     return f"{where}: {constraint}, got {shown(value)}"
 
 

@@ -7,18 +7,18 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..core.errors import ParameterError
-from ..core.quantities import QUANTITIES, quantity_of
+from ..core.quantities import CLEARANCES, QUANTITIES, quantity_of
 from ..core.survey import Survey
 from ..errors import InputError, shown
-from .inputs import InputSchedule, Schedule
-from .schedules import LENGTHS, NAMES_OF_COLUMNS, force_schedule, input_schedule
+from .inputs import NAMES_OF_COLUMNS, InputSchedule, Schedule
+from .schedules import LENGTHS, force_schedule, input_schedule
 from .sheet import Sheet, read_sheet
 
 BY_KEY = {quantity.key: quantity for quantity in QUANTITIES if quantity.key}
 
 OTHER_UNITS = {
     "m": {"ft": 0.3048},
-    "N": {"kN": 1e3, "lbf": 4.4482216152605},
+    "N": {"kN": 1e3, "lbf": 4.4482216152605, "klbf": 4448.2216152605},
     "m/s": {"m_h": 1 / 3600, "ft_h": 0.3048 / 3600},
     "rad": {"deg": pi / 180},
 }
@@ -71,8 +71,8 @@ def read_schedule(
 ) -> Schedule:
     """Read a force schedule: a CSV file with the columns drilled_length or measured_depth (m), and force (N).
 
-    They may also be drilled_length_ft or measured_depth_ft, and force_kN or force_lbf. A column toolface_deg (degrees)
-    says to which side the force pushes.
+    They may also be drilled_length_ft or measured_depth_ft, and force_kN, force_lbf or force_klbf. A column
+    toolface_deg (degrees) says to which side the force pushes.
 
     Parameters
     ----------
@@ -106,7 +106,8 @@ def read_inputs(
     """Read a schedule of inputs: a CSV file with the columns drilled_length or measured_depth (m), and names of inputs.
 
     These are in SI units; a force may also be rss_force_kN, active_weight_on_bit_lbf, …, and the rate of penetration
-    rate_of_penetration_m_h or rate_of_penetration_ft_h. The steering force may be called force, as in `read_schedule`.
+    rate_of_penetration_m_h or rate_of_penetration_ft_h. An input may also be called as in a case file: force,
+    toolface_deg, tilt_limit_deg, ….
 
     Returns
     -------
@@ -117,10 +118,7 @@ def read_inputs(
     InputError
         As `read_schedule`, and if no input is there.
     """
-    inputs = [_spellings(name, quantity_of(name).unit) for name in NAMES_OF_COLUMNS]
-    force = {heading: of._replace(name="rss_force") for heading, of in _group("rss", "force").items()}
-    inputs = [group | force if "rss_force" in group else group for group in inputs]
-    columns = _read_columns(path, [_group("rss", *LENGTHS)], inputs)
+    columns = _read_columns(path, [_group("rss", *LENGTHS)], [_input(name) for name in NAMES_OF_COLUMNS])
     with naming(path):
         return input_schedule(columns, bit_depth, interpolation)
 
@@ -143,10 +141,12 @@ def _read_columns(
     """
     everything = [heading for group in [*groups, *(some_of or []), *if_there] for heading in group]
     sheet = read_sheet(path, everything.__contains__)
-    more = [group for group in some_of or [] if any(heading in sheet.headings for heading in group)]
+    more = [group for group in [*(some_of or []), *if_there] if any(heading in sheet.headings for heading in group)]
+    for group in [*(some_of or []), *if_there]:
+        if group not in more:
+            _check_no_other_unit(sheet, group)
     if some_of and not more:
         raise sheet.missing(*(repr(next(iter(group))) for group in some_of))
-    more += [group for group in if_there if any(heading in sheet.headings for heading in group)]
     found = {heading: group[heading] for group in [*groups, *more] for heading in [_heading(sheet, group)]}
     numbers = sheet.numbers(list(found))
     for heading, column in zip(found, numbers, strict=True):
@@ -175,10 +175,32 @@ def _heading(sheet: Sheet, spellings: Group) -> str:
     return there[0]
 
 
+def _check_no_other_unit(sheet: Sheet, spellings: Group) -> None:
+    """Raise `InputError` if a column that the file lacks stands there with another ending: it would pass unread."""
+    ours = next(iter(spellings))
+    name = ours.removesuffix("_deg")
+    for heading in sheet.headings:
+        if heading == name or heading.startswith(f"{name}_"):
+            known = " or ".join(f"{spelling!r} ({of.unit})" for spelling, of in spellings.items())
+            raise InputError(f"{sheet.path}: must have the column {known}, or none of it, got {heading!r}")
+
+
 def _group(table: str, *names: str) -> Group:
     """The headings under which one of some columns of a table of a case file is found."""
     units = {key: "degrees" if key.endswith("_deg") else BY_KEY[f"{table}.{key}"].unit for key in names}
     return {heading: of for name, unit in units.items() for heading, of in _spellings(name, unit).items()}
+
+
+def _input(name: str) -> Group:
+    """The headings under which an input is found: by its name, or by its key in a case file."""
+    quantity = quantity_of(name)
+    named = _spellings(name, quantity.unit)
+    key = quantity.key.rpartition(".")[2]
+    if name in CLEARANCES or not key:
+        return named
+    if key.endswith("_deg"):
+        return named | {key: named[f"{name}_deg"]}
+    return named | {heading: of._replace(name=name) for heading, of in _spellings(key, quantity.unit).items()}
 
 
 def _spellings(name: str, unit: str) -> Group:

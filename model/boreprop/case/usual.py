@@ -20,6 +20,8 @@ USUAL = {  # key of the case file → from, to, unit there
     "drilling.active_weight_on_bit": (300.0, 5e5, "N"),
     # The pads of rotary steerable tools press with a few kN to some tens of kN.
     "rss.force": (100.0, 1e5, "N"),
+    # A whole turn to either side.
+    "rss.toolface_deg": (-360.0, 360.0, "°"),
     # From the paper's softest rock over stiff near-bit assemblies to its hardest over slender ones, and a decade more.
     "ηΠ": (1e-5, 100.0, ""),
 }
@@ -42,6 +44,7 @@ def unusual(case: Case) -> list[str]:
         "bit.tilt_limit_deg": [degrees(case.bit.tilt_limit)],
         "drilling.active_weight_on_bit": profiles["active_weight_on_bit"].values,
         "rss.force": [max(map(abs, profiles["rss_force"].values))],
+        "rss.toolface_deg": list(map(degrees, case.schedule.rss_toolface)),
         "ηΠ": [case.eta_pi],
     }
     found = [
@@ -53,4 +56,8 @@ def unusual(case: Case) -> list[str]:
     if depth[-1] - depth[0] < reach * (1 - 1e-9):
         shorter = f"spans {depth[-1] - depth[0]:g} m, less than the {reach:g} m of the BHA"
         found.append(f"hole.measured_depth: {shorter}: the hole is extended straight above its first station")
+    first = min((formation.depth for formation in case.formations), default=0.0) if case.in_layers else 0.0
+    if case.true_vertical_depth == 0.0 and first > case.length:
+        deep = f"{first:g} m is deeper than a bit that starts at 0 m gets in {case.length:g} m"
+        found.append(f"formation.true_vertical_depth: {deep}: give hole.true_vertical_depth, that of the bit")
     return found

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from ...arrays import Floats
 from ...case.case import Case
 from ...core.checks import check_increasing, check_quantity
+from ...core.errors import ParameterError
 from .closed_form import Search, solving
 
 
@@ -54,7 +55,7 @@ def walk_chart(case: Case, walk_angle: ArrayLike, progress: Callable[[float], No
     Raises
     ------
     ParameterError
-        If the angles do not increase or are out of range, or as by `spiral`.
+        If there is no angle, they do not increase or are out of range, or as by `spiral`.
     SpiralNotFound
         If the equations could not be solved.
 
@@ -66,6 +67,8 @@ def walk_chart(case: Case, walk_angle: ArrayLike, progress: Callable[[float], No
     array([0.118, 0.18 ])
     """
     angles = np.asarray(walk_angle, float)
+    if angles.ndim != 1 or not angles.size:
+        raise ParameterError("walk_angle", "must be a list of at least one value", walk_angle)
     check_increasing("bit_walk_angle", tuple(angles.tolist()))
     check_quantity("bit_walk_angle", tuple(angles.tolist()))
     limits, ends = [], []

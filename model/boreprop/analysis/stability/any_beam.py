@@ -72,7 +72,7 @@ class AnyBeam:
             raise ParameterError(
                 "bha.body_contact",
                 "must be left out for roots, stability and spiral, which have no body on the wall; simulate shows it",
-                len(bha.body_point_positions),
+                True,
             )
         n, l1 = len(bha.stabilizer_positions), bha.length_scale
         held = replace(bha, stabilizer_clearances=(0.0,) * (n - 1), end_deflection=0.0)

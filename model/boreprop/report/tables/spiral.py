@@ -31,9 +31,11 @@ def caption(case: Case) -> str | None:
 
 
 def lines(case: Case, *found: Spiral) -> list[tuple[str, ...]]:
-    """The lines of a table with a column for each spiral."""
+    """The lines of a table with a column for each spiral; those of which there is nothing to say are left out."""
     columns = [_column(case, one) for one in found]
-    return [(what, *(column[what] for column in columns)) for what in columns[0]]
+    listed = [(what, *(column[what] for column in columns)) for what in columns[0]]
+    none = [] if any(one.exists for one in found) else [("spiral", *(NONE for _ in found))]
+    return none + [line for line in listed if set(line[1:]) != {NONE}]
 
 
 def ripple_line(case: Case, found: TransverseGrowth) -> str:

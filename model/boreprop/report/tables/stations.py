@@ -62,11 +62,10 @@ def caption(stations: Stations) -> str:
     """What the columns of `lines` mean."""
     over = UNITS["m"].text(stations.averaging_length, ".3g")
     in_plane = stations.azimuth is None
-    where = "TVD, displ.: vertical and horizontal" if in_plane else "TVD, north, east:"
-    if not in_plane and stations.deviation is not None:
-        where = "TVD: vertical"
+    across = "Displ.: horizontal distance" if in_plane else "North, east: distance"
+    where = f"{across} from the bit at the start. " if in_plane or stations.deviation is None else ""
     text = (
-        f"MD: measured depth. {where} distance from the bit at the start. "
+        f"MD: measured depth. TVD: true vertical depth, 0 at the start unless the case gives it. {where}"
         f"Inclinations{'' if in_plane else ' and azimuths'}: means over the last {over} of hole. "
         f"DLS: dogleg severity since the station before, at least over {over}."
     )
