@@ -43,17 +43,15 @@ os.environ.pop("SOURCE_DATE_EPOCH", None)  # and what an FMU says of its date
 os.environ["OPENBLAS_NUM_THREADS"] = "1"  # of the workers, each of which has a core: further threads would only wait
 
 
-# what commands are slow to import
-OF_COMMANDS = ("boreprop_fmu.cli", "boreprop_viz.view", "fmpy.simulation", "scipy.optimize", "scipy.spatial")
-
-
 Command = Callable[..., subprocess.CompletedProcess[str]]
 Pack = Callable[[Case, Flavour], Path]
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--wheels", metavar="FOLDER", help="check what build_wheels.py has made there (tests/wheels)")
-    parser.addoption("--own-compiler", action="store_true", help="native FMUs by this machine's compiler with $CFLAGS")
+    parser.addoption(
+        "--own-compiler", action="store_true", help="native FMUs in the plane by this machine's own compiler"
+    )
 
 
 @pytest.fixture(scope="session")
@@ -109,8 +107,7 @@ def binaries(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
         pytest.skip("no FMU has a binary for this machine")
     if request.config.getoption("--own-compiler"):
         folder = tmp_path_factory.mktemp("binaries")
-        for in_space in LAWS:
-            compile_binary(binary_path(host, folder, in_space), None, in_space)
+        compile_binary(binary_path(host, folder), None)
         return folder
     if not all(is_compiled(host, in_space=in_space) for in_space in LAWS):
         try:
@@ -159,7 +156,7 @@ def command(tmp_path: Path) -> Command:
     def run(name: str, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
         program = shutil.which(name, path=sysconfig.get_path("scripts"))
         assert program, f"{name} is not installed"
-        return run_script([program, *arguments], OF_COMMANDS, tmp_path)
+        return run_script([program, *arguments], cwd=tmp_path)
 
     return run
 

@@ -13,6 +13,7 @@ import sys
 import time
 from pathlib import Path
 
+import dask
 import pyarrow.parquet
 from distributed import Client, LocalCluster
 
@@ -26,6 +27,7 @@ def main() -> None:
     """Run the study."""
     case, output, cases = sys.argv[1:]
     with (
+        dask.config.set({"distributed.worker.multiprocessing-method": "forkserver"}),  # it is quicker to begin workers
         LocalCluster(2, threads_per_worker=1, host="127.0.0.1", dashboard_address=None) as cluster,  # type: ignore[no-untyped-call]
         Client(cluster) as client,  # type: ignore[no-untyped-call]
     ):

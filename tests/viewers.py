@@ -7,10 +7,9 @@ import os
 import random
 import socket
 import subprocess
-import sys
 import time
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from textwrap import dedent
@@ -26,10 +25,10 @@ from boreprop_viz import feeder
 from boreprop_viz.feeder import PROGRAM
 from boreprop_viz.picture import SOFTWARE_DRIVERS
 from boreprop_viz.ports import LOOPBACK, bound
+from forking import Process, start
 from places import TESTS
 
 T = TypeVar("T")
-Process = subprocess.Popen[bytes]
 
 ROWS = 1000  # in a batch
 signals = pytest.mark.skipif(os.name != "posix", reason="no such signals")
@@ -100,7 +99,7 @@ def own_port() -> int:
 @contextmanager
 def rerun(
     *options: str | Path, env: dict[str, str] | None = None, port: int | None = None
-) -> Iterator[tuple[Process, str]]:
+) -> Iterator[tuple[subprocess.Popen[bytes], str]]:
     """Run a viewer that is there already, at a port or any; yields its process and its address."""
     port = port or own_port()
     where = ["--bind", LOOPBACK, "--port", str(port)]
@@ -131,18 +130,11 @@ def children_from_now_on() -> Callable[[], list[psutil.Process]]:
     return lambda: [process for process in psutil.Process().children(recursive=True) if process not in others]
 
 
-def script(body: str, env: dict[str, str] | None = None) -> Process:
+def script(body: str, env: Mapping[str, str] = os.environ) -> Process:
     """Start another Python, in a process group of its own as from a terminal, that has `send` and `open_recording`."""
     top = f"import sys\nsys.path.append({str(TESTS)!r})\n"
     top += "from boreprop_viz.sinks import open_recording\nfrom viewers import send\n"
-    return subprocess.Popen(
-        [sys.executable, "-c", top + dedent(body)],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        start_new_session=True,
-        env=env,
-    )
+    return start(["-c", top + dedent(body)], env=env)
 
 
 def boreprop_view(*arguments: str | Path, before: str = "", folder: Path) -> Process:

@@ -22,7 +22,7 @@ def rippling_at(fate: str, lengths: tuple[float, ...]) -> Counter[float]:
     """How many of the BHAs of a fate are said to ripple after each length."""
     said: Counter[float] = Counter()
     for entry in NEAR_BIT[fate]:
-        run = simulate(near_bit_case(entry), engine="native")
+        run = simulate(near_bit_case(entry), sample_interval=0.3, engine="native")
         said.update(length for length in lengths if last_wave(up_to(run, length)).ripples)
     return said
 

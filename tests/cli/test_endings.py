@@ -14,6 +14,7 @@ from boreprop.case.case import Case
 from boreprop.kernel.compiler import FOLDER
 from boreprop_fmu.pack.build import build_fmu
 from flavours import Flavour, both_flavours
+from forking import start
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="no such signals")
 ENDS = pytest.mark.parametrize(
@@ -25,27 +26,21 @@ def end(folder: Path, name: str, begun: Callable[[], object], *arguments: str | 
     """Start Python code with arguments, and send it a signal once it has begun. It is quiet; gives its exit status."""
     temporary = folder / "tmp"
     temporary.mkdir(exist_ok=True)
-    run = subprocess.Popen(
-        [sys.executable, "-c", *map(str, arguments)],
-        cwd=folder,
-        stderr=subprocess.PIPE,
-        env={**os.environ, "TMPDIR": str(temporary)},
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
-    )
+    run = start(["-c", *arguments], cwd=folder, env={**os.environ, "TMPDIR": str(temporary)})
     while not begun():
         assert run.poll() is None
         time.sleep(0.01)
     run.send_signal(getattr(signal, name))
-    _, errors = run.communicate(timeout=60)
+    _, errors = run.communicate()
     assert errors == b""
     assert not list(temporary.iterdir())
     temporary.rmdir()
-    return run.returncode
+    return run.wait()
 
 
 @ENDS
 def test_a_file_that_is_being_written(tmp_path: Path, paper_case: Path, name: str, status: int) -> None:
-    arguments = ["simulate", str(paper_case), "--output", "run.csv", "--length", "5000", "--sample-interval", "0.005"]
+    arguments = ["simulate", str(paper_case), "--output", "run.csv", "--length", "1000", "--sample-interval", "0.005"]
     begun = lambda: list(tmp_path.glob(".*.run.csv"))  # noqa: E731
     assert end(tmp_path, name, begun, "from boreprop.cli.app import main; main()", *arguments) == status
     assert not list(tmp_path.iterdir())

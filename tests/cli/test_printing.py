@@ -2,7 +2,6 @@
 
 import io
 import os
-import subprocess
 import sys
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from boreprop.cli.printing import print_table
 from boreprop.cli.signs import PLAIN, written
 from boreprop.run.results import write_trajectory
 from boreprop.run.simulate import simulate
+from forking import start
 from places import ROOT
 
 CASE = ROOT / "examples/build_section.toml"
@@ -62,14 +62,10 @@ def run_all(folder: Path, commands: list[tuple[str, list[str]]], encoding: str, 
     """What each command prints to a pipe of an encoding, saying nothing else; one process runs them, one by one."""
     files = {"CASE": str(CASE), "RUN": str(folder / "RUN.csv")}
     given = [(module, [files.get(argument, argument) for argument in arguments]) for module, arguments in commands]
-    done = subprocess.run(
-        [sys.executable, "-c", ALL.format(commands=given)],
-        capture_output=True,
-        env=os.environ | {"PYTHONIOENCODING": encoding, "COLUMNS": columns},
-        timeout=120,
-    )
-    assert (done.returncode, done.stderr) == (0, b"")
-    return done.stdout.decode(encoding).replace("\r\n", "\n").split("=== next ===\n")[:-1]
+    run = start(["-c", ALL.format(commands=given)], env=os.environ | {"PYTHONIOENCODING": encoding, "COLUMNS": columns})
+    printed, said = run.communicate()
+    assert (run.wait(), said) == (0, b"")
+    return printed.decode(encoding).replace("\r\n", "\n").split("=== next ===\n")[:-1]
 
 
 @pytest.fixture(scope="module")

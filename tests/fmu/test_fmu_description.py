@@ -25,6 +25,7 @@ from boreprop.core.quantities import INPUTS, OUTPUTS, RELATIVE_TOLERANCE, VARIAB
 from boreprop.core.system import BottomHoleAssembly
 from boreprop.errors import InputError
 from flavours import PYTHON, Flavour, both_flavours, build_to_read
+from forking import run_script
 from places import ROOT
 
 SCHEMA = Path(fmpy.__file__).parent / "schema" / "fmi2" / "fmi2ModelDescription.xsd"
@@ -293,9 +294,7 @@ def test_the_documentation_says_where_the_flavour_falls_short_of_the_standard(
 @both_flavours
 def test_the_example_of_the_documentation_runs(flavour: Flavour, fmu: Path, page: Page, tmp_path: Path) -> None:
     (tmp_path / "Borehole.fmu").write_bytes(fmu.read_bytes())
-    done = subprocess.run(
-        [sys.executable, "-c", page.preformatted[1]], cwd=tmp_path, capture_output=True, text=True, timeout=60
-    )
+    done = run_script(["-c", page.preformatted[1]], cwd=tmp_path)
     # pythonfmu 0.7.0 reads freed memory when the process ends, and where that lies badly glibc aborts it
     at_the_end = flavour == PYTHON and "corrupted double-linked list" in done.stderr
     assert done.returncode == 0 or at_the_end, done.stderr

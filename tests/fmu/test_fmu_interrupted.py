@@ -2,8 +2,6 @@
 
 import os
 import signal
-import subprocess
-import sys
 import zipfile
 from pathlib import Path
 
@@ -11,6 +9,7 @@ import pytest
 
 from boreprop.case.case import Case
 from boreprop_fmu.pack.build import build_fmu
+from forking import run_script
 
 SCRIPT = """
 import os, signal, sys
@@ -35,13 +34,13 @@ except KeyboardInterrupt:
 @pytest.mark.skipif(os.name != "posix", reason="no such signals")
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
 def test_a_signal_that_is_handled_comes_after_the_call(name: str) -> None:
-    done = subprocess.run([sys.executable, "-c", SCRIPT, name, "handled"], capture_output=True, text=True, timeout=60)
+    done = run_script(["-c", SCRIPT, name, "handled"])
     assert (done.stdout, done.returncode) == ("the call ends\nthen it came\n", 0)
 
 
 @pytest.mark.skipif(os.name != "posix", reason="no such signals")
 def test_a_signal_that_nobody_handles_ends_the_process_at_once() -> None:
-    done = subprocess.run([sys.executable, "-c", SCRIPT, "SIGTERM", "not"], capture_output=True, text=True, timeout=60)
+    done = run_script(["-c", SCRIPT, "SIGTERM", "not"])
     assert (done.stdout, done.returncode) == ("", -signal.SIGTERM)
 
 
@@ -69,8 +68,6 @@ def test_a_signal_while_an_fmu_begins_or_ends_is_no_error_of_the_fmu(case: Case,
                 text += SIGNALLING.format(method=method).encode()
             changed.writestr(name, text)
     arguments = ["run", str(signalling), "--output", "run.csv", "--stop", "1"]
-    done = subprocess.run(
-        [sys.executable, "-c", RUN, *arguments], cwd=tmp_path, capture_output=True, text=True, timeout=60
-    )
+    done = run_script(["-c", RUN, *arguments], cwd=tmp_path)
     assert (done.returncode, done.stderr) == (-signal.SIGTERM, "")
     assert not (tmp_path / "run.csv").exists()

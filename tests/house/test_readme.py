@@ -2,7 +2,6 @@
 
 import re
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
@@ -10,6 +9,7 @@ import pytest
 import typer
 
 from conftest import Command
+from forking import run_script
 from places import EXAMPLES, ROOT
 
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -37,12 +37,7 @@ def test_what_it_shows_works_in_order(
         without_a_screen = ["--save", "run.rrd"] if command[0] == "boreprop-view" else []
         assert command_here(*command, *without_a_screen).returncode == 0, command
     assert len(PYTHON) == 2
-    printed = [
-        subprocess.run(
-            [sys.executable, "-c", lines], cwd=tmp_path, capture_output=True, text=True, check=True, timeout=100
-        ).stdout
-        for lines in PYTHON
-    ]
+    printed = [run_script(["-c", lines], cwd=tmp_path).stdout for lines in PYTHON]
     assert printed[0].splitlines()[-1] == "True"
     assert float(printed[1]) != 0.0
 

@@ -20,9 +20,9 @@ from boreprop.run.simulate import simulate
 from boreprop_fmu.pack.build import build_fmu
 from boreprop_viz import feeder
 from boreprop_viz.sinks import open_recording
+from forking import Process
 from viewers import (
     ROWS,
-    Process,
     boreprop_view,
     children_from_now_on,
     read,
@@ -51,7 +51,7 @@ def test_control_c_leaves_a_whole_file(tmp_path: Path, viewed: bool) -> None:
         assert run.stdout
         run.stdout.readline()
         os.killpg(run.pid, signal.SIGINT)
-        _, errors = run.communicate(timeout=60.0)
+        _, errors = run.communicate()
     assert run.returncode == -signal.SIGINT, errors
     assert errors.splitlines()[-1] == b"KeyboardInterrupt"
     assert sound(saved)
@@ -94,7 +94,7 @@ def test_a_full_disk_is_an_error_and_leaves_the_old_file(tmp_path: Path) -> None
             os._exit(0)  # Rerun's own end of the process may hang where its writer has died
     """)
     try:
-        said, _ = run.communicate(timeout=60.0)
+        said, _ = run.communicate()
     finally:
         run.kill()
     assert said == b"OSError\n"
@@ -119,7 +119,7 @@ def served(tmp_path: Path) -> Iterator[tuple[Process, str]]:
     finally:
         if run.poll() is None:
             os.killpg(run.pid, signal.SIGKILL)
-        run.communicate()
+            run.communicate()
 
 
 @signals
@@ -150,7 +150,7 @@ def test_the_command_takes_its_viewer_with_it(tmp_path: Path, run_file: Path, vi
     [child] = psutil.Process(command.pid).children()
     number = signal.Signals[ending]
     command.send_signal(number)
-    _, errors = command.communicate(timeout=60.0)
+    _, errors = command.communicate()
     assert (command.returncode, errors) == (-number, b"")
     assert not child.is_running()
     assert sound(saved)
@@ -169,7 +169,7 @@ def test_the_command_keeps_the_file_when_it_is_ended_while_it_draws(
     [child] = psutil.Process(command.pid).children()
     number = signal.Signals[ending]
     command.send_signal(number)
-    _, errors = command.communicate(timeout=60.0)
+    _, errors = command.communicate()
     assert (command.returncode, errors) == (-number, b"")
     assert not child.is_running()
     assert sound(saved)
@@ -184,7 +184,7 @@ def test_a_signal_that_was_ignored_before_is_ignored(tmp_path: Path, run_file: P
     until(saved.exists)
     command.send_signal(signal.SIGHUP)
     command.send_signal(signal.SIGTERM)  # which comes first if both are heeded
-    command.communicate(timeout=60.0)
+    command.communicate()
     assert command.returncode == -signal.SIGTERM
 
 
@@ -205,7 +205,7 @@ def test_serving_ends_quietly_with_control_c(tmp_path: Path, served: tuple[Proce
     run, _ = served
     until((tmp_path / "saved.rrd").exists)
     os.killpg(run.pid, signal.SIGINT)
-    output, errors = run.communicate(timeout=60.0)
+    output, errors = run.communicate()
     assert run.returncode == 0
     assert output.splitlines()[-1] == b"the end"
     assert not errors
@@ -258,7 +258,7 @@ def test_memory_is_bounded_and_the_run_goes_on_when_the_viewer_hangs(tmp_path: P
             assert run.stdout
             run.stdout.readline()
             viewer.send_signal(signal.SIGSTOP)
-            output, errors = run.communicate(b"\n", timeout=300.0)
+            output, errors = run.communicate(b"\n")
         assert b"the viewer hangs" in errors
         return float(output)
 

@@ -28,6 +28,7 @@ from boreprop_viz import live, sinks
 from boreprop_viz.source import gather
 from boreprop_viz.stream import RunStream
 from boreprop_viz.style import DECIMALS
+from forking import run_script, start
 from rrd import read, stacked, static
 from viewers import rerun, signals, sound, until
 
@@ -63,7 +64,7 @@ ROUNDED = 0.51 * 10.0**-DECIMALS  # what the plots leave out
 
 def test_a_loop_of_twenty_lines_around_an_fmu_is_drawn(case: Case, fmu: Path, tmp_path: Path) -> None:
     saved = tmp_path / "loop.rrd"
-    done = subprocess.run([sys.executable, "-c", IN_TWENTY_LINES, fmu, saved], capture_output=True, text=True)
+    done = run_script(["-c", IN_TWENTY_LINES, fmu, saved])
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     assert sound(saved)
     expected = simulate(
@@ -461,14 +462,12 @@ with boreprop_viz.live("case.toml", save="saved.rrd") as view:
     print("sent", flush=True)
     time.sleep(60.0)
 """
-    loop = subprocess.Popen(
-        [sys.executable, "-c", program], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    )
+    loop = start(["-c", program], cwd=tmp_path)
     try:
         assert loop.stdout
         assert loop.stdout.readline() == b"sent\n"
         os.kill(loop.pid, signal.SIGINT)
-        _, said = loop.communicate(timeout=60.0)
+        _, said = loop.communicate()
     finally:
         loop.kill()
     assert loop.returncode == -signal.SIGINT

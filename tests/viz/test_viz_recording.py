@@ -25,6 +25,7 @@ from boreprop_viz.scene import Array, BitFrame
 from boreprop_viz.sinks import open_recording
 from boreprop_viz.source import stored
 from conftest import Command
+from forking import run_script
 from rrd import held, read, stacked, static
 
 LENGTH = 40.0
@@ -288,7 +289,7 @@ from boreprop_viz.record import record
 run = read_trajectory("run.csv")
 record({"ηΠ = 0.1, first": run, "a/b (2) & " + 200 * "c": run}, save="run.rrd")
 """
-    done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    done = run_script(["-c", program], cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
 
 

@@ -2,8 +2,6 @@
 
 import os
 import signal
-import subprocess
-import sys
 import sysconfig
 import time
 from dataclasses import replace
@@ -21,6 +19,7 @@ from boreprop_fmu.pack.build import build_fmu
 from boreprop_viz.record import record
 from boreprop_viz.source import paced
 from conftest import Command
+from forking import run_script, start
 from rrd import read, stacked, static
 
 LIVE = """
@@ -41,7 +40,7 @@ with open_recording(save=then) as rec:
 
 def test_a_run_is_drawn_alike_while_its_fmu_drills_and_afterwards(fmu: Path, tmp_path: Path) -> None:
     live, stored = tmp_path / "live.rrd", tmp_path / "stored.rrd"
-    done = subprocess.run([sys.executable, "-c", LIVE, fmu, live, stored], capture_output=True, text=True, timeout=120)
+    done = run_script(["-c", LIVE, fmu, live, stored])
     assert done.returncode == 0, done.stderr
     for entity, component in (
         ("vertical_section/drilled_hole", "LineStrips2D:strips"),
@@ -117,12 +116,7 @@ def test_the_command_keeps_a_pace(command: Command, fmu: Path, tmp_path: Path) -
 
 def test_ctrl_c_ends_a_live_run_with_130_and_keeps_what_was_drilled(case: Case, tmp_path: Path) -> None:
     fmu = build_fmu(replace(case, length=100_000.0), tmp_path / "long.fmu")
-    running = subprocess.Popen(
-        [Path(sysconfig.get_path("scripts"), "boreprop-view"), fmu, "--save", tmp_path / "live.rrd"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
-    )
+    running = start([Path(sysconfig.get_path("scripts"), "boreprop-view"), fmu, "--save", tmp_path / "live.rrd"])
     try:
         deadline = time.monotonic() + 60.0
         while not any(path.stat().st_size > 1_000_000 for path in tmp_path.glob(".*live.rrd")):
@@ -130,7 +124,7 @@ def test_ctrl_c_ends_a_live_run_with_130_and_keeps_what_was_drilled(case: Case, 
             assert time.monotonic() < deadline
             time.sleep(0.05)
         os.kill(running.pid, signal.SIGINT)
-        printed, said = running.communicate(timeout=60.0)
+        printed, said = running.communicate()
     finally:
         running.kill()
     assert (running.returncode, printed, said) == (130, b"", b"")
@@ -148,9 +142,7 @@ from boreprop_fmu.host.drive import FmuRun
 from boreprop_viz.record import record
 record({"live": FmuRun(sys.argv[1], step=0.5, stop=200.0)}, save=sys.argv[2])
 """
-    done = subprocess.run(
-        [sys.executable, "-c", program, fmu, tmp_path / "live.rrd"], capture_output=True, text=True, timeout=60
-    )
+    done = run_script(["-c", program, fmu, tmp_path / "live.rrd"])
     assert done.returncode == 0, done.stderr
     grids = static(tmp_path / "live.rrd", "vertical_section/grid", "LineStrips2D:strips")  # from side to side
     sides = [max(x for line in grid for x, _ in line) for grid in grids if grid]

@@ -20,6 +20,7 @@ import pytest
 import study_functions
 from boreprop.analysis.study.compute import study
 from boreprop.run.workers import work
+from forking import start
 from places import TESTS
 from study_functions import calls, counted, numbered
 
@@ -105,22 +106,15 @@ def test_a_study_on_a_dask_cluster_ends_complete_though_a_worker_is_killed(tmp_p
 
 @posix
 def test_ctrl_c_keeps_what_is_done_and_leaves_no_process(tmp_path: Path, paper_case: Path) -> None:
-    command = [sys.executable, "-m", "boreprop.cli.app", "study", str(paper_case), "--output", "study.parquet"]
-    child = subprocess.Popen(
-        [*command, "--vary", "eta_pi=0.005:0.02:500", "--workers", "2"],
-        cwd=tmp_path,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
-    )
+    command = ["-c", "from boreprop.cli.app import main; main()", "study", str(paper_case), "--output", "study.parquet"]
+    child = start([*command, "--vary", "eta_pi=0.005:0.02:500", "--workers", "2"], cwd=tmp_path)
     wait_for(lambda: len(rows_in(tmp_path / "study.parquet")) >= 2)
     processes = psutil.Process(child.pid).children(recursive=True)
     os.killpg(child.pid, signal.SIGINT)  # as a terminal does
-    _, stderr = child.communicate(timeout=60)
+    _, stderr = child.communicate()
     assert child.returncode == 130
-    assert stderr.count("\n") == 1
-    assert "study.parquet: keeps" in stderr
+    assert stderr.count(b"\n") == 1
+    assert b"study.parquet: keeps" in stderr
     assert 2 <= len(rows_in(tmp_path / "study.parquet")) < 500
     assert not psutil.wait_procs(processes, timeout=60)[1]
     assert os.listdir(tmp_path) == ["study.parquet"]
