@@ -11,9 +11,10 @@ from time import process_time
 
 import numpy as np
 
-from boreprop.case.case import Case, InputSchedule
+from boreprop.case.case import Case
 from boreprop.case.file import load_case
 from boreprop.case.formations import Formation
+from boreprop.case.inputs import InputSchedule
 from boreprop.core.ground import Wear
 from boreprop.run.simulate import SAMPLE_INTERVAL, simulate
 

@@ -3,8 +3,9 @@
 from dataclasses import replace
 from random import Random
 
-from boreprop.case.case import Case, InputSchedule, Schedule
+from boreprop.case.case import Case
 from boreprop.case.formations import Formation
+from boreprop.case.inputs import InputSchedule, Schedule
 from boreprop.core.ground import Wear
 from boreprop.core.quantities import CLEARANCES, ROCK, TOOLFACE_REFERENCES, values_of
 

@@ -30,8 +30,9 @@ from time import monotonic
 import numpy as np
 from numpy.typing import NDArray
 
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
 from boreprop.case.file import dump_case
+from boreprop.case.inputs import Schedule
 from boreprop.core.errors import CannotContinue, ParameterError
 from boreprop.core.options import RELATIVE_TOLERANCE
 from boreprop.core.survey import Survey

@@ -24,7 +24,8 @@ from time import monotonic
 
 import numpy as np
 
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
+from boreprop.case.inputs import Schedule
 from boreprop.core.errors import CannotContinue, ParameterError
 from boreprop.core.options import Options
 from boreprop.core.quantities import CLEARANCES, TOOLFACE_REFERENCES, fields_of, values_of

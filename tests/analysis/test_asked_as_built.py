@@ -13,8 +13,9 @@ from boreprop.analysis.search import State
 from boreprop.analysis.steering import build_rate_curve, responses_as_built, steady_response
 from boreprop.analysis.summary import summarize
 from boreprop.analysis.tipping import drill_until_steady
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
 from boreprop.case.file import load_case
+from boreprop.case.inputs import Schedule
 from boreprop.core.errors import ParameterError
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock

@@ -13,7 +13,7 @@ from boreprop.analysis.tipping import (
     critical_dogleg,
     with_dogleg,
 )
-from boreprop.case.case import Schedule
+from boreprop.case.inputs import Schedule
 from boreprop.case.paper import LENGTH_SCALE, paper_case
 from boreprop.core.drilling import Drilling
 from boreprop.core.survey import Survey

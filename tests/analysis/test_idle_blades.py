@@ -17,7 +17,8 @@ from boreprop.analysis.rippling import Rippling, last_wave
 from boreprop.analysis.steering import steady_response
 from boreprop.analysis.summary import summarize
 from boreprop.analysis.tipping import critical_dogleg
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
+from boreprop.case.inputs import Schedule
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop.run.simulate import simulate

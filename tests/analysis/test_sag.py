@@ -12,8 +12,9 @@ from boreprop.analysis.hole import hole_of
 from boreprop.analysis.sag import BeamInHole, largest_sag, steady_sag
 from boreprop.analysis.steering import steady_response
 from boreprop.analysis.summary import summarize
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
 from boreprop.case.file import dump_case, load_case
+from boreprop.case.inputs import Schedule
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop.report.tables.steering import lines as steering_lines

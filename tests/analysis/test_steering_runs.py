@@ -12,7 +12,8 @@ from boreprop.analysis.steering import (
     holding_forces,
     steady_response,
 )
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
+from boreprop.case.inputs import Schedule
 from boreprop.core.integrator import Integrator
 from boreprop.core.modes import Mode, Modes, Row
 from boreprop.core.options import Options

@@ -17,7 +17,8 @@ from boreprop.analysis.tipping import (
     usual_map,
     with_dogleg,
 )
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
+from boreprop.case.inputs import Schedule
 from boreprop.case.paper import LENGTH_SCALE, paper_case
 from boreprop.core.errors import ParameterError
 from boreprop.core.survey import Survey

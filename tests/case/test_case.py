@@ -10,8 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
 from boreprop.case.file import dump_case, load_case, parse_case
+from boreprop.case.inputs import Schedule
 from boreprop.case.schema import PATHS
 from boreprop.case.tables import read_schedule, read_survey
 from boreprop.core.errors import ParameterError

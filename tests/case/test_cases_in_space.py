@@ -10,8 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
 from boreprop.case.file import dump_case, load_case, parse_case
+from boreprop.case.inputs import Schedule
 from boreprop.case.paper import paper_case
 from boreprop.case.parameters import parameters, with_parameters
 from boreprop.case.tables import read_survey

@@ -12,8 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from boreprop.analysis.comparison import compare
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
 from boreprop.case.file import dump_case, load_case, parse_case, read_case
+from boreprop.case.inputs import Schedule
 from boreprop.case.tables import read_schedule, read_survey
 from boreprop.core.errors import ParameterError
 from boreprop.core.survey import Survey

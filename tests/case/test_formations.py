@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from boreprop.case.case import Case, InputSchedule
+from boreprop.case.case import Case
 from boreprop.case.file import dump_case, load_case, parse_case
 from boreprop.case.formations import Formation
+from boreprop.case.inputs import InputSchedule
 from boreprop.case.paper import paper_case
 from boreprop.case.parameters import parameters, with_parameters
 from boreprop.errors import InputError

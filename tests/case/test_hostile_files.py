@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from boreprop.case.case import Schedule
 from boreprop.case.file import load_case, parse_case, read_run
+from boreprop.case.inputs import Schedule
 from boreprop.case.paper import paper_case
 from boreprop.core.errors import ParameterError
 from boreprop.errors import InputError

@@ -2,8 +2,9 @@
 
 import pytest
 
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
 from boreprop.case.file import load_case
+from boreprop.case.inputs import Schedule
 from boreprop.case.paper import paper_case
 from boreprop.case.parameters import parameters, with_parameters
 from boreprop.core.errors import ParameterError

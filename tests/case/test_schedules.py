@@ -10,8 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from boreprop.case.case import Case, InputSchedule, Schedule
+from boreprop.case.case import Case
 from boreprop.case.file import dump_case, files_named, load_case, parse_case
+from boreprop.case.inputs import InputSchedule, Schedule
 from boreprop.case.parameters import parameters, with_parameters
 from boreprop.case.schedules import force_schedule
 from boreprop.case.tables import read_inputs

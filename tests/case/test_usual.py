@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
 from boreprop.case.file import load_case
 from boreprop.case.formations import Formation
+from boreprop.case.inputs import Schedule
 from boreprop.case.tables import BY_KEY
 from boreprop.case.usual import USUAL, unusual
 from boreprop.core.survey import Survey

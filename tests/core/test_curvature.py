@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
+from boreprop.case.inputs import Schedule
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop.run.simulate import simulate

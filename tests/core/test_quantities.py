@@ -6,7 +6,8 @@ from typing import Any
 
 import pytest
 
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
+from boreprop.case.inputs import Schedule
 from boreprop.core.checks import check_quantity
 from boreprop.core.drilling import Drilling
 from boreprop.core.errors import ParameterError

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from boreprop.case.case import Case, InputSchedule, Schedule
+from boreprop.case.case import Case
+from boreprop.case.inputs import InputSchedule, Schedule
 from boreprop.case.paper import paper_case
 from boreprop.core.errors import ParameterError
 from boreprop.core.options import Options

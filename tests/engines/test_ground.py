@@ -9,8 +9,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from boreprop.case.case import Case, InputSchedule, Schedule
+from boreprop.case.case import Case
 from boreprop.case.formations import Formation
+from boreprop.case.inputs import InputSchedule, Schedule
 from boreprop.case.paper import paper_case
 from boreprop.core.ground import Wear
 from boreprop.core.options import Options

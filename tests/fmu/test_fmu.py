@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
+from boreprop.case.inputs import Schedule
 from boreprop.core.quantities import OUTPUTS, ROCK, quantity_of, scalar_names
 from boreprop.core.survey import Survey
 from boreprop.core.system import BottomHoleAssembly

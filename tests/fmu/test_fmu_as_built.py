@@ -11,8 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beams_as_built import CASES, built, reference_bha
-from boreprop.case.case import Case, InputSchedule
+from boreprop.case.case import Case
 from boreprop.case.file import dump_case
+from boreprop.case.inputs import InputSchedule
 from boreprop.case.packed import read_packed_case
 from boreprop.core.quantities import OUTPUTS, followed, quantity_of, scalar_names
 from boreprop.core.survey import Survey

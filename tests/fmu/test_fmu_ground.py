@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from boreprop.case.case import Case, InputSchedule, Schedule
+from boreprop.case.case import Case
 from boreprop.case.formations import Formation
+from boreprop.case.inputs import InputSchedule, Schedule
 from boreprop.core.ground import Wear
 from boreprop.core.quantities import OUTPUTS, scalar_names
 from boreprop.run.results import read_trajectory

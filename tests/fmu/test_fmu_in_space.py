@@ -11,8 +11,9 @@ import pytest
 from test_fmu_c_host import COMPILER
 
 from beams_as_built import with_points
-from boreprop.case.case import Case, InputSchedule, Schedule
+from boreprop.case.case import Case
 from boreprop.case.file import load_case
+from boreprop.case.inputs import InputSchedule, Schedule
 from boreprop.core.quantities import INPUTS, OUTPUTS, scalar_names
 from boreprop.core.survey import Survey
 from boreprop.errors import InputError

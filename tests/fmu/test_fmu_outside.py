@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from boreprop.analysis.sag import largest_sag
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
 from boreprop.case.file import load_case
+from boreprop.case.inputs import Schedule
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop.report.tables.sag import outside_the_hole

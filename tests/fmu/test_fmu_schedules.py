@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from boreprop.case.case import Case, InputSchedule, Schedule
+from boreprop.case.case import Case
+from boreprop.case.inputs import InputSchedule, Schedule
 from boreprop.core.quantities import OUTPUTS, scalar_names
 from boreprop.run.results import read_trajectory
 from boreprop.run.simulate import simulate

@@ -13,7 +13,8 @@ import pytest
 from test_fmu import host
 from test_fmu_description import dependencies, followers
 
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
+from boreprop.case.inputs import Schedule
 from boreprop.case.packed import read_packed_case
 from boreprop.case.parameters import with_parameters
 from boreprop.core.quantities import OUTPUTS, quantity_of, scalar_names

@@ -12,7 +12,8 @@ from matplotlib.image import imread
 from boreprop.analysis.rippling import find_rippling
 from boreprop.analysis.steering import build_rate_curve, reversal, steady_response
 from boreprop.analysis.summary import summarize as summary_of
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
+from boreprop.case.inputs import Schedule
 from boreprop.case.paper import paper_case
 from boreprop.core.modes import Modes
 from boreprop.core.survey import Survey

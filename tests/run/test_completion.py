@@ -9,8 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from boreprop.case.case import Case, InputSchedule, Schedule
+from boreprop.case.case import Case
 from boreprop.case.formations import Formation
+from boreprop.case.inputs import InputSchedule, Schedule
 from boreprop.core.ground import Wear
 from boreprop.core.quantities import BY_NAME, OUTPUTS, scalar_names
 from boreprop.core.survey import Survey

@@ -7,7 +7,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from boreprop.case.case import Case, InputSchedule, Profile, Schedule
+from boreprop.case.case import Case
+from boreprop.case.inputs import InputSchedule, Profile, Schedule
 from boreprop.case.paper import paper_case
 from boreprop.core.quantities import ACTING, IN_SPACE_ONLY, ROCK
 from boreprop.run.course import Course, acting, course_of

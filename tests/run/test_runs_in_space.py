@@ -14,8 +14,9 @@ from boreprop.analysis.hole_in_space import SurveyInSpace
 from boreprop.analysis.plan_in_space import DeviationInSpace, deviation_of, plan_of
 from boreprop.analysis.stations import list_stations
 from boreprop.analysis.summary import summarize
-from boreprop.case.case import Case, InputSchedule, Schedule
+from boreprop.case.case import Case
 from boreprop.case.formations import Formation
+from boreprop.case.inputs import InputSchedule, Schedule
 from boreprop.core.ground import Wear
 from boreprop.core.survey import Survey
 from boreprop.core.system import BottomHoleAssembly

@@ -9,8 +9,9 @@ import pytest
 from boreprop.analysis.rippling import Rippling
 from boreprop.analysis.search import State
 from boreprop.analysis.summary import summarize
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
 from boreprop.case.file import load_case
+from boreprop.case.inputs import Schedule
 from boreprop.case.paper import LENGTH_SCALE, paper_case
 from boreprop.core.errors import ParameterError
 from boreprop.core.quantities import INPUTS, OUTPUTS, ROCK, scalar_names

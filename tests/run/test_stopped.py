@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 import typer
 
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
 from boreprop.case.file import dump_case, load_case
+from boreprop.case.inputs import Schedule
 from boreprop.cli.options import tolerance
 from boreprop.errors import BorepropError, InputError
 from boreprop.run.files import case_path

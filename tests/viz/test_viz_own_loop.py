@@ -18,8 +18,9 @@ import numpy as np
 import pytest
 from rerun.chunk import RrdReader
 
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
 from boreprop.case.file import dump_case
+from boreprop.case.inputs import Schedule
 from boreprop.core.survey import Survey
 from boreprop.errors import InputError
 from boreprop.run.simulate import simulate

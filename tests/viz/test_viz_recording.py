@@ -12,8 +12,9 @@ import pytest
 
 from boreprop.analysis.axis import axis_ripple
 from boreprop.analysis.hole import bit_positions
-from boreprop.case.case import Case, InputSchedule, Schedule
+from boreprop.case.case import Case
 from boreprop.case.file import load_case
+from boreprop.case.inputs import InputSchedule, Schedule
 from boreprop.core.survey import Survey
 from boreprop.errors import InputError
 from boreprop.run.results import write_trajectory

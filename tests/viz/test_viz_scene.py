@@ -11,8 +11,9 @@ import pytest
 from boreprop.analysis.axis import AXIS_REACH
 from boreprop.analysis.hole import HoleAxis, bit_positions, existing_hole
 from boreprop.analysis.rippling import find_rippling
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
 from boreprop.case.file import load_case
+from boreprop.case.inputs import Schedule
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop.run.simulate import simulate

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
+from boreprop.case.inputs import Schedule
 from boreprop.core.quantities import OUTPUTS, scalar_names
 from boreprop.run.results import write_trajectory
 from boreprop.run.simulate import simulate

@@ -10,8 +10,9 @@ import pytest
 from numpy.typing import NDArray
 
 from boreprop.analysis.spiral.closed_form import spiral as closed_form
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
 from boreprop.case.file import dump_case
+from boreprop.case.inputs import Schedule
 from boreprop.core.survey import Survey
 from boreprop.errors import InputError
 from boreprop.run.simulate import simulate

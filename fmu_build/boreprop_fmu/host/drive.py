@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from fmpy.fmi1 import FMICallException
 
-from boreprop.case.case import RATE, InputSchedule, Schedule
+from boreprop.case.inputs import RATE, InputSchedule, Schedule
 from boreprop.case.packed import read_packed_case
 from boreprop.core.checks import check_number
 from boreprop.core.quantities import CLEARANCES, names_of_runs

@@ -11,13 +11,7 @@ from ..core.quantities import BY_NAME, CLEARANCES, INPUTS, ROCK, Structure, quan
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly, check_in_plane, eta_pi
 from .formations import DEPTHS, Formation
-from .inputs import CLOSE as CLOSE
-from .inputs import INTERPOLATIONS as INTERPOLATIONS
-from .inputs import RATE as RATE
-from .inputs import InputSchedule as InputSchedule
-from .inputs import Profile as Profile
-from .inputs import Schedule as Schedule
-from .inputs import from_bit as from_bit
+from .inputs import CLOSE, InputSchedule, Profile, Schedule
 from .sensors import with_clearances
 
 

@@ -3,8 +3,9 @@
 from pathlib import Path
 
 from .archive import open_archive
-from .case import Case, InputSchedule, Schedule
+from .case import Case
 from .file import parse_case
+from .inputs import InputSchedule, Schedule
 from .tables import read_inputs
 
 CASE_FILE = "resources/case.toml"

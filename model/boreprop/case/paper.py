@@ -4,7 +4,8 @@ from math import radians
 
 from ..core.survey import Survey
 from ..core.system import BitRock, BottomHoleAssembly
-from .case import Case, Schedule
+from .case import Case
+from .inputs import Schedule
 
 LENGTH_SCALE = 3.66  # ℓ₁, m
 FLEXURAL_STIFFNESS = 7.2e6  # N·m²

@@ -7,7 +7,8 @@ from typing import Any
 from ..core.quantities import INPUTS, PARAMETERS, TOOLFACE_REFERENCES, fields_of, quantity_of, scalar_names, values_of
 from ..errors import InputError
 from .body import keep_clearances
-from .case import Case, Schedule
+from .case import Case
+from .inputs import Schedule
 
 HOLE = "bit_diameter"
 PARTS = ("bha", "bit")  # the fields of a case that are dataclasses of parameters

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Floats
-from ..case.case import Case, Profile
+from ..case.case import Case
+from ..case.inputs import Profile
 from ..core.quantities import ACTING
 
 

@@ -6,8 +6,9 @@ import pytest
 
 from boreprop.analysis.stability.roots import Verdict, critical_eta_pi, find_roots
 from boreprop.analysis.stability.straight import straight_drilling
-from boreprop.case.case import Case, Schedule
+from boreprop.case.case import Case
 from boreprop.case.file import load_case
+from boreprop.case.inputs import Schedule
 from places import EXAMPLES
 from steering_cases import saturating
 
