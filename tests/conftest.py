@@ -54,6 +54,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers() -> int:
+    """Half as many again as there are cores: what tests wait for, other processes mostly, leaves cores idle."""
+    return -(-3 * (os.cpu_count() or 1) // 2)
+
+
 @pytest.fixture(scope="session")
 def paper_case() -> Path:
     """The case file of the paper's case."""
