@@ -18,6 +18,20 @@ from reference.spatial import CASES
 Vector = NDArray[np.float64]
 Outputs = dict[str, float | int]
 
+IN_SECTIONS = BottomHoleAssembly(
+    (3.0, 8.0, 17.0),
+    (2e-3, 3e-3),
+    0.6,
+    1500.0,
+    1e7,
+    section_lengths=(4.0, 13.0),
+    section_distributed_weights=(1500.0, 900.0),
+    section_flexural_stiffnesses=(1e7, 4e6),
+    section_outer_diameters=(0.0, 0.0),
+    end_deflection=-4e-3,
+    axial_load=True,
+)
+
 
 @dataclass(frozen=True)
 class SpatialCase:

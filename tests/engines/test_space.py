@@ -16,7 +16,7 @@ from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop.kernel.binding import NativeDrilling, available
 from boreprop.kernel.space import SpaceDrilling
 from reference.spatial import CASES, Drilling, Push, read_reference, system_of
-from space_runs import SpatialCase, Vector, direction, pair, place, referred, rows_of
+from space_runs import IN_SECTIONS, SpatialCase, Vector, direction, pair, place, referred, rows_of
 
 pytestmark = pytest.mark.skipif(not available(), reason="the kernel is not built")
 
@@ -176,24 +176,11 @@ def test_a_planar_case_is_drilled_as_in_the_plane_and_stays_there_exactly() -> N
 
 
 def test_sections_and_a_load_along_the_beam_count_as_in_the_plane() -> None:
-    bha = BottomHoleAssembly(
-        (3.0, 8.0, 17.0),
-        (2e-3, 3e-3),
-        0.6,
-        1500.0,
-        1e7,
-        section_lengths=(4.0, 13.0),
-        section_distributed_weights=(1500.0, 900.0),
-        section_flexural_stiffnesses=(1e7, 4e6),
-        section_outer_diameters=(0.0, 0.0),
-        end_deflection=-4e-3,
-        axial_load=True,
-    )
     bit, survey = BitRock(20.0, 1.0, 0.02), Survey((0.0, 17.0), (0.7, 0.72))
     inputs: dict[str, Any] = {"active_weight_on_bit": 8e3, "rss_force": 4e3, "weight_on_bit": 8e4}
     options = Options(relative_tolerance=1e-9)
-    planar = NativeDrilling(bha, bit, survey, options=options, **inputs)
-    spatial = SpaceDrilling(bha, bit, survey, (0.3, 0.3), options=options, **inputs)
+    planar = NativeDrilling(IN_SECTIONS, bit, survey, options=options, **inputs)
+    spatial = SpaceDrilling(IN_SECTIONS, bit, survey, (0.3, 0.3), options=options, **inputs)
     for run in (planar, spatial):
         run.advance(90.0, 4e3, 8e3, weight_on_bit=8e4)
     flat, row = planar.outputs(), spatial.outputs()

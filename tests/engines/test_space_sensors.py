@@ -13,10 +13,10 @@ from boreprop.case.paper import paper_case
 from boreprop.core.options import Options
 from boreprop.core.sensors import normal
 from boreprop.core.survey import Survey
-from boreprop.core.system import BitRock, BottomHoleAssembly
+from boreprop.core.system import BitRock
 from boreprop.kernel.binding import NativeDrilling, available
 from boreprop.kernel.space import SpaceDrilling
-from space_runs import Outputs, SpatialCase, Vector, direction, pair
+from space_runs import IN_SECTIONS, Outputs, SpatialCase, Vector, direction, pair
 
 pytestmark = pytest.mark.skipif(not available(), reason="the kernel is not built")
 
@@ -28,21 +28,7 @@ INSTRUMENTS: dict[str, Any] = {
     "sensor_seeds": (0, 0, 0, 0, 7),
     "sensor_body_clearances": (0.02,) * 5,
 }
-IN_SECTIONS = BottomHoleAssembly(
-    (3.0, 8.0, 17.0),
-    (2e-3, 3e-3),
-    0.6,
-    1500.0,
-    1e7,
-    section_lengths=(4.0, 13.0),
-    section_distributed_weights=(1500.0, 900.0),
-    section_flexural_stiffnesses=(1e7, 4e6),
-    section_outer_diameters=(0.0, 0.0),
-    end_deflection=-4e-3,
-    axial_load=True,
-    sensor_positions=(0.0, 2.0, 6.5, 16.0),
-    sensor_body_clearances=(0.05,) * 4,
-)
+SENSING = replace(IN_SECTIONS, sensor_positions=(0.0, 2.0, 6.5, 16.0), sensor_body_clearances=(0.05,) * 4)
 TURNING = SpatialCase(
     s=(1.0, 1.8, 3.1),
     y_star=(8e-4, 1.5e-3),
@@ -90,8 +76,8 @@ def test_in_a_vertical_plane_sensors_are_those_of_the_planar_law() -> None:
 def test_sensors_on_sections_under_axial_load_are_those_of_the_planar_law() -> None:
     bit, survey = BitRock(20.0, 1.0, 0.02), Survey((0.0, 17.0), (0.7, 0.72))
     inputs: dict[str, Any] = {"active_weight_on_bit": 8e3, "rss_force": 4e3, "weight_on_bit": 8e4}
-    planar = NativeDrilling(IN_SECTIONS, bit, survey, **inputs)
-    spatial = SpaceDrilling(IN_SECTIONS, bit, survey, (0.3, 0.3), **inputs)
+    planar = NativeDrilling(SENSING, bit, survey, **inputs)
+    spatial = SpaceDrilling(SENSING, bit, survey, (0.3, 0.3), **inputs)
     for i in range(1, 5):
         same_in_both(planar.outputs(), spatial.outputs(), 0.3, i)
 
@@ -101,7 +87,7 @@ def test_axis_moment_and_clearance_are_those_of_finite_elements_in_two_planes(to
     """In a straight hole, where the weight pulls to the low side and the pads to the toolface."""
     inclination, azimuth, force, weight = 0.7, 0.3, 2e4, 8e4
     run = SpaceDrilling(
-        IN_SECTIONS,
+        SENSING,
         BitRock(20.0, 1.0, 0.02),
         Survey((0.0, 17.0), (inclination, inclination)),
         (azimuth, azimuth),
@@ -112,13 +98,13 @@ def test_axis_moment_and_clearance_are_those_of_finite_elements_in_two_planes(to
     )
     row, planes = run.outputs(), []
     for side, share in enumerate((cos(toolface), sin(toolface))):
-        elements = Elements(IN_SECTIONS, weight, inclination, sin(inclination) * (not side))
-        elements.push(IN_SECTIONS.rss_position, force * share)
-        for i, s in enumerate(IN_SECTIONS.stabilizer_positions[:-1], 1):
+        elements = Elements(SENSING, weight, inclination, sin(inclination) * (not side))
+        elements.push(SENSING.rss_position, force * share)
+        for i, s in enumerate(SENSING.stabilizer_positions[:-1], 1):
             elements.push(s, pair(row, "stabilizer_force", i)[side])
-        planes.append((elements, elements.solve(0.0 if side else -IN_SECTIONS.end_deflection)))
+        planes.append((elements, elements.solve(0.0 if side else -SENSING.end_deflection)))
     frame = Rotation.from_euler("ZY", [azimuth, inclination]).as_matrix()  # high, right, ahead
-    for i, s in enumerate(IN_SECTIONS.sensor_positions, 1):
+    for i, s in enumerate(SENSING.sensor_positions, 1):
         v, slope = np.array([bent[2 * elements.node(s) :][:2] for elements, bent in planes]).T
         ahead = frame @ [-slope[0], -slope[1], 1.0]
         assert axis(row, i) == pytest.approx(ahead / np.linalg.norm(ahead), abs=1e-7)
