@@ -333,3 +333,16 @@ def test_the_blueprint_of_the_last_recording_is_the_one_shown(tmp_path: Path) ->
         assert until(lambda: [view.name for view in client.get_state().views] == ["first"])
         show("second", address)
         assert until(lambda: [view.name for view in client.get_state().views] == ["second"])
+
+
+@pytest.mark.parametrize("seen", [True, False])
+def test_a_viewer_that_was_there_and_is_gone_before_any_data_is_told_of(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], seen: bool
+) -> None:
+    """Of one that was not there the user knows already."""
+    path = tmp_path / "run.rrd"
+    path.touch()
+    gone = feeder.RunningViewer(path, f"rerun+http://{LOOPBACK}:{free_port()}/proxy", seen)
+    gone.finish()
+    gone.wait()
+    assert capfd.readouterr().err.count("has ended: it may not have received all data") == seen

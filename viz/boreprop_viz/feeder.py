@@ -180,6 +180,8 @@ class RunningViewer(Feeder):
         The file.
     address
         The address, rerun+http://HOST:PORT/proxy.
+    seen
+        Whether a viewer has been seen there.
 
     Raises
     ------
@@ -187,8 +189,8 @@ class RunningViewer(Feeder):
         If the address is not of that form.
     """
 
-    def __init__(self, path: Path, address: str) -> None:
-        self.address = address
+    def __init__(self, path: Path, address: str, seen: bool) -> None:
+        self.address, self.seen = address, seen
         self.place = host_and_port(address)
         self.process: Rerun | None = None  # passes the data on
         self.stopped = False  # whether no further process may be started
@@ -210,6 +212,7 @@ class RunningViewer(Feeder):
         with self.lock:
             if self.stopped:
                 return False
+            self.seen = True
             process = self.process = Rerun("--bind", host, "--port", str(port), "--headless")
         watcher = Thread(target=end_with, args=(line, process), daemon=True)
         watcher.start()
@@ -225,7 +228,7 @@ class RunningViewer(Feeder):
         """Warn if the viewer has not received everything."""
         if self.thread.is_alive():
             warn("the viewer hangs: it may not have received all data")
-        elif not self.fed and self.process is not None:
+        elif not self.fed and self.seen:
             warn(f"the viewer at {self.address} has ended: it may not have received all data")
         self.stop()
 

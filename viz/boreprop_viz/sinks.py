@@ -139,13 +139,15 @@ def open_viewer(
     if port is not None and not (spawn or serve):
         raise InputError(f"port: must be given with spawn or serve, got {port} without")
     if connect is not None:
+        seen = True
         try:
             check_that_one_listens(connect)
         except ConnectionError as error:
             if required:
                 raise
+            seen = False
             warn(f"{error}; one that starts there before the end is sent everything")
-        return RunningViewer(path, connect)
+        return RunningViewer(path, connect, seen)
     if serve:
         page, data = port_pair(port)
         address = quote(f"rerun+http://{LOOPBACK}:{data}/proxy", safe="")
