@@ -17,6 +17,18 @@ APART static Status no_contacts(
     return FAILED;
 }
 
+/* Whether the body stays off the wall with the contacts that follow from the last ones, which are found for it. Without an
+   axial load there are no others. */
+static inline int stays_off(Integrator *p, double xi, const double x[COMPONENTS], const Loads *loads) {
+    Pull pull[DIRECTIONS];
+    if (p->scaled.axial) return 0;
+    const Mode *mode = settle(&p->modes, loads, p->now.regime.contact);
+    pull_under(p, mode, loads, pull);
+    if (wall_distance(p, xi, x, pull) == 0.0) return 0;
+    change_places(p, mode->contact, xi);
+    return 1;
+}
+
 /* Find all contacts of a BHA whose body may touch the wall, with the bit at `xi`, where the last step ends, in the state
    `x`. Points that are watched stay so. */
 static inline Status touch_down(Integrator *p, double xi, const double x[COMPONENTS], Problem *problem) {
@@ -25,6 +37,7 @@ static inline Status touch_down(Integrator *p, double xi, const double x[COMPONE
     Bent bent = {.end = p->modes.beam.end};
     Contact contact;
     Loads loads = loads_at(p, xi, x, force_at(&p->now, xi));
+    if (stays_off(p, xi, x, &loads)) return DONE;
     bent.F_rss = loads.F_rss, bent.g = loads.g;
     memcpy(bent.e, loads.e, (size_t)n * sizeof *bent.e);
     for (int k = 0; k < points; k++) {

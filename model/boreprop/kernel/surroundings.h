@@ -76,10 +76,12 @@ static inline void find_gaps(
     }
 }
 
-/* How near the body is to the wall with the bit where it is, in the state `x`, and the BHA bent like this. */
-static inline double wall_distance(Integrator *p, const double x[COMPONENTS], const Pull pull[DIRECTIONS]) {
+/* How near the body is to the wall there. */
+static inline double wall_distance(
+    Integrator *p, double xi, const double x[COMPONENTS], const Pull pull[DIRECTIONS]
+) {
     double gap[MAX_POINTS], least = INFINITY;
-    find_gaps(p, p->now.xi, x, pull, gap);
+    find_gaps(p, xi, x, pull, gap);
     for (int k = 0; k < p->scaled.points; k++) least = smaller(least, gap[k]);
     return larger(least, 0.0);
 }
