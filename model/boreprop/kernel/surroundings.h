@@ -231,7 +231,7 @@ static inline double least_gap(const Integrator *p, const Step *step, int k, con
     const Hole *hole = &p->now.hole;
     double s = p->scaled.s[p->scaled.n + k], y_star = p->scaled.y_star[p->scaled.n + k], length = step->end - step->xi;
     double at = step->xi - s, end = step->end - s, lowest = INFINITY;
-    Count own = find(hole, at);
+    Count own = find_near(hole, p->seen.cursor[k], at);
     Arc gap = {0.0, 0.0, 0.0};
     for (int first = 1; at < end; first = 0, own++) {
         double next = own + 1 < hole->end ? smaller(piece(hole, own + 1)->start, end) : end;
