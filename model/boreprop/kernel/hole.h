@@ -84,6 +84,12 @@ static inline void append(Hole *hole, const Step *step, const ScaledInputs *inpu
     memcpy(drilled->x, step->x, sizeof drilled->x);
 }
 
+/* Lateral coordinates of a piece at `xi`. */
+static inline void piece_at(const Piece *own, double xi, double Y[DIRECTIONS]) {
+    double t = (xi - own->start) * own->rate;
+    for (int d = 0; d < DIRECTIONS; d++) Y[d] = polynomial(own->x[LATERAL + d], t);
+}
+
 /* Number of the piece that covers `xi`. */
 static inline Count find(const Hole *hole, double xi) {
     Count low = hole->first, high = hole->end; /* the first that starts beyond xi is among low … high */
@@ -100,6 +106,15 @@ static inline Count find_from(const Hole *hole, Count k, double xi) {
     if (k < hole->first || k >= hole->end || piece(hole, k)->start > xi) return find(hole, xi);
     while (k + 1 < hole->end && piece(hole, k + 1)->start <= xi) k++;
     return k;
+}
+
+enum { NEAR = 16 }; /* pieces: a walk over more of them takes longer than a search among all */
+
+/* The same, by a walk back from piece k, if it is near. */
+static inline Count find_back(const Hole *hole, Count k, double xi) {
+    Count least = k - NEAR > hole->first ? k - NEAR : hole->first;
+    while (k > least && piece(hole, k)->start > xi) k--;
+    return k > least || k == hole->first ? k : find(hole, xi);
 }
 
 /* The same, by a walk from piece k either way. */
@@ -121,9 +136,7 @@ static inline void hole_at_places(
 ) {
     for (int i = 0; i < places->count; i++) {
         double at = xi - places->s[i];
-        const Piece *own = piece(hole, find_from(hole, hole->cursor[i], at));
-        double t = (at - own->start) * own->rate;
-        for (int d = 0; d < DIRECTIONS; d++) delayed[i][d] = polynomial(own->x[LATERAL + d], t);
+        piece_at(piece(hole, find_from(hole, hole->cursor[i], at)), at, delayed[i]);
     }
 }
 

@@ -35,16 +35,14 @@ static inline Status touch_down(Integrator *p, double xi, const double x[COMPONE
     int n = p->scaled.n, points = p->scaled.points;
     const Contact *now = &p->now.regime.contact;
     Bent bent = {.end = p->modes.beam.end};
+    double Y[MAX_POINTS][DIRECTIONS];
     Contact contact;
     Loads loads = loads_at(p, xi, x, force_at(&p->now, xi));
     if (stays_off(p, xi, x, &loads)) return DONE;
     bent.F_rss = loads.F_rss, bent.g = loads.g;
     memcpy(bent.e, loads.e, (size_t)n * sizeof *bent.e);
-    for (int k = 0; k < points; k++) {
-        double Y[DIRECTIONS];
-        hole_at_point(p, &p->now.step, xi, k, Y);
-        bent.e[n + k] = x[LATERAL] - Y[0] - p->scaled.s[n + k] * x[ANGLE];
-    }
+    hole_at_points(p, xi, Y);
+    for (int k = 0; k < points; k++) bent.e[n + k] = x[LATERAL] - Y[k][0] - p->scaled.s[n + k] * x[ANGLE];
     Code code = search(&p->modes, &bent, points, &contact);
     if (code) {
         double tolerance = p->options.relative_tolerance, place = xi * p->length_scale;
