@@ -59,10 +59,11 @@ static inline void copy_around(Surroundings *to, const Surroundings *from, int p
     to->near = from->near, to->known = from->known;
 }
 
-/* Where the hole was at the points of the body, and where the bit, when it was looked at. Nothing but the time that a run
-   takes depends on it. */
+/* Where the hole was at the points of the body, in which of its pieces, and where the bit, when it was looked at. Nothing
+   but the time that a run takes depends on it. */
 typedef struct {
     double Y[DIRECTIONS][MAX_POINTS], at[MAX_POINTS];
+    Count cursor[MAX_POINTS];
 } Seen;
 
 /* The bit at the front of its hole, dimensionless. */

@@ -102,6 +102,14 @@ static inline Count find_from(const Hole *hole, Count k, double xi) {
     return k;
 }
 
+/* The same, by a walk from piece k either way. */
+static inline Count find_near(const Hole *hole, Count k, double xi) {
+    if (k < hole->first || k >= hole->end) return find(hole, xi);
+    while (k > hole->first && piece(hole, k)->start > xi) k--;
+    while (k + 1 < hole->end && piece(hole, k + 1)->start <= xi) k++;
+    return k;
+}
+
 /* Bring the cursors to where the places are with the bit at `xi`. */
 static inline void move_cursors(Hole *hole, const Places *places, double xi) {
     for (int i = 0; i < places->count; i++) hole->cursor[i] = find_from(hole, hole->cursor[i], xi - places->s[i]);

@@ -22,7 +22,6 @@ APART static Status no_contacts(
 static inline Status touch_down(Integrator *p, double xi, const double x[COMPONENTS], Problem *problem) {
     int n = p->scaled.n, points = p->scaled.points;
     const Contact *now = &p->now.regime.contact;
-    const Piece *nearer = NULL;
     Bent bent = {.end = p->modes.beam.end};
     Contact contact;
     Loads loads = loads_at(p, xi, x, force_at(&p->now, xi));
@@ -30,7 +29,7 @@ static inline Status touch_down(Integrator *p, double xi, const double x[COMPONE
     memcpy(bent.e, loads.e, (size_t)n * sizeof *bent.e);
     for (int k = 0; k < points; k++) {
         double Y[DIRECTIONS];
-        hole_at_point(p, &p->now.step, xi, k, &nearer, Y);
+        hole_at_point(p, &p->now.step, xi, k, Y);
         bent.e[n + k] = x[LATERAL] - Y[0] - p->scaled.s[n + k] * x[ANGLE];
     }
     Code code = search(&p->modes, &bent, points, &contact);

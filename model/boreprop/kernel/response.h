@@ -23,19 +23,20 @@ static inline void bend(Integrator *p, double xi, const double x[COMPONENTS], Be
     bending[0] = bending_of(settle(&p->modes, &loads, p->now.regime.contact), &loads, p->scaled.n);
 }
 
-/* What bends it in the present regime with the bit at `xi` in the state `x`, in a step. */
-static inline void pull_under(Integrator *p, const Loads *loads, Pull pull[DIRECTIONS]) {
-    contact_forces(mode_of(&p->modes, p->now.regime.contact), loads, pull->F);
+/* What bends it under loads in a mode. */
+static inline void pull_under(const Integrator *p, const Mode *mode, const Loads *loads, Pull pull[DIRECTIONS]) {
+    contact_forces(mode, loads, pull->F);
     pull->count = loads->count, pull->F_rss = loads->F_rss, pull->g = loads->g;
     pull->end = loads->e[p->scaled.n - 1] - p->modes.beam.end;
 }
 
+/* The same in the present regime with the bit at `xi` in the state `x`, in a step. */
 static inline void pull_at(
     Integrator *p, const Step *step, double xi, const double x[COMPONENTS], Pull pull[DIRECTIONS]
 ) {
     Loads loads = loads_at(p, xi, x, force_at(&p->now, xi));
     (void)step;
-    pull_under(p, &loads, pull);
+    pull_under(p, mode_of(&p->modes, p->now.regime.contact), &loads, pull);
 }
 
 /* The same where a step ends that is being tried, in the state `x`. */
@@ -51,7 +52,7 @@ static inline void pull_after(Integrator *p, const Trial *trial, const double x[
     for (int i = 0; i < places->count; i++)
         loads.e[i] = x[LATERAL] - trial->delayed[i][0][POINTS - 1] - places->s[i] * x[ANGLE];
     loads.g = sin(p->scaled.axial ? x[ANGLE] : x[LATERAL] - trial->delayed[0][0][POINTS - 1]);
-    pull_under(p, &loads, pull);
+    pull_under(p, mode_of(&p->modes, p->now.regime.contact), &loads, pull);
 }
 
 /* The regime in the state `x`, and the direction of the hole there. */
