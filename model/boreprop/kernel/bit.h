@@ -156,15 +156,15 @@ static inline void change_places(Integrator *p, Contact contact, double xi) {
 }
 
 /* What bends the beam with the bit at `xi` in the state `x`. */
-static inline Loads loads_at(const Integrator *p, double xi, const double x[COMPONENTS], double F_rss) {
+static inline void find_loads(
+    const Integrator *p, double xi, const double x[COMPONENTS], double F_rss, Loads *loads
+) {
     const Places *places = &p->now.places;
-    double delayed[MAX_PLACES][DIRECTIONS] = {{0}};
-    Loads loads;
-    loads.count = places->count, loads.F_rss = F_rss;
+    double delayed[MAX_PLACES][DIRECTIONS];
+    loads->count = places->count, loads->F_rss = F_rss;
     hole_at_places(&p->now.hole, places, xi, delayed);
-    for (int i = 0; i < places->count; i++) loads.e[i] = x[LATERAL] - delayed[i][0] - places->s[i] * x[ANGLE];
-    loads.g = sin(p->scaled.axial ? x[ANGLE] : x[LATERAL] - delayed[0][0]);
-    return loads;
+    for (int i = 0; i < places->count; i++) loads->e[i] = x[LATERAL] - delayed[i][0] - places->s[i] * x[ANGLE];
+    loads->g = sin(p->scaled.axial ? x[ANGLE] : x[LATERAL] - delayed[0][0]);
 }
 
 /* The inputs with the bit at `xi`, ahead of where they were taken over. */

@@ -6,6 +6,12 @@
 
 enum { LEAST_CAPACITY = 1024, MOST_PIECES = 1 << 19 }; /* of hole */
 
+/* One of the values that the outputs of a drilling system have, and its index if its output has several. */
+typedef struct {
+    Output which;
+    int index;
+} Value;
+
 /* A borehole as it is drilled, from the end of the survey on. */
 typedef struct {
     System system;
@@ -14,8 +20,20 @@ typedef struct {
     ScaledInputs scaled;   /* … what they are in the paper's numbers */
     Ground ground;
     double buckling_weight; /* over F*: under it the BHA buckles; infinite if the axial load does not count */
+    int values;
+    Value value[MOST_OUTPUTS]; /* in the order of the table of quantities */
     Integrator integrator;
 } Drilling;
+
+/* Note which values the outputs have. */
+static inline void list_values(Drilling *d) {
+    d->values = 0;
+    for (int k = 0; k < OUTPUT_COUNT; k++)
+        for (int i = 0; i < value_count(OUTPUT_SIZE[k], d->system.structure); i++) {
+            Value value = {(Output)k, i};
+            d->value[d->values++] = value;
+        }
+}
 
 /* Whether bit and rock are in their ranges, and ε = χ/η and its inverse finite. */
 static inline int check_rock(Inputs inputs, Problem *problem) {
@@ -146,6 +164,7 @@ static inline Status drilling_prepare(
         return FAILED;
     d->system = *system, d->ground = ground;
     d->drilled_length = 0.0;
+    list_values(d);
     d->given.rss_force = (double)NAN;
     options.relative_tolerance = system->relative_tolerance;
     prepare(&d->integrator, &scaled, length_scale(system), force_scale(system), options);

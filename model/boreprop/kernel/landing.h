@@ -24,7 +24,8 @@ static inline Status touch_down(Integrator *p, double xi, const double x[COMPONE
     const Contact *now = &p->now.regime.contact;
     Bent bent = {.end = p->modes.beam.end};
     Contact contact;
-    Loads loads = loads_at(p, xi, x, force_at(&p->now, xi));
+    Loads loads;
+    find_loads(p, xi, x, force_at(&p->now, xi), &loads);
     bent.F_rss = loads.F_rss, bent.g = loads.g;
     memcpy(bent.e, loads.e, (size_t)n * sizeof *bent.e);
     for (int k = 0; k < points; k++) {
