@@ -117,9 +117,11 @@ static inline void choose_length(const Integrator *p, const Law *law, double xi,
 static inline void try_step(
     const Integrator *p, const Law *law, double xi, double h, const double x[COMPONENTS], Trial *trial
 ) {
-    trial->step = next_step(&p->now.step, xi, h);
+    const Step *last = &p->now.step;
+    trial->step = next_step(last, xi, h);
+    trial->follows = p->now.stay > 0 && last->end > last->xi;
     look_up(&p->now.hole, &p->now.places, trial);
-    law_try(law, &p->options, &p->now.step, x, trial);
+    law_try(law, &p->options, last, x, trial);
 }
 
 /* Whether the numbers of a trial step are finite. */
