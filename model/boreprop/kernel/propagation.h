@@ -99,7 +99,7 @@ static inline Status change_clearances(Integrator *p, const double *y_star, Prob
    After FULL the same call goes on. */
 static inline Status drill_in_layer(Integrator *p, const Ground *ground, double end, int *left, Problem *problem) {
     State *now = &p->now;
-    double last = p->before.accepted + p->options.most_steps, l1 = p->length_scale, path[AXES];
+    double last = p->before.accepted + p->options.most_steps, l1 = p->length_scale;
     double top = layer_top(ground, now->layer) / l1, bottom = layer_bottom(ground, now->layer) / l1;
     for (;;) {
         double begin = larger(now->step.xi, now->stay);
@@ -113,12 +113,15 @@ static inline Status drill_in_layer(Integrator *p, const Ground *ground, double 
         Status status = take_step(p, problem);
         if (status != DONE) return status;
     }
+    int stayed = p->exit == larger(now->step.xi, now->stay);
     now->xi = p->exit, now->layer += *left;
-    position(now, path);
-    double z = path[AXES - 1];
-    while (*left > 0 ? z * l1 - layer_bottom(ground, now->layer) > AT_TOP /* through a thin layer */
-                     : layer_top(ground, now->layer) - z * l1 > AT_TOP)
-        now->layer += *left;
+    if (stayed) { /* the bit is not at the bound, but beyond, maybe through thin layers */
+        double path[AXES], z;
+        position(now, path);
+        z = path[AXES - 1] * l1;
+        while (*left > 0 ? z - layer_bottom(ground, now->layer) > AT_TOP : layer_top(ground, now->layer) - z > AT_TOP)
+            now->layer += *left;
+    }
     now->stay = now->xi + STAY / l1;
     p->exit_known = 0;
     return DONE;
