@@ -61,17 +61,31 @@ typedef struct {
     double Theta[DIRECTIONS], F_0[DIRECTIONS];
 } Response;
 
+/* What it answers in given rock where F_0 and the contacts are these. */
+static inline Response respond_in(ScaledInputs inputs, double theta, double F_0, Contact contact) {
+    Response response = {
+        {contact, side_beyond(F_0 / inputs.eta_pi, -inputs.psi_star, inputs.psi_star, ROUNDING)},
+        {theta - bit_tilt(F_0, inputs.eta_pi, inputs.psi_star)},
+        {F_0}
+    };
+    return response;
+}
+
 static inline Response respond(Integrator *p, const double x[COMPONENTS], ScaledInputs inputs) {
     Loads loads;
     find_loads(p, p->now.xi, x, inputs.F_rss, &loads);
     const Mode *mode = settle(&p->modes, &loads, &p->now.regime.contact);
-    double F_0 = row_value(&mode->F_0, &loads), psi_star = inputs.psi_star;
-    Response response = {
-        {mode->contact, side_beyond(F_0 / inputs.eta_pi, -psi_star, psi_star, ROUNDING)},
-        {x[ANGLE] - bit_tilt(F_0, inputs.eta_pi, psi_star)},
-        {F_0}
-    };
-    return response;
+    return respond_in(inputs, x[ANGLE], row_value(&mode->F_0, &loads), mode->contact);
+}
+
+/* Whether it is known what it answers under other inputs than those `before`, where it did so far, and what: unless forces
+   change, F_0 does not. */
+static inline int answer_is_known(
+    const Integrator *p, const double x[COMPONENTS], ScaledInputs inputs, ScaledInputs before, const Response *so_far,
+    Response *answer
+) {
+    *answer = respond_in(inputs, x[ANGLE], so_far->F_0[0], so_far->regime.contact);
+    return inputs.F_rss == before.F_rss && inputs.W == before.W && !p->scaled.points;
 }
 
 /* The jump of Θ' where ε, or the slope of an input, changes in the present regime. */
