@@ -189,13 +189,13 @@ static inline void make_mode(Mode *mode, const Beam *beam, const double *y_star,
 
 enum { MODES = 4 }; /* that are kept: a few take turns where a hole ripples */
 
-/* The modes of one beam that were asked for last. */
+/* The modes of one beam that were asked for last, the very last one among them. */
 typedef struct {
     Beam beam;
     Axial axial; /* under which it is */
     double y_star[MAX_SUPPORTS];
     Mode made[MODES];
-    int count, next;
+    int count, next, last;
 } Modes;
 
 /* What acts on the beam of a mode under `loads`. */
@@ -215,13 +215,14 @@ static inline void load_beam(Modes *modes, const Scaled *scaled, Axial axial) {
 }
 
 static inline const Mode *mode_of(Modes *modes, const Contact *contact) {
-    for (int k = 0; k < modes->count; k++)
-        if (same_contact(&modes->made[k].contact, contact)) return &modes->made[k];
-    Mode *mode = &modes->made[modes->next];
-    make_mode(mode, &modes->beam, modes->y_star, *contact);
+    if (modes->count && same_contact(&modes->made[modes->last].contact, contact)) return &modes->made[modes->last];
+    for (modes->last = 0; modes->last < modes->count; modes->last++)
+        if (same_contact(&modes->made[modes->last].contact, contact)) return &modes->made[modes->last];
+    modes->last = modes->next;
+    make_mode(&modes->made[modes->last], &modes->beam, modes->y_star, *contact);
     modes->next = (modes->next + 1) % MODES;
     if (modes->count < MODES) modes->count++;
-    return mode;
+    return &modes->made[modes->last];
 }
 
 /* 1 if `value` is above its bounds by more than `slack`, −1 if below, else 0. */

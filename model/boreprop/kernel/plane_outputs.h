@@ -23,7 +23,7 @@ static inline void find_body(Integrator *p, const double x[COMPONENTS], Present 
     for (int i = p->scaled.n; i < at->loads.count; i++)
         if (fabs(at->F[i]) > fabs(at->body_force)) at->body_force = at->F[i], at->body_place = p->now.places.s[i];
     pull_under(p, at->mode, &at->loads, pull);
-    at->wall_distance = wall_distance(p, x, pull);
+    at->wall_distance = wall_distance(p, p->now.xi, x, pull);
 }
 
 static inline Present present(Drilling *d) {

@@ -36,7 +36,7 @@ static inline void find_body(Integrator *p, Present *at) {
         memcpy(at->body_force, at->is.at.F[i], sizeof at->body_force), at->body_place = p->now.places.s[i];
     }
     pull_under(p, &at->is, pull);
-    at->wall_distance = wall_distance(p, at->x, pull);
+    at->wall_distance = wall_distance(p, p->now.xi, at->x, pull);
 }
 
 static inline Present present(Drilling *d) {

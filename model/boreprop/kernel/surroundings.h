@@ -17,9 +17,8 @@ static inline void hole_at_point(Integrator *p, const Step *step, double xi, int
         for (int d = 0; d < DIRECTIONS; d++) Y[d] = polynomial(step->x[LATERAL + d], t);
         return;
     }
-    const Piece *own = piece(hole, p->seen.cursor[k] = find_near(hole, p->seen.cursor[k], at));
-    double t = (at - own->start) * own->rate;
-    for (int d = 0; d < DIRECTIONS; d++) Y[d] = polynomial(own->x[LATERAL + d], t);
+    p->seen.cursor[k] = find_near(hole, p->seen.cursor[k], at);
+    piece_at(piece(hole, p->seen.cursor[k]), at, Y);
 }
 
 /* How far a point of the body, which is at `body`, is from the wall, the hole being at Y. */
@@ -63,23 +62,33 @@ static inline void find_body_at(Integrator *p, const Step *step, double xi, doub
     find_body_under(p, x, pull, body);
 }
 
-/* How far every point of the body is from the wall with the bit at `xi` in the present step, in the state `x`, and the BHA
-   bent like this. */
-static inline void find_gaps(
-    Integrator *p, double xi, const double x[COMPONENTS], const Pull pull[DIRECTIONS], double gap[MAX_POINTS]
-) {
-    double body[DIRECTIONS][MAX_POINTS], Y[DIRECTIONS];
-    find_body_under(p, x, pull, body);
+/* Where the hole is at every point of the body with the bit at `xi`, not beyond its end. */
+static inline void hole_at_points(const Integrator *p, double xi, double Y[MAX_POINTS][DIRECTIONS]) {
+    const Hole *hole = &p->now.hole;
+    Count near = hole->end - 1;
     for (int k = 0; k < p->scaled.points; k++) {
-        hole_at_point(p, &p->now.step, xi, k, Y);
-        gap[k] = gap_of(p, k, body, Y);
+        double at = xi - p->scaled.s[p->scaled.n + k];
+        near = find_back(hole, near, at);
+        piece_at(piece(hole, near), at, Y[k]);
     }
 }
 
-/* How near the body is to the wall with the bit where it is, in the state `x`, and the BHA bent like this. */
-static inline double wall_distance(Integrator *p, const double x[COMPONENTS], const Pull pull[DIRECTIONS]) {
+/* How far every point of the body is from the wall with the bit there, in the state `x`, and the BHA bent like this. */
+static inline void find_gaps(
+    const Integrator *p, double xi, const double x[COMPONENTS], const Pull pull[DIRECTIONS], double gap[MAX_POINTS]
+) {
+    double body[DIRECTIONS][MAX_POINTS], Y[MAX_POINTS][DIRECTIONS];
+    find_body_under(p, x, pull, body);
+    hole_at_points(p, xi, Y);
+    for (int k = 0; k < p->scaled.points; k++) gap[k] = gap_of(p, k, body, Y[k]);
+}
+
+/* How near the body is to the wall there. */
+static inline double wall_distance(
+    const Integrator *p, double xi, const double x[COMPONENTS], const Pull pull[DIRECTIONS]
+) {
     double gap[MAX_POINTS], least = INFINITY;
-    find_gaps(p, p->now.xi, x, pull, gap);
+    find_gaps(p, xi, x, pull, gap);
     for (int k = 0; k < p->scaled.points; k++) least = smaller(least, gap[k]);
     return larger(least, 0.0);
 }
@@ -229,7 +238,7 @@ static inline double least_gap(const Integrator *p, const Step *step, int k, con
     const Hole *hole = &p->now.hole;
     double s = p->scaled.s[p->scaled.n + k], y_star = p->scaled.y_star[p->scaled.n + k], length = step->end - step->xi;
     double at = step->xi - s, end = step->end - s, lowest = INFINITY;
-    Count own = find(hole, at);
+    Count own = find_near(hole, p->seen.cursor[k], at);
     Arc gap = {0.0, 0.0, 0.0};
     for (int first = 1; at < end; first = 0, own++) {
         double next = own + 1 < hole->end ? smaller(piece(hole, own + 1)->start, end) : end;
