@@ -9,10 +9,9 @@
 #ifndef BOREPROP_CONE_H
 #define BOREPROP_CONE_H
 
-#include "modes.h"
+#include "interior.h"
 
-enum { TOUCHES = -1 };                   /* the contact beyond the bound of a free offset, as `change` has it */
-enum { MOST_TOUCHING = 2 * MAX_PLACES }; /* numbers: two for each support in contact */
+enum { TOUCHES = -1 }; /* the contact beyond the bound of a free offset, as `change` has it */
 
 /* The direction of a vector whose length is known to be at least `least` while its regime holds: a function w of the
    square of the length. It is one over the length from REACHED of that on. Below, where a trial step goes too far, it stays
@@ -29,6 +28,9 @@ static inline void direction_factors(double square, double least, double *w, dou
     *bend = -2 * (1.0 / 2 + t * (3.0 / 4 - t * (21.0 / 8))) / (inner * from);
 }
 
+/* Whether v lies beyond the disc, so that the support touches; without clearance it always does. */
+static inline int is_beyond(const double v[2], double y) { return y == 0.0 || hypot(v[0], v[1]) > y; }
+
 /* What the wall takes of v: v less the nearest point of the disc of radius y, and its derivative by v, row by row. */
 static inline void beyond_disc(const double v[2], double y, double beyond[2], double slope[2][2]) {
     double w = 0.0, bend = 0.0;
@@ -39,132 +41,40 @@ static inline void beyond_disc(const double v[2], double y, double beyond[2], do
     }
 }
 
-/* Solve a system of up to MOST_TOUCHING equations, row by row in `matrix`, for several right sides, which lie behind it in
-   each row and become the solutions. Returns 0 if it is singular. */
-static inline int solve_touching(int size, int sides, double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1]) {
+/* A system of up to MOST_TOUCHING equations, row by row, with right sides behind each row. */
+typedef double Equations[MOST_TOUCHING][MOST_TOUCHING + COMPONENTS];
+
+/* Solve it: the right sides become the solutions. Returns 0 if it is singular. */
+static inline int solve_equations(int size, int sides, Equations row) {
     for (int column = 0; column < size; column++) {
         int pivot = column;
         for (int i = column + 1; i < size; i++)
-            if (fabs(matrix[i][column]) > fabs(matrix[pivot][column])) pivot = i;
-        if (!(fabs(matrix[pivot][column]) > 0)) return 0;
-        double divisor = matrix[pivot][column];
-        for (int j = column; j < size + sides; j++) {
-            double value = matrix[pivot][j];
-            matrix[pivot][j] = matrix[column][j];
-            matrix[column][j] = value / divisor;
+            if (fabs(row[i][column]) > fabs(row[pivot][column])) pivot = i;
+        if (!(fabs(row[pivot][column]) > 0)) return 0;
+        for (int j = column; pivot != column && j < size + sides; j++) {
+            double value = row[pivot][j];
+            row[pivot][j] = row[column][j], row[column][j] = value;
         }
-        for (int i = 0; i < size; i++) {
-            double factor = matrix[i][column];
-            if (i == column || factor == 0.0) continue;
-            for (int j = column; j < size + sides; j++) matrix[i][j] -= factor * matrix[column][j];
+        for (int i = column + 1; i < size; i++) {
+            double factor = row[i][column] / row[column][column];
+            if (factor == 0.0) continue;
+            for (int j = column + 1; j < size + sides; j++) row[i][j] -= factor * row[column][j];
         }
     }
+    for (int i = size - 1; i >= 0; i--)
+        for (int side = size; side < size + sides; side++) {
+            for (int j = i + 1; j < size; j++) row[i][side] -= row[i][j] * row[j][side];
+            row[i][side] /= row[i][i];
+        }
     return 1;
 }
 
-/* The supports of a contact problem: the places of those that touch, C, and what belongs to them. */
-typedef struct {
-    int touching, C[MAX_PLACES], support[MAX_PLACES];
-    double k[MAX_PLACES], y[MAX_PLACES];  /* by number in C */
-    double K_inv[MAX_PLACES][MAX_PLACES]; /* of those in C */
-} Touching;
-
-static inline Touching touching_of(const Modes *modes, const Contact *contact) {
-    Touching touching;
-    int n = modes->beam.n, m = 0;
-    for (int i = 0; i < place_count(*contact, n); i++)
-        if (contact->of[i]) touching.C[m] = i, touching.support[m++] = support_at(contact, n, i);
-    touching.touching = m;
-    for (int a = 0; a < m; a++) {
-        touching.y[a] = modes->y_star[touching.support[a]];
-        for (int b = 0; b < m; b++)
-            touching.K_inv[a][b] = compliance(&modes->beam, touching.support[a], touching.support[b]);
-        touching.k[a] = touching.K_inv[a][a];
-    }
-    return touching;
-}
-
 #define SAME_OFFSET 1e-14 /* relative: so near to the solution no correction brings v nearer */
-enum { MOST_CORRECTIONS = 15, SMOOTHER = 14, MOST_HALVINGS = 40 };
+enum { MOST_CORRECTIONS = 8 };
 /* Over the largest v: after a change as small as this the next would be below rounding. Stabilizers close together enlarge
    the rounding of v, but not that of the equations, over their largest terms. */
 #define NEXT_IS_NOTHING 1e-8
 #define BALANCED 2e-15
-#define SHARPER 0.1 /* of μ, from step to step: after SMOOTHER of them it is rounding */
-
-/* The minimum that F is, with |F_i| made smooth: √(|F_i|² + μ²), in forces times √k_i. */
-typedef struct {
-    int count;
-    double C[MAX_PLACES][MAX_PLACES], root[MAX_PLACES]; /* K⁻¹_ij/√(k_i k_j), √k_i */
-    double q[MAX_PLACES][2], y[MAX_PLACES], mu;
-} Smooth;
-
-static inline double smooth_value(const Smooth *smooth, double u[MAX_PLACES][2]) {
-    double value = 0.0;
-    for (int i = 0; i < smooth->count; i++) {
-        for (int d = 0; d < 2; d++) {
-            double sum = 0.0;
-            for (int j = 0; j < smooth->count; j++) sum += smooth->C[i][j] * u[j][d];
-            value += u[i][d] * (sum / 2 + smooth->q[i][d]);
-        }
-        value += smooth->y[i] * sqrt(u[i][0] * u[i][0] + u[i][1] * u[i][1] + smooth->mu * smooth->mu);
-    }
-    return value;
-}
-
-/* One step of Newton's method towards the minimum, shortened until it goes down; returns 0 where it does not. */
-static inline int go_down(const Smooth *smooth, double u[MAX_PLACES][2]) {
-    int count = smooth->count, size = 2 * count;
-    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1], value = smooth_value(smooth, u), next[MAX_PLACES][2];
-    for (int i = 0; i < count; i++) {
-        double length = sqrt(u[i][0] * u[i][0] + u[i][1] * u[i][1] + smooth->mu * smooth->mu);
-        double w = smooth->y[i] / length;
-        for (int d = 0; d < 2; d++) {
-            double *row = matrix[2 * i + d];
-            row[size] = -smooth->q[i][d] - w * u[i][d];
-            for (int j = 0; j < count; j++) {
-                row[size] -= smooth->C[i][j] * u[j][d];
-                for (int c = 0; c < 2; c++) row[2 * j + c] = d == c ? smooth->C[i][j] : 0.0;
-            }
-            for (int c = 0; c < 2; c++)
-                row[2 * i + c] += (d == c ? w : 0.0) - w * u[i][d] * u[i][c] / (length * length);
-        }
-    }
-    if (!solve_touching(size, 1, matrix)) return 0;
-    double share = 1.0;
-    for (int halving = 0; halving < MOST_HALVINGS; halving++, share /= 2) {
-        for (int i = 0; i < count; i++)
-            for (int d = 0; d < 2; d++) next[i][d] = u[i][d] + share * matrix[2 * i + d][size];
-        if (smooth_value(smooth, next) < value) {
-            memcpy(u, next, (size_t)count * sizeof next[0]);
-            return 1;
-        }
-    }
-    return 0;
-}
-
-/* v near the solution for stabilizers that may touch, whatever the start: the minimum is followed while μ goes to zero. It
-   is convex, so that Newton's method ends at it. */
-APART static void come_near(const Touching *of, double q[MAX_PLACES][2], double v[MAX_PLACES][2]) {
-    Smooth smooth = {.count = of->touching};
-    double u[MAX_PLACES][2] = {{0}};
-    for (int i = 0; i < smooth.count; i++) smooth.root[i] = sqrt(of->k[i]);
-    for (int i = 0; i < smooth.count; i++) {
-        smooth.y[i] = of->y[i] / smooth.root[i];
-        for (int j = 0; j < smooth.count; j++) smooth.C[i][j] = of->K_inv[i][j] / (smooth.root[i] * smooth.root[j]);
-        for (int d = 0; d < 2; d++) {
-            smooth.q[i][d] = q[i][d] / smooth.root[i];
-            smooth.mu = larger(smooth.mu, fabs(smooth.q[i][d]));
-        }
-    }
-    for (int k = 0; k < SMOOTHER; k++, smooth.mu *= SHARPER)
-        for (int step = 0; step < MOST_CORRECTIONS && go_down(&smooth, u); step++) continue;
-    for (int i = 0; i < smooth.count; i++)
-        for (int d = 0; d < 2; d++) {
-            v[i][d] = q[i][d] - smooth.root[i] * u[i][d];
-            for (int j = 0; j < smooth.count; j++) v[i][d] += of->K_inv[i][j] * u[j][d] / smooth.root[j];
-        }
-}
 
 /* What the wall takes of each v, and its derivative. */
 typedef struct {
@@ -176,9 +86,7 @@ static inline void find_walls(const Touching *of, double v[MAX_PLACES][2], Walls
 }
 
 /* The rows of the derivative of v − q̃ − Σ K⁻¹ F. */
-static inline void fill_rows(
-    const Touching *of, const Walls *walls, double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1]
-) {
+static inline void fill_rows(const Touching *of, const Walls *walls, Equations matrix) {
     for (int a = 0; a < of->touching; a++)
         for (int b = 0; b < of->touching; b++) {
             double share = a == b ? 0.0 : of->K_inv[a][b] / of->k[b];
@@ -190,7 +98,7 @@ static inline void fill_rows(
 
 /* Newton's method from the guess in `v`; returns 0 if it finds nothing. */
 static inline int correct_contacts(const Touching *of, double q[MAX_PLACES][2], double v[MAX_PLACES][2], Walls *walls) {
-    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1];
+    Equations matrix;
     int m = of->touching, size = 2 * m, found = 0;
     for (int correction = 0; correction < MOST_CORRECTIONS && !found; correction++) {
         double change = 0.0, scale = 0.0;
@@ -206,7 +114,7 @@ static inline int correct_contacts(const Touching *of, double q[MAX_PLACES][2], 
                 }
                 balanced &= fabs(*rest) <= BALANCED * terms;
             }
-        if (!solve_touching(size, 1, matrix)) return 0;
+        if (!solve_equations(size, 1, matrix)) return 0;
         for (int a = 0; a < m; a++)
             for (int d = 0; d < 2; d++) {
                 double by = matrix[2 * a + d][size];
@@ -220,41 +128,45 @@ static inline int correct_contacts(const Touching *of, double q[MAX_PLACES][2], 
     return found;
 }
 
-/* The v of those that touch under their q̃, sought from a guess in `v`; returns 0 if none is found. Where `answer` is given,
-   it becomes dF/dq̃, row by row, over the directions of each of those that touch. */
+/* The v of those that touch under their q̃, sought from a guess in `v`. Where a wall would have to pull so much that there is
+   none, it is that of the contact problem, in which those that do not reach the wall are free. Where `by` is given,
+   derivatives of q̃ by the state, row by row over the directions of each, it becomes those of F; returns 0 if there are none. */
 static inline int solve_contacts(
     const Touching *of, double q[MAX_PLACES][2], double v[MAX_PLACES][2], double F[MAX_PLACES][2],
-    double answer[MOST_TOUCHING][MOST_TOUCHING]
+    double by[MOST_TOUCHING][COMPONENTS]
 ) {
     int m = of->touching, size = 2 * m;
-    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1];
+    Equations matrix;
     Walls walls;
     if (m == 1) v[0][0] = q[0][0], v[0][1] = q[0][1];
     find_walls(of, v, &walls);
     if (m > 1 && !correct_contacts(of, q, v, &walls)) {
-        come_near(of, q, v);
+        double near[MAX_PLACES][2];
+        approach(of, q, near);
+        memcpy(v, near, (size_t)m * sizeof near[0]);
         find_walls(of, v, &walls);
-        if (!correct_contacts(of, q, v, &walls)) return 0;
+        if (!correct_contacts(of, q, v, &walls)) {
+            memcpy(v, near, (size_t)m * sizeof near[0]);
+            find_walls(of, v, &walls);
+            for (int a = 0; a < m; a++)
+                if (!is_beyond(v[a], of->y[a])) memset(walls.beyond[a], 0, sizeof walls.beyond[a]), memset(walls.slope[a], 0, sizeof walls.slope[a]);
+        }
     }
     for (int a = 0; a < m; a++)
         for (int d = 0; d < 2; d++) F[a][d] = -walls.beyond[a][d] / of->k[a];
-    if (!answer) return 1;
+    if (!by) return 1;
     fill_rows(of, &walls, matrix);
-    for (int i = 0; i < size; i++)
-        for (int j = 0; j < size; j++) matrix[i][size + j] = i == j;
-    if (m > 1 && !solve_touching(size, size, matrix)) return 0;
+    for (int i = 0; i < size; i++) memcpy(&matrix[i][size], by[i], sizeof by[i]);
+    if (m > 1 && !solve_equations(size, COMPONENTS, matrix)) return 0;
     for (int a = 0; a < m; a++)
         for (int d = 0; d < 2; d++)
-            for (int j = 0; j < size; j++) {
-                double by = 0.0;
-                for (int c = 0; c < 2; c++) by += walls.slope[a][d][c] * matrix[2 * a + c][size + j];
-                answer[2 * a + d][j] = -by / of->k[a];
+            for (int c = 0; c < COMPONENTS; c++) {
+                const double *slope = walls.slope[a][d];
+                by[2 * a + d][c] =
+                    -(slope[0] * matrix[2 * a][size + c] + slope[1] * matrix[2 * a + 1][size + c]) / of->k[a];
             }
     return 1;
 }
-
-/* Whether v lies beyond the disc, so that the support touches; without clearance it always does. */
-static inline int is_beyond(const double v[2], double y) { return y == 0.0 || hypot(v[0], v[1]) > y; }
 
 /* How far v is from a solution over all supports, at most; gives where each ought to be for the others. */
 static inline double off_balance(
@@ -334,7 +246,7 @@ static inline void settle_all(const Touching *all, double q[MAX_PLACES][2], doub
         if (nearer) continue;
         if (came_near || least <= ROUNDING * larger(scale, largest_of(count, best))) break;
         came_near = 1;
-        come_near(all, q, v);
+        approach(all, q, v);
         off = off_balance(all, q, v, wanted);
         if (off < least) least = off, memcpy(best, v, size);
     }

@@ -172,9 +172,9 @@ static inline int law_here(
 ) {
     ScaledInputs inputs = inputs_ahead(&law->inputs, ahead);
     int n = law->n, m = law->touching.touching;
-    double a[2], eta_pi = at->eta_pi = inputs.eta_pi, by_F_0[2][2], answer[MOST_TOUCHING][MOST_TOUCHING];
+    double a[2], eta_pi = at->eta_pi = inputs.eta_pi, by_F_0[2][2];
     at->psi_star = inputs.psi_star;
-    double q_C[MAX_PLACES][2], q_by[MOST_TOUCHING][COMPONENTS], M_by[2][COMPONENTS], F_0_by[2][COMPONENTS];
+    double q_C[MAX_PLACES][2], F_by[MOST_TOUCHING][COMPONENTS], M_by[2][COMPONENTS], F_0_by[2][COMPONENTS];
     for (int d = 0; d < 2; d++) a[d] = (x[LATERAL + d] - first[d]) / s_1 - x[ANGLE + d];
     Vector G = weight_across(view->down, a, law->axial, s_1), F_rss = pad_force(&inputs, view);
     Vector high = {{0.0, 0.0}, {{0}}, {{0}}};
@@ -187,7 +187,9 @@ static inline int law_here(
             if (i != n - 1) at->q[i][d] = row_here(&law->q[i], x, d, &G, &F_rss, &high) + behind->q[i][d];
         for (int k = 0; k < m; k++) q_C[k][d] = at->q[law->touching.C[k]][d];
     }
-    if (m && !solve_contacts(&law->touching, q_C, at->v, at->F, slopes ? answer : NULL)) return 0;
+    for (int k = 0; k < 2 * m && slopes; k++) /* those of q̃, and then of F */
+        row_slopes(&law->q[law->touching.C[k / 2]], k % 2, &G, &F_rss, &high, F_by[k]);
+    if (m && !solve_contacts(&law->touching, q_C, at->v, at->F, slopes ? F_by : NULL)) return 0;
     for (int k = 0; k < m; k++)
         for (int d = 0; d < 2; d++) {
             at->M[d] += law->modes->beam.M_F[law->touching.support[k]] * at->F[k][d];
@@ -200,17 +202,13 @@ static inline int law_here(
         at->rate[LATERAL + d] = x[ANGLE + d] - at->psi[d];
     }
     if (!slopes) return 1;
-    for (int d = 0; d < 2; d++) {
+    for (int d = 0; d < 2; d++)
         row_slopes(&law->M, d, &G, &F_rss, &high, M_by[d]), row_slopes(&law->F_0, d, &G, &F_rss, &high, F_0_by[d]);
-        for (int k = 0; k < m; k++) row_slopes(&law->q[law->touching.C[k]], d, &G, &F_rss, &high, q_by[2 * k + d]);
-    }
     for (int k = 0; k < m; k++)
         for (int d = 0; d < 2; d++)
             for (int c = 0; c < COMPONENTS; c++) {
-                double F_by = 0.0;
-                for (int j = 0; j < 2 * m; j++) F_by += answer[2 * k + d][j] * q_by[j][c];
-                M_by[d][c] += law->modes->beam.M_F[law->touching.support[k]] * F_by;
-                F_0_by[d][c] += law->modes->beam.F0_F[law->touching.support[k]] * F_by;
+                M_by[d][c] += law->modes->beam.M_F[law->touching.support[k]] * F_by[2 * k + d][c];
+                F_0_by[d][c] += law->modes->beam.F0_F[law->touching.support[k]] * F_by[2 * k + d][c];
             }
     for (int d = 0; d < 2; d++)
         for (int c = 0; c < COMPONENTS; c++) {

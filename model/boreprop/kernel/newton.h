@@ -158,12 +158,12 @@ static inline int solve_step(
 
 /* (1 − hJ/γ)⁻¹ times the defect, as in the plane; into the defect. */
 static inline int damp(double h, const double J[COMPONENTS][COMPONENTS], double defect[COMPONENTS]) {
-    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1];
+    Equations matrix;
     for (int c = 0; c < COMPONENTS; c++) {
         for (int e = 0; e < COMPONENTS; e++) matrix[c][e] = (c == e) - h / GAMMA[0].re * J[c][e];
         matrix[c][COMPONENTS] = defect[c];
     }
-    if (!solve_touching(COMPONENTS, 1, matrix)) return 0;
+    if (!solve_equations(COMPONENTS, 1, matrix)) return 0;
     for (int c = 0; c < COMPONENTS; c++) defect[c] = matrix[c][COMPONENTS];
     return 1;
 }
