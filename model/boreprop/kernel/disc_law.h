@@ -45,6 +45,7 @@ typedef struct {
     ScaledInputs inputs;
     double inputs_xi; /* where the inputs are those that it was made under */
     double longest;   /* step of a law that changes */
+    double finest;    /* of the clearances in contact: by how little the wall is another */
     Touching touching;
     Linear q[MAX_PLACES], M, F_0; /* without contacts */
     double relaxation;
@@ -95,13 +96,13 @@ static inline void make_law(
     law->changes = law_changes(&inputs);
     law->longest = law->changes ? LONGEST_RAMP / growth_of(&inputs) : INFINITY;
     law->M = linear_of(&mode->M, places), law->F_0 = linear_of(&mode->F_0, places);
-    law->touching = touching_of(modes, &regime.contact);
+    law->touching = touching_of(modes, &regime.contact), law->finest = INFINITY;
     for (int i = 0; i < law->count; i++) {
         if (i == n - 1) continue;
         law->q[i] = linear_of(&mode->delta[i], places);
         law->y_star[i] = modes->y_star[support_at(&regime.contact, n, i)];
         if (law->y_star[i] == 0.0) continue;
-        if (regime.contact.of[i]) add_bound(law, i, 0.0, INFINITY);
+        if (regime.contact.of[i]) add_bound(law, i, 0.0, INFINITY), law->finest = smaller(law->finest, law->y_star[i]);
         else add_bound(law, i, -INFINITY, law->y_star[i]);
     }
     if (law->saturated) add_bound(law, n - 1, inputs.psi_star, INFINITY);

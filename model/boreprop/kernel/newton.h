@@ -24,7 +24,8 @@ static inline View view_at(const Views *views, double t) {
 }
 
 enum { UNKNOWNS = S * COMPONENTS, MOST_ITERATIONS = 12 };
-#define REST 0.03      /* what may be neglected of the solution of a step, in tolerances: little beside its error */
+#define REST 0.03      /* what may be neglected of the solution of a step, in tolerances: little beside its error, … */
+#define FINEST 1e-11   /* … and in clearances in contact, but for those that are near rounding */
 #define TOO_HARD 100.0 /* the error, over the tolerance, of a step that is not solved: the next is a third as long */
 #define AIMED 0.03     /* of ψ*: the error of a saturated tilt in a step, at most, … */
 #define NO_WAY 1e-3    /* … or what adds so many tolerances to Y */
@@ -142,13 +143,14 @@ static inline int solve_step(
     const Law *law, const Options *options, double s_1, const double x[COMPONENTS], Solving *solving, Trial *trial
 ) {
     double before = INFINITY, size = INFINITY;
+    double rest = REST * smaller(options->relative_tolerance, larger(law->finest, FINEST));
     for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
         spread(x, solving, trial);
         if (!make_views(law, &trial->step.frame, (const double (*)[S + 1]) solving->c, &solving->views)) return 0;
         before = size;
         if (!correct(law, s_1, trial->step.h, solving, trial, &size)) return 0;
         double rate = isfinite(before) ? size / before : 1.0;
-        if (size == 0.0 || (rate < 1 && size * rate / (1 - rate) <= REST * options->relative_tolerance)) {
+        if (size == 0.0 || (rate < 1 && size * rate / (1 - rate) <= rest)) {
             spread(x, solving, trial);
             return make_views(law, &trial->step.frame, (const double (*)[S + 1]) solving->c, &solving->views);
         }
