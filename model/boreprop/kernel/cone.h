@@ -168,12 +168,10 @@ static inline int solve_contacts(
     return 1;
 }
 
-/* How far v is from a solution over all supports, at most; gives where each ought to be for the others. */
-static inline double off_balance(
-    const Touching *all, double q[MAX_PLACES][2], double v[MAX_PLACES][2], double wanted[MAX_PLACES][2]
-) {
+/* How far v is from a solution over all supports, at most. */
+static inline double off_balance(const Touching *all, double q[MAX_PLACES][2], double v[MAX_PLACES][2]) {
     int count = all->touching;
-    double off = 0.0;
+    double off = 0.0, wanted[MAX_PLACES][2]; /* where each ought to be for the others */
     for (int i = 0; i < count; i++) memcpy(wanted[i], q[i], sizeof wanted[i]);
     for (int j = 0; j < count; j++) {
         double beyond[2], slope[2][2];
@@ -204,7 +202,7 @@ static inline Touching touching_among(const Touching *all, double v[MAX_PLACES][
 static inline double try_contacts(
     const Touching *all, double q[MAX_PLACES][2], double v[MAX_PLACES][2], double tried[MAX_PLACES][2]
 ) {
-    double own[MAX_PLACES][2], q_C[MAX_PLACES][2], F[MAX_PLACES][2], wanted[MAX_PLACES][2];
+    double own[MAX_PLACES][2], q_C[MAX_PLACES][2], F[MAX_PLACES][2];
     int count = all->touching;
     Touching of = touching_among(all, v);
     for (int a = 0; a < of.touching; a++)
@@ -215,7 +213,7 @@ static inline double try_contacts(
         for (int i = 0; i < count; i++)
             for (int d = 0; d < 2; d++) tried[i][d] += all->K_inv[i][of.C[a]] * F[a][d];
     for (int a = 0; a < of.touching; a++) memcpy(tried[of.C[a]], own[a], sizeof own[a]);
-    return off_balance(all, q, tried, wanted);
+    return off_balance(all, q, tried);
 }
 
 /* The largest number of some vectors. */
@@ -227,30 +225,27 @@ static inline double largest_of(int count, double v[MAX_PLACES][2]) {
 
 enum { MOST_ROUNDS = 60 };
 
-/* Bring v to the solution over all supports: Newton's method with the contacts as they are in the guess `v`, again while
-   that brings it nearer; else from near the solution. */
-static inline void settle_all(const Touching *all, double q[MAX_PLACES][2], double v[MAX_PLACES][2]) {
-    int count = all->touching, came_near = 0;
-    double wanted[MAX_PLACES][2], tried[MAX_PLACES][2], best[MAX_PLACES][2], scale = 0.0, least;
-    size_t size = (size_t)count * sizeof best[0];
+/* Go on from v with the contacts as they are there, again while that brings it nearer to a solution over all supports by half.
+   Returns how near it is then, over the largest number. */
+static inline double improve(const Touching *all, double q[MAX_PLACES][2], double v[MAX_PLACES][2]) {
+    int count = all->touching;
+    double tried[MAX_PLACES][2], scale = largest_of(count, q), off = off_balance(all, q, v), before = INFINITY;
     for (int i = 0; i < count; i++) scale = larger(scale, all->y[i]);
-    scale = larger(scale, largest_of(count, q)); /* forces of neighbours may make v much larger */
-    double off = off_balance(all, q, v, wanted);
-    memcpy(best, v, size), least = off;
-    for (int round = 0; round < MOST_ROUNDS && least > SAME_OFFSET * scale; round++) {
+    for (int round = 0; round < MOST_ROUNDS && off > SAME_OFFSET * scale && off < before / 2; round++) {
         double next = try_contacts(all, q, v, tried);
-        int nearer = next < off / 2;
-        if (nearer) off = next, memcpy(v, tried, size);
-        else if (next < off) memcpy(v, tried, size), off = next;
-        if (off < least) least = off, memcpy(best, v, size);
-        if (nearer) continue;
-        if (came_near || least <= ROUNDING * larger(scale, largest_of(count, best))) break;
-        came_near = 1;
-        approach(all, q, v);
-        off = off_balance(all, q, v, wanted);
-        if (off < least) least = off, memcpy(best, v, size);
+        before = off;
+        if (!(next < off)) break;
+        off = next, memcpy(v, tried, (size_t)count * sizeof tried[0]);
     }
-    memcpy(v, best, size);
+    return off / larger(scale, largest_of(count, v)); /* forces of neighbours may make v much larger */
+}
+
+/* Bring v to the solution over all supports, from a guess if that leads there. */
+static inline void settle_all(const Touching *all, double q[MAX_PLACES][2], double v[MAX_PLACES][2]) {
+    double near[MAX_PLACES][2], off = improve(all, q, v);
+    if (!(off > ROUNDING)) return;
+    approach(all, q, near);
+    if (improve(all, q, near) < off) memcpy(v, near, (size_t)all->touching * sizeof near[0]);
 }
 
 /* Guess each v: under the forces of those that touch in `contact`. Where the body touches, its points are many and near each
