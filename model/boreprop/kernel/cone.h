@@ -1,11 +1,12 @@
 /* Contact in space: a support i whose offset δ_i from the axis of the hole lies within a disc |δ_i| <= y*_i, and which
    the wall pushes towards the axis. F minimises ½ Fᵀ(K⁻¹ ⊗ I)F + q̃·F + Σ y*_i |F_i|, so it is unique.
 
-   With k_i = K⁻¹_ii and v_i = δ_i − k_i F_i, the offset is the point of the disc that is nearest to v_i:
+   With any k_i > 0 and v_i = δ_i − k_i F_i, the offset is the point of the disc that is nearest to v_i:
 
        in contact  δ_i = y*_i v_i/|v_i| ,   F_i = −(v_i − δ_i)/k_i ,   |v_i| >= y*_i ;        free  δ_i = v_i ,   F_i = 0
 
-   and v_i = q̃_i + Σ_{j≠i} K⁻¹_ij F_j . Within a regime this is smooth, and solved by Newton's method. */
+   and v_i = q̃_i + Σ_j (K⁻¹_ij − k_i [i = j]) F_j . Within a regime this is smooth, and solved by Newton's method. k_i is what
+   support i yields to a force while the others that touch stay: so v is of the size of y* beside the wall. */
 #ifndef BOREPROP_CONE_H
 #define BOREPROP_CONE_H
 
@@ -85,14 +86,19 @@ static inline void find_walls(const Touching *of, double v[MAX_PLACES][2], Walls
     for (int a = 0; a < of->touching; a++) beyond_disc(v[a], of->y[a], walls->beyond[a], walls->slope[a]);
 }
 
-/* The rows of the derivative of v − q̃ − Σ K⁻¹ F. */
+/* By how much v of one support changes with what the wall takes of another's, or its own. */
+static inline double taken(const Touching *of, int a, int b) {
+    return (a == b ? of->K_inv[a][a] - of->k[a] : of->K_inv[a][b]) / of->k[b];
+}
+
+/* The rows of the derivative of v − q̃ − Σ (K⁻¹ − k) F. */
 static inline void fill_rows(const Touching *of, const Walls *walls, Equations matrix) {
     for (int a = 0; a < of->touching; a++)
         for (int b = 0; b < of->touching; b++) {
-            double share = a == b ? 0.0 : of->K_inv[a][b] / of->k[b];
+            double share = taken(of, a, b);
             for (int d = 0; d < 2; d++)
                 for (int c = 0; c < 2; c++)
-                    matrix[2 * a + d][2 * b + c] = a == b ? d == c : share * walls->slope[b][d][c];
+                    matrix[2 * a + d][2 * b + c] = (a == b && d == c) + share * walls->slope[b][d][c];
         }
 }
 
@@ -109,7 +115,7 @@ static inline int correct_contacts(const Touching *of, double q[MAX_PLACES][2], 
                 double *rest = &matrix[2 * a + d][size], terms = fabs(q[a][d]) + fabs(v[a][d]);
                 *rest = q[a][d] - v[a][d];
                 for (int b = 0; b < m; b++) {
-                    double term = a == b ? 0.0 : of->K_inv[a][b] / of->k[b] * walls->beyond[b][d];
+                    double term = taken(of, a, b) * walls->beyond[b][d];
                     *rest -= term, terms += fabs(term);
                 }
                 balanced &= fabs(*rest) <= BALANCED * terms;
@@ -168,7 +174,14 @@ static inline int solve_contacts(
     return 1;
 }
 
-/* How far v is from a solution over all supports, at most. */
+/* v as it is with another k. */
+static inline void restate(const double v[2], double y, double k, double other, double restated[2]) {
+    double beyond[2] = {0.0, 0.0}, slope[2][2];
+    if (is_beyond(v, y)) beyond_disc(v, y, beyond, slope);
+    for (int d = 0; d < 2; d++) restated[d] = v[d] - (1 - other / k) * beyond[d];
+}
+
+/* How far v is from a solution over all supports, whose k are those on the diagonal of K⁻¹, at most. */
 static inline double off_balance(const Touching *all, double q[MAX_PLACES][2], double v[MAX_PLACES][2]) {
     int count = all->touching;
     double off = 0.0, wanted[MAX_PLACES][2]; /* where each ought to be for the others */
@@ -190,10 +203,11 @@ static inline Touching touching_among(const Touching *all, double v[MAX_PLACES][
     Touching of;
     int m = 0;
     for (int i = 0; i < all->touching; i++)
-        if (is_beyond(v[i], all->y[i])) of.C[m] = i, of.k[m] = all->k[i], of.y[m++] = all->y[i];
+        if (is_beyond(v[i], all->y[i])) of.C[m] = i, of.y[m++] = all->y[i];
     of.touching = m;
     for (int a = 0; a < m; a++)
         for (int b = 0; b < m; b++) of.K_inv[a][b] = all->K_inv[of.C[a]][of.C[b]];
+    find_yields(&of);
     return of;
 }
 
@@ -205,14 +219,16 @@ static inline double try_contacts(
     double own[MAX_PLACES][2], q_C[MAX_PLACES][2], F[MAX_PLACES][2];
     int count = all->touching;
     Touching of = touching_among(all, v);
-    for (int a = 0; a < of.touching; a++)
-        memcpy(own[a], v[of.C[a]], sizeof own[a]), memcpy(q_C[a], q[of.C[a]], sizeof q_C[a]);
+    for (int a = 0; a < of.touching; a++) {
+        restate(v[of.C[a]], of.y[a], of.K_inv[a][a], of.k[a], own[a]);
+        memcpy(q_C[a], q[of.C[a]], sizeof q_C[a]);
+    }
     if (!solve_contacts(&of, q_C, own, F, NULL)) return INFINITY;
     for (int i = 0; i < count; i++) memcpy(tried[i], q[i], sizeof tried[i]);
     for (int a = 0; a < of.touching; a++)
         for (int i = 0; i < count; i++)
             for (int d = 0; d < 2; d++) tried[i][d] += all->K_inv[i][of.C[a]] * F[a][d];
-    for (int a = 0; a < of.touching; a++) memcpy(tried[of.C[a]], own[a], sizeof own[a]);
+    for (int a = 0; a < of.touching; a++) restate(own[a], of.y[a], of.k[a], of.K_inv[a][a], tried[of.C[a]]);
     return off_balance(all, q, tried);
 }
 
@@ -256,6 +272,7 @@ static inline void guess_under(
     double q_C[MAX_PLACES][2], v_C[MAX_PLACES][2], F[MAX_PLACES][2];
     int n = modes->beam.n;
     Touching held = touching_of(modes, contact);
+    find_yields(&held);
     for (int a = 0; a < held.touching; a++)
         memcpy(q_C[a], q[held.C[a]], sizeof q_C[a]), memcpy(v_C[a], q_C[a], sizeof v_C[a]);
     if (!solve_contacts(&held, q_C, v_C, F, NULL)) return;
@@ -263,10 +280,11 @@ static inline void guess_under(
         for (int a = 0; a < held.touching && i != n - 1; a++)
             for (int d = 0; d < 2; d++)
                 v[i][d] += compliance(&modes->beam, support_at(contact, n, i), held.support[a]) * F[a][d];
-    for (int a = 0; a < held.touching; a++) memcpy(v[held.C[a]], v_C[a], sizeof v_C[a]);
+    for (int a = 0; a < held.touching; a++)
+        restate(v_C[a], held.y[a], held.k[a], held.K_inv[a][a], v[held.C[a]]);
 }
 
-/* The contacts that hold under q̃ among the supports that have places, with their v, sought from those in `contact`. */
+/* The contacts that hold under q̃ among the supports that have places, with their v where k_i = K⁻¹_ii, sought from those in `contact`. */
 static inline Contact settle_discs(
     const Modes *modes, double q[MAX_PLACES][2], double v[MAX_PLACES][2], Contact contact
 ) {

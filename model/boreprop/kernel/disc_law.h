@@ -97,6 +97,7 @@ static inline void make_law(
     law->longest = law->changes ? LONGEST_RAMP / growth_of(&inputs) : INFINITY;
     law->M = linear_of(&mode->M, places), law->F_0 = linear_of(&mode->F_0, places);
     law->touching = touching_of(modes, &regime.contact), law->finest = INFINITY;
+    find_yields(&law->touching);
     for (int i = 0; i < law->count; i++) {
         if (i == n - 1) continue;
         law->q[i] = linear_of(&mode->delta[i], places);

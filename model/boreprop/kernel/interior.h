@@ -17,7 +17,7 @@ enum { MOST_TOUCHING = 2 * MAX_PLACES }; /* numbers: two for each support in con
 /* The supports of a contact problem: the places of those that touch, C, and what belongs to them. */
 typedef struct {
     int touching, C[MAX_PLACES], support[MAX_PLACES];
-    double k[MAX_PLACES], y[MAX_PLACES];  /* by number in C */
+    double k[MAX_PLACES], y[MAX_PLACES];  /* by number in C; k as in cone.h */
     double K_inv[MAX_PLACES][MAX_PLACES]; /* of those in C */
 } Touching;
 
@@ -35,16 +35,6 @@ static inline Touching touching_of(const Modes *modes, const Contact *contact) {
     }
     return touching;
 }
-
-/* A support on its way to the solution. */
-typedef struct {
-    double delta[2], F[2], lambda, room;
-} Inner;
-
-/* What a step adds to it; and to λ s in second order. */
-typedef struct {
-    double delta[2], F[2], lambda, product;
-} Change;
 
 /* A symmetric matrix, of which the upper half is there, or what is left of it when it has been eliminated. */
 typedef struct {
@@ -77,6 +67,32 @@ static inline void solve_symmetric(const Symmetric *eliminated, double x[MOST_TO
         x[i] = (x[i] - dot(size - 1 - i, &eliminated->row[i][i + 1], &x[i + 1])) / eliminated->row[i][i];
 }
 
+#define LEAST_YIELD 1e-9 /* over K⁻¹_ii: rounding may take all where supports are close together */
+
+/* Let k be what each support yields to a force while the others stay: one over the diagonal of (K⁻¹)⁻¹. */
+static inline void find_yields(Touching *of) {
+    int m = of->touching;
+    Symmetric matrix = {.size = m};
+    for (int a = 0; a < m; a++) memcpy(matrix.row[a], of->K_inv[a], (size_t)m * sizeof(double));
+    eliminate_symmetric(&matrix);
+    for (int a = 0; a < m; a++) {
+        double x[MOST_TOUCHING] = {0}, own = of->K_inv[a][a];
+        x[a] = 1.0;
+        solve_symmetric(&matrix, x);
+        of->k[a] = x[a] > 0 ? smaller(own, larger(1 / x[a], LEAST_YIELD * own)) : LEAST_YIELD * own;
+    }
+}
+
+/* A support on its way to the solution. */
+typedef struct {
+    double delta[2], F[2], lambda, room;
+} Inner;
+
+/* What a step adds to it; and to λ s in second order. */
+typedef struct {
+    double delta[2], F[2], lambda, product;
+} Change;
+
 /* By how much δ changes under a change of the force where λ s stays: D⁻¹, D = λ(1 + δδᵀ/s). */
 static inline void yield(const Inner *at, const double F[2], double by[2]) {
     double along = dot(2, at->delta, F) / (at->room + dot(2, at->delta, at->delta));
@@ -102,7 +118,7 @@ static inline double look_missing(
 ) {
     double off = 0.0;
     for (int a = 0; a < of->touching; a++) {
-        double y = of->y[a], pushes = of->k[a] * at[a].lambda;
+        double y = of->y[a], pushes = of->K_inv[a][a] * at[a].lambda;
         for (int d = 0; d < 2; d++) {
             double terms = fabs(q[a][d]) + y;
             missing[a][d] = q[a][d] - at[a].delta[d];
@@ -132,7 +148,7 @@ static inline void step_towards(
     for (int a = 0; a < of->touching; a++) {
         const double *delta = at[a].delta, lambda = at[a].lambda, room = at[a].room, square = dot(2, delta, delta);
         double rest[2], pulled = 0.0;
-        int at_wall = of->k[a] * lambda * square > room; /* so that differences keep their digits */
+        int at_wall = of->K_inv[a][a] * lambda * square > room; /* so that differences keep their digits */
         for (int d = 0; d < 2; d++) {
             by[a].F[d] = x[2 * a + d];
             by[a].delta[d] = missing[a][d];
@@ -194,7 +210,7 @@ APART static void approach(const Touching *of, double q[MAX_PLACES][2], double v
     Symmetric matrix;
     for (int a = 0; a < m; a++) {
         double y = of->y[a], pushes = larger(larger(fabs(q[a][0]), fabs(q[a][1])) / y, 1.0);
-        Inner start = {{0.0, 0.0}, {0.0, 0.0}, pushes / of->k[a], y * y / 2};
+        Inner start = {{0.0, 0.0}, {0.0, 0.0}, pushes / of->K_inv[a][a], y * y / 2};
         at[a] = start;
     }
     for (int step = 0; step < MOST_APPROACHES && !near; step++) {

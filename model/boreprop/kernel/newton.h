@@ -183,9 +183,10 @@ static inline void guess_contacts(const Law *law, const double x[COMPONENTS], co
     const double first[2] = {trial->delayed[0][0][0], trial->delayed[0][1][0]};
     law_here(&without, x, trial->ahead[0], &view, &solving->behind[0], first, law->s_1, 0, &at);
     settle_discs(law->modes, at.q, v, law->contact);
+    const Touching *of = &law->touching;
     for (int point = 0; point < POINTS; point++)
-        for (int k = 0; k < law->touching.touching; k++)
-            memcpy(trial->at[point].v[k], v[law->touching.C[k]], sizeof v[0]);
+        for (int k = 0; k < of->touching; k++)
+            restate(v[of->C[k]], of->y[k], of->K_inv[k][k], of->k[k], trial->at[point].v[k]);
 }
 
 /* How far a saturated tilt is from the law's in a trial step with these defects of Y, over what is allowed. It turns with F_0,
