@@ -7,7 +7,7 @@ from itertools import repeat
 from math import cos, sin
 from typing import Any, NamedTuple
 
-from ..core.checks import check_increasing, check_number, check_part, check_value, checked_float
+from ..core.checks import check_increasing, check_number, check_part, check_quantity, check_value, checked_float
 from ..core.errors import ParameterError
 from ..core.quantities import CLEARANCES, INPUTS, TOOLFACE_REFERENCES, quantity_of
 
@@ -214,7 +214,11 @@ class InputSchedule:
 def signed(
     force: tuple[float, ...], toolface: tuple[float, ...], reference: tuple[str, ...]
 ) -> tuple[float, ...] | None:
-    """The force where it pushes up and down only, negative down; None where it pushes to other sides."""
+    """The force where it pushes up and down only, negative down; None where it pushes to other sides.
+
+    Raises `ParameterError` if a toolface is beyond a whole turn.
+    """
+    check_quantity("rss_toolface", toolface)
     if set(reference) - {"gravity"} or len(toolface) not in (0, len(force)):
         return None
     if any(abs(sin(angle)) > UP_OR_DOWN for angle in toolface):
