@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from operator import attrgetter
 
-from ..core.checks import check_increasing, check_number, check_part, check_quantity
+from ..core.checks import check_increasing, check_number, check_part, check_quantity, take_fields
 from ..core.errors import ParameterError
 from ..core.ground import Ground, Wear
 from ..core.quantities import BY_NAME, CLEARANCES, INPUTS, ROCK, Structure, quantity_of
@@ -79,6 +79,7 @@ class Case:
     dimensions: int = 2
 
     def __post_init__(self) -> None:
+        take_fields("", self)
         if self.in_layers and not all(formation.measured_depth is None for formation in self.formations):
             depths = tuple(formation.depth for formation in self.formations)
             raise ParameterError("true_vertical_depth", "must be given of all formations, or of none", depths)

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...arrays import Floats
 from ...case.case import Case
-from ...core.checks import check_increasing, check_number
+from ...core.checks import check_increasing, check_number, some_numbers
 from ...core.errors import ParameterError
 from ...core.system import BottomHoleAssembly
 from ..lying import pressing_weight
@@ -120,12 +120,10 @@ def lambda_2(bha: BottomHoleAssembly) -> float:
 
 def _axis(name: str, values: ArrayLike, smallest: float) -> Floats:
     """The values along an axis of the chart, which increase from the smallest on."""
-    axis = np.asarray(values, dtype=float)
-    if axis.ndim != 1 or not axis.size:
-        raise ParameterError(name, "must be a list of at least one value", values)
-    check_increasing(name, tuple(axis.tolist()))
-    check_number(name, float(axis[0]), at_least=smallest)
-    return axis
+    axis = some_numbers(name, values)
+    check_increasing(name, axis)
+    check_number(name, axis[0], at_least=smallest)
+    return np.array(axis, dtype=float)
 
 
 def stability_chart(

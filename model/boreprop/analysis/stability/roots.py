@@ -225,7 +225,7 @@ def touching_stabilizers(bha: BottomHoleAssembly, numbers: Iterable[int]) -> tup
     """
     wanted, last = set(numbers), len(bha.stabilizer_clearances)
     for number in wanted:
-        if not 1 <= number <= last:
+        if number not in range(1, last + 1):
             raise ParameterError("contact", f"must be the number of a non-ideal stabilizer; there are {last}", number)
     return tuple(int(i in wanted or not clearance) for i, clearance in enumerate(bha.stabilizer_clearances, 1))
 
