@@ -71,7 +71,8 @@ def simulate(
     ParameterError
         If a value is out of range.
     Stopped
-        If the integrator cannot go on; its `trajectory` holds the rows up to there, its cause is the `CannotContinue`.
+        If the integrator cannot go on; its `trajectory` holds the rows up to there, None if it cannot even start. Its
+        cause is the `CannotContinue`.
     KernelError
         If the native engine is asked for and is not installed.
 

@@ -6,6 +6,7 @@ from math import nan
 from ...case.case import Case
 from ...core.options import RELATIVE_TOLERANCE
 from ...core.quantities import BY_NAME
+from ...errors import CannotContinue, RootsNotFound, SpiralNotFound
 from ...run.simulate import simulate
 from ...run.trajectory import Stopped
 from ...units import BUILD_LENGTH
@@ -86,5 +87,5 @@ def outcome(
     try:
         results = function(with_varied(case, dict(zip(names, values, strict=True))))
         return {name: float(result) for name, result in results.items()}
-    except (ArithmeticError, RuntimeError, ValueError, Stopped) as error:
+    except (ArithmeticError, RuntimeError, ValueError, Stopped, CannotContinue, RootsNotFound, SpiralNotFound) as error:
         return str(error) or type(error).__name__
