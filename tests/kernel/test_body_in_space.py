@@ -20,7 +20,7 @@ from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop.kernel.binding import NativeDrilling
 from boreprop.kernel.space import SpaceDrilling
-from space_runs import Outputs, direction, pair, place
+from space_runs import IN_SECTIONS, Outputs, direction, pair, place
 
 pytestmark = pytest.mark.usefixtures("kernel")
 PAPER = paper_case()
@@ -63,16 +63,11 @@ def test_contacts_are_those_of_the_contact_problem(
 ) -> None:
     """In a hole that has turned along an arc, with a beam of finite elements: e = −κ s²/2, in both directions."""
     azimuth, weight, reach, kappa = 0.4, 6e4, 24.0, np.array(curvature)
-    bha = BottomHoleAssembly(
-        (3.0, 12.0, reach),
-        (2e-3, 4e-3),
-        0.6,
-        1500.0,
-        1e7,
+    bha = replace(
+        IN_SECTIONS,
+        stabilizer_positions=(3.0, 12.0, reach),
         section_lengths=(4.0, 20.0),
-        section_distributed_weights=(1500.0, 900.0),
-        section_flexural_stiffnesses=(1e7, 5e6),
-        section_outer_diameters=(0.0, 0.0),
+        end_deflection=0.0,
         axial_load=axial,
         body_point_positions=(7.5, 16.0, 20.0),
         body_point_clearances=tuple(clearances),
