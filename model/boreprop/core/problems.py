@@ -39,6 +39,11 @@ CONSTRAINTS = {
     "wrong count": ("must hold 1 to {limit} values", "{count}"),
     "out of reach": ("must reach the last stabilizer, {limit} m from the bit, together", "{value}"),
     "buckles": ("must be < {limit}, where the BHA buckles between its stabilizers", "{value}"),
+    "buckles in space": (
+        "must be < {limit} in space, where no wall holds the BHA sideways between bit and last stabilizer, so that it "
+        "buckles; put the last stabilizer nearer to the bit, or take stiffer sections",
+        "{value}",
+    ),
     "no station": ("must hold at least one station", "()"),
     "no start": ("must give a finite state where the run starts", "{value}"),
     "no state": ("must be a valid saved state of this system", "{count} numbers that are not"),
