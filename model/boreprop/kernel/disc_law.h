@@ -41,7 +41,7 @@ typedef struct {
     int count, n, saturated, axial, stands, changes;
     const Modes *modes;
     Contact contact;
-    double s_1, s_n, y_star[MAX_PLACES], walk_cosine, walk_sine;
+    double s_1, s_n, y_star[MAX_PLACES], walk_cosine, walk_sine, toolface_cosine, toolface_sine;
     ScaledInputs inputs;
     double inputs_xi; /* where the inputs are those that it was made under */
     double longest;   /* step of a law that changes */
@@ -92,6 +92,7 @@ static inline void make_law(
     law->bound_count = 0;
     law->s_1 = scaled->s[0], law->s_n = scaled->s[n - 1];
     law->walk_cosine = cos(inputs.walk), law->walk_sine = sin(inputs.walk);
+    law->toolface_cosine = cos(inputs.toolface), law->toolface_sine = sin(inputs.toolface);
     law->changes = law_changes(&inputs);
     law->longest = law->changes ? LONGEST_RAMP / growth_of(&inputs) : INFINITY;
     law->M = linear_of(&mode->M, places), law->F_0 = linear_of(&mode->F_0, places);
@@ -134,22 +135,35 @@ static inline void tilt_under(
     }
 }
 
-/* A row of the beam without contacts in one direction, less its terms of the hole behind. */
-static inline double row_here(
-    const Linear *row, const double x[COMPONENTS], int d, const Vector *G, const Vector *F_rss, const Vector *high
+/* What acts on the beam across the bit: the weight, the pads, and the string above, on the low side. */
+typedef struct {
+    Vector G, F_rss, high;
+} Across;
+
+static inline Across across_the_bit(
+    const Law *law, const ScaledInputs *inputs, const double x[COMPONENTS], const View *view, const double first[2],
+    double s_1
 ) {
-    return row->theta * x[ANGLE + d] + row->Y * x[LATERAL + d] + row->g * G->value[d] + row->rss * F_rss->value[d] +
-           row->end * high->value[d];
+    double along = inputs->F_rss * law->toolface_cosine, aside = inputs->F_rss * law->toolface_sine, a[2];
+    Across across = {.F_rss = pad_force(along, aside, (int)inputs->reference, view)};
+    for (int d = 0; d < 2; d++) a[d] = (x[LATERAL + d] - first[d]) / s_1 - x[ANGLE + d];
+    across.G = weight_across(view->down, a, law->axial, s_1);
+    if (law->modes->beam.end != 0.0) across.high = side_of(view->down, -1.0);
+    return across;
+}
+
+/* A row of the beam without contacts in one direction, less its terms of the hole behind. */
+static inline double row_here(const Linear *row, const double x[COMPONENTS], int d, const Across *across) {
+    return row->theta * x[ANGLE + d] + row->Y * x[LATERAL + d] + row->g * across->G.value[d] +
+           row->rss * across->F_rss.value[d] + row->end * across->high.value[d];
 }
 
 /* Its derivatives by the state. */
-static inline void row_slopes(
-    const Linear *row, int d, const Vector *G, const Vector *F_rss, const Vector *high, double by[COMPONENTS]
-) {
+static inline void row_slopes(const Linear *row, int d, const Across *across, double by[COMPONENTS]) {
     for (int c = 0; c < 2; c++) {
-        by[ANGLE + c] = (d == c ? row->theta : 0.0) + row->g * G->by_theta[d][c] + row->rss * F_rss->by_theta[d][c] +
-                        row->end * high->by_theta[d][c];
-        by[LATERAL + c] = (d == c ? row->Y : 0.0) + row->g * G->by_Y[d][c];
+        by[ANGLE + c] = (d == c ? row->theta : 0.0) + row->g * across->G.by_theta[d][c] +
+                        row->rss * across->F_rss.by_theta[d][c] + row->end * across->high.by_theta[d][c];
+        by[LATERAL + c] = (d == c ? row->Y : 0.0) + row->g * across->G.by_Y[d][c];
     }
 }
 
@@ -164,6 +178,19 @@ static inline double delayed_part(const Linear *row, int count, const double *de
     return sum;
 }
 
+/* The rows of the beam without contacts: M, F_0 and each q. */
+static inline void rows_here(
+    const Law *law, const double x[COMPONENTS], const Across *across, const Behind *behind, Reply *at
+) {
+    for (int d = 0; d < 2; d++) {
+        at->G[d] = across->G.value[d], at->F_rss[d] = across->F_rss.value[d];
+        at->M[d] = row_here(&law->M, x, d, across) + behind->M[d];
+        at->F_0[d] = row_here(&law->F_0, x, d, across) + behind->F_0[d];
+        for (int i = 0; i < law->count; i++)
+            if (i != law->n - 1) at->q[i][d] = row_here(&law->q[i], x, d, across) + behind->q[i][d];
+    }
+}
+
 /* The law in the state `x`, `ahead` of where its inputs were taken over, with the frame in `view` and Y(ξ−s_1) as given.
    Contacts are sought from those in `at`; returns 0 if none are found. */
 static inline int law_here(
@@ -171,22 +198,13 @@ static inline int law_here(
     const double first[2], double s_1, int slopes, Reply *at
 ) {
     ScaledInputs inputs = inputs_ahead(&law->inputs, ahead);
-    int n = law->n, m = law->touching.touching;
-    double a[2], eta_pi = at->eta_pi = inputs.eta_pi, by_F_0[2][2], answer[MOST_TOUCHING][MOST_TOUCHING];
+    Across across = across_the_bit(law, &inputs, x, view, first, s_1);
+    int m = law->touching.touching;
+    double eta_pi = at->eta_pi = inputs.eta_pi, by_F_0[2][2], answer[MOST_TOUCHING][MOST_TOUCHING];
     at->psi_star = inputs.psi_star;
     double q_C[MAX_PLACES][2], q_by[MOST_TOUCHING][COMPONENTS], M_by[2][COMPONENTS], F_0_by[2][COMPONENTS];
-    for (int d = 0; d < 2; d++) a[d] = (x[LATERAL + d] - first[d]) / s_1 - x[ANGLE + d];
-    Vector G = weight_across(view->down, a, law->axial, s_1), F_rss = pad_force(&inputs, view);
-    Vector high = {{0.0, 0.0}, {{0}}, {{0}}};
-    if (law->modes->beam.end != 0.0) high = side_of(view->down, -1.0);
-    for (int d = 0; d < 2; d++) {
-        at->G[d] = G.value[d], at->F_rss[d] = F_rss.value[d];
-        at->M[d] = row_here(&law->M, x, d, &G, &F_rss, &high) + behind->M[d];
-        at->F_0[d] = row_here(&law->F_0, x, d, &G, &F_rss, &high) + behind->F_0[d];
-        for (int i = 0; i < law->count; i++)
-            if (i != n - 1) at->q[i][d] = row_here(&law->q[i], x, d, &G, &F_rss, &high) + behind->q[i][d];
-        for (int k = 0; k < m; k++) q_C[k][d] = at->q[law->touching.C[k]][d];
-    }
+    rows_here(law, x, &across, behind, at);
+    for (int k = 0; k < m; k++) memcpy(q_C[k], at->q[law->touching.C[k]], sizeof q_C[k]);
     if (m && !solve_contacts(&law->touching, q_C, at->v, at->F, slopes ? answer : NULL)) return 0;
     for (int k = 0; k < m; k++)
         for (int d = 0; d < 2; d++) {
@@ -201,8 +219,8 @@ static inline int law_here(
     }
     if (!slopes) return 1;
     for (int d = 0; d < 2; d++) {
-        row_slopes(&law->M, d, &G, &F_rss, &high, M_by[d]), row_slopes(&law->F_0, d, &G, &F_rss, &high, F_0_by[d]);
-        for (int k = 0; k < m; k++) row_slopes(&law->q[law->touching.C[k]], d, &G, &F_rss, &high, q_by[2 * k + d]);
+        row_slopes(&law->M, d, &across, M_by[d]), row_slopes(&law->F_0, d, &across, F_0_by[d]);
+        for (int k = 0; k < m; k++) row_slopes(&law->q[law->touching.C[k]], d, &across, q_by[2 * k + d]);
     }
     for (int k = 0; k < m; k++)
         for (int d = 0; d < 2; d++)

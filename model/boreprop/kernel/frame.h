@@ -17,7 +17,7 @@ typedef struct {
 } Frame;
 
 enum { MOST_TERMS = 48 };
-#define LEAST_TERM 1e-18 /* of a series whose sum is of order one */
+#define LEAST_TERM 1e-16 /* of a series whose sum is of order one */
 
 /* A row of the frame along a step, as a power series in t. */
 typedef struct {

@@ -170,16 +170,16 @@ static inline int damp(double h, const double J[COMPONENTS][COMPONENTS], double 
 
 /* Contacts from which those along the step are sought: those that hold in the state at its start. */
 static inline void guess_contacts(const Law *law, const double x[COMPONENTS], const Solving *solving, Trial *trial) {
-    Law without = *law;
     Reply at;
     View view;
     double v[MAX_PLACES][2];
     if (law->touching.touching < 2) return;
-    without.touching.touching = 0;
     memcpy(view.down, trial->step.frame.row[DOWN], sizeof view.down);
     memcpy(view.north, trial->step.frame.row[NORTH], sizeof view.north);
     const double first[2] = {trial->delayed[0][0][0], trial->delayed[0][1][0]};
-    law_here(&without, x, trial->ahead[0], &view, &solving->behind[0], first, law->s_1, 0, &at);
+    ScaledInputs inputs = inputs_ahead(&law->inputs, trial->ahead[0]);
+    Across across = across_the_bit(law, &inputs, x, &view, first, law->s_1);
+    rows_here(law, x, &across, &solving->behind[0], &at);
     settle_discs(law->modes, at.q, v, law->contact);
     for (int point = 0; point < POINTS; point++)
         for (int k = 0; k < law->touching.touching; k++)

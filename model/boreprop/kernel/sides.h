@@ -67,11 +67,9 @@ typedef struct {
     double down[3], north[3];
 } View;
 
-/* The force of the pads: at the toolface from the high side, from north or from e₂. */
-static inline Vector pad_force(const ScaledInputs *inputs, const View *view) {
-    double along = inputs->F_rss * cos(inputs->toolface), across = inputs->F_rss * sin(inputs->toolface);
+/* A force of the pads with these parts along and across the side from which the toolface counts: the high side, north or e₂. */
+static inline Vector pad_force(double along, double across, int reference, const View *view) {
     Vector side = {{1.0, 0.0}, {{0}}, {{0}}}, force;
-    int reference = (int)inputs->reference;
     if (reference == FROM_HIGH_SIDE) side = side_of(view->down, -1.0);
     if (reference == FROM_NORTH) side = side_of(view->north, 1.0);
     for (int d = 0; d < 2; d++) {
