@@ -195,6 +195,21 @@ class Case:
         return eta_pi(self.bha, self.bit, self.active_weight_on_bit)
 
 
+def in_dimensions(case: Case, dimensions: int) -> Case:
+    """The case as it is drilled in so many dimensions.
+
+    Raises
+    ------
+    ParameterError
+        If they are neither 2 nor 3, or the case leaves the plane.
+    """
+    made = replace(case, dimensions=dimensions)
+    if dimensions == 2 and made.in_space:
+        constraint = "must be 3 for a case with an azimuth, a walk angle or a toolface other than 0 or 180"
+        raise ParameterError("dimensions", constraint, dimensions)
+    return made
+
+
 def check_plane(case: Case) -> None:
     """Raise `ParameterError` if a case leaves its vertical plane; a constant azimuth only says where that is."""
     if case.survey.turns:

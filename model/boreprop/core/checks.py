@@ -45,7 +45,7 @@ def _of_kind(kind: Any, name: str, value: Any) -> Any:
         return _number(kind, name, value)
     if get_origin(kind) is tuple:
         of, *_ = get_args(kind)
-        return tuple(_of_kind(of, f"{name}[{i}]", element) for i, element in enumerate(_list(name, value), 1))
+        return tuple(_of_kind(of, f"{name}[{i}]", element) for i, element in enumerate(_list(of, name, value), 1))
     if NoneType in (kinds := get_args(kind)):
         return None if value is None else _of_kind(kinds[0], name, value)
     if kind is str:
@@ -69,14 +69,15 @@ def _number(kind: type, name: str, value: Any) -> float:
     raise ParameterError(name, "must be a number", value)
 
 
-def _list(name: str, value: Any) -> tuple[Any, ...]:
+def _list(of: type, name: str, value: Any) -> tuple[Any, ...]:
     """What can be gone through, but for the letters of a text, as a tuple."""
     try:
         if not isinstance(value, str):
             return tuple(value)
     except TypeError:
         pass
-    raise ParameterError(name, f"must be a list, such as [{value!r}]", value)
+    example = f", such as [{value!r}]" if isinstance(value, of) else " of numbers" if of is float else ""
+    raise ParameterError(name, f"must be a list{example}", value)
 
 
 def checked_float(name: str, value: float, *, index: int = 0) -> float:
