@@ -23,7 +23,7 @@ def headings(stations: Stations) -> tuple[str, ...]:
         named[2:4] = [("azim.", "rad"), ("TVD", "m"), ("north", "m"), ("east", "m")]
     if stations.deviation is not None and stations.azimuth is not None:
         named[4:6] = []
-        named += [("off", "rad"), ("off", "rad"), ("high", "m"), ("right", "m")]
+        named += [("off\nincl.", "rad"), ("off\nazim.", "rad"), ("high", "m"), ("right", "m")]
     elif stations.deviation is not None:
         named += [("planned", "rad"), ("off plan", "rad"), ("off plan", "m")]
     return tuple(f"{name}\n({UNITS[unit].shown})" for name, unit in named)
