@@ -269,7 +269,7 @@ def test_several_runs_in_space_have_their_own_colours(spiral: Trajectory, turnin
 
 def test_runs_in_the_plane_and_in_space_are_not_drawn_together(case: Case, spiral: Trajectory, tmp_path: Path) -> None:
     plane = simulate(replace(case, length=5.0))
-    with pytest.raises(InputError, match=r"flat: must be a run in space like the others.*--dimensions 3"):
+    with pytest.raises(InputError, match=r"flat: must be a run in space like the others.*drilling.dimensions = 3"):
         record({"flat": plane, "spiral": spiral}, save=tmp_path / "x.rrd")
 
 

@@ -59,7 +59,7 @@ def as_in_file(error: ParameterError) -> str:
     """What is wrong with a parameter, by its key in the case file if it has one, angles in degrees."""
     name, bracket, index = error.name.partition("[")
     quantity = BY_NAME.get(name)
-    if quantity is None or not quantity.key:
+    if quantity is None or not quantity.field:
         return str(error)
     value = error.value
     if quantity.key.endswith("_deg"):

@@ -9,7 +9,7 @@ import typer
 from ..case.case import in_dimensions
 from ..core.checks import check_number
 from ..core.options import RELATIVE_TOLERANCE
-from ..run.engines import ENGINES
+from ..run.engines import ENGINES, chosen
 from ..run.files import files_read
 from ..run.results import keeping_rows, write_trajectory
 from ..run.simulate import SAMPLE_INTERVAL, simulate
@@ -66,6 +66,7 @@ def simulate_command(
         case = in_dimensions(case, dimensions)
     if engine == "auto" and not case.in_space:
         warn_of_fallback()
+    engine = chosen(engine, in_space=case.in_space)
     with naming(case_file), keeping_rows(output), console.progress("drilling", case.length) as drilled:
         trajectory = simulate(
             case,
