@@ -103,6 +103,20 @@ def test_an_argument_that_cannot_be_is_named(call: Callable[[boreprop.Case], obj
         call(boreprop.paper_case())
 
 
+@pytest.mark.parametrize(
+    "asked",
+    [
+        lambda case: API.find_roots(case, inclination=30.0),
+        lambda case: API.critical_eta_pi(case, inclination=30.0),
+        lambda case: API.stability_chart(case, [0.1], [1.0], inclination=30.0),
+        lambda case: API.steady_response(case, 1e3, 30.0),
+    ],
+)
+def test_an_inclination_in_degrees_is_refused(asked: Callable[[boreprop.Case], object]) -> None:
+    with pytest.raises(boreprop.BorepropError, match=r"^inclination: must be <= 3.14159 rad, got 30.0$"):
+        asked(boreprop.paper_case())
+
+
 def test_another_name_is_no_attribute() -> None:
     with pytest.raises(AttributeError, match="'boreprop' has no attribute 'nothing'"):
         boreprop.nothing  # noqa: B018

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from math import pi
 from typing import NamedTuple
 
 import numpy as np
@@ -106,7 +107,7 @@ def hysteresis(
     """
     values = some_numbers("values", values)
     check_increasing("values", values)
-    check_number("dogleg", dogleg)
+    check_number("dogleg", dogleg, at_least=-pi / 2, at_most=pi / 2)
     ramp = _Ramp(case, name, dogleg, relative_tolerance)
     for value in values:
         ramp.at(value)  # raises if the value is out of range, before any work is done

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...arrays import Floats
 from ...case.case import Case
-from ...core.checks import check_increasing, check_number, some_numbers
+from ...core.checks import check_increasing, check_number, check_quantity, some_numbers
 from ...core.errors import ParameterError
 from ...core.system import BottomHoleAssembly
 from ..lying import pressing_weight
@@ -176,7 +176,7 @@ def stability_chart(
         inclination = case.survey.inclination[-1]
     lambda_2(bha)
     eta_pi, lambda2 = _axis("eta_pi", eta_pi, SMALLEST_ETA_PI), _axis("lambda2", lambda2, SMALLEST_LAMBDA2)
-    check_number("inclination", inclination)
+    check_quantity("inclination", inclination)
     weight = pressing_weight(case)
     modes = [
         (numbers, saturated)
