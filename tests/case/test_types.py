@@ -56,10 +56,10 @@ def test_lists_and_arrays_become_tuples(make: Any) -> None:
         (lambda make: make(Schedule)(toolface_reference="north"), r"toolface_reference: must be a list, such as \['no"),
         (lambda make: make(Survey)((0.0, 9.0), (0.1, 0.2), 0.7), r"azimuth: must be a list, such as \[0.7\], got 0.7$"),
         (lambda make: make(Survey)((0.0, 9.0), (0.1, "2°")), r"inclination\[2\]: must be a number, got '2°'$"),
-        (lambda make: make(replace)(CASE, survey=((0.0,), (0.0,))), r"survey: must be a Survey, got \(\(0.0,\), \("),
+        (lambda make: make(replace)(CASE, survey=((0.0,), (0.0,))), r"survey: must be of the type Survey, got \(\(0.0,\), \("),
         (lambda make: make(replace)(CASE.bha, axial_load="no"), r"axial_load: must be True or False, got 'no'$"),
         (lambda make: make(Schedule.by_depth)(0.0, (1e3,), 0.0), r"measured_depth: must be a list, such as \[0.0\]"),
-        (lambda make: make(Case)(*[None] * 6), r"bha: must be a BottomHoleAssembly, got None$"),
+        (lambda make: make(Case)(*[None] * 6), r"bha: must be of the type BottomHoleAssembly, got None$"),
     ],
 )
 def test_what_is_wrong_is_told_with_what_would_be_right(call: Any, message: str) -> None:

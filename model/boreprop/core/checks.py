@@ -53,7 +53,7 @@ def _of_kind(kind: Any, name: str, value: Any) -> Any:
     if kind is bool and (isinstance(value, str) or value not in (False, True)):
         raise ParameterError(name, "must be True or False", value)
     if kind is not bool and not isinstance(value, kind):
-        raise ParameterError(name, f"must be a {kind.__name__}", value)
+        raise ParameterError(name, f"must be of the type {kind.__name__}", value)
     return value
 
 
