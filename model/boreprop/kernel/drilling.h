@@ -86,7 +86,8 @@ static inline int check_weight(const Drilling *d, Inputs inputs, Problem *proble
     double weight = whole_weight(inputs), least = inputs.active_weight_on_bit;
     double most = d->buckling_weight * force_scale(&d->system);
     if (!check_number(Q_WEIGHT_ON_BIT, 0, weight, -INFINITY, least, INFINITY, problem)) return 0;
-    return weight < most || wrong(problem, BUCKLES, Q_WEIGHT_ON_BIT, 0, weight, most);
+    Code code = DIRECTIONS > 1 ? BUCKLES_IN_SPACE : BUCKLES;
+    return weight < most || wrong(problem, code, Q_WEIGHT_ON_BIT, 0, weight, most);
 }
 
 /* The inputs as the paper's numbers. */

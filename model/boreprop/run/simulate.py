@@ -1,16 +1,15 @@
 """Simulates a case: drills it under its inputs and gives the trajectory."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Floats
-from ..case.case import Case
+from ..case.case import Case, in_dimensions
 from ..core.checks import check_number
-from ..core.errors import CannotContinue, ParameterError
+from ..core.errors import CannotContinue
 from ..core.options import RELATIVE_TOLERANCE, Options
 from ..core.quantities import CLEARANCES, OUTPUTS, ROCK, scalar_names
 from .course import Course, acting, course_of
@@ -71,7 +70,8 @@ def simulate(
     ParameterError
         If a value is out of range.
     Stopped
-        If the integrator cannot go on; its `trajectory` holds the rows up to there, its cause is the `CannotContinue`.
+        If the integrator cannot go on; its `trajectory` holds the rows up to there, None if it cannot even start. Its
+        cause is the `CannotContinue`.
     KernelError
         If the native engine is asked for and is not installed.
 
@@ -117,21 +117,6 @@ def simulate(
     if stopped:
         raise Stopped(stopped, trajectory) from failure
     return trajectory
-
-
-def in_dimensions(case: Case, dimensions: int) -> Case:
-    """The case as it is drilled in so many dimensions.
-
-    Raises
-    ------
-    ParameterError
-        If they are neither 2 nor 3, or the case leaves the plane.
-    """
-    made = replace(case, dimensions=dimensions)
-    if dimensions == 2 and made.in_space:
-        constraint = "must be 3 for a case with an azimuth, a walk angle or a toolface other than 0 or 180"
-        raise ParameterError("dimensions", constraint, dimensions)
-    return made
 
 
 def _parts(legs: int, reported: bool, cuts: Indices) -> Iterator[slice]:
