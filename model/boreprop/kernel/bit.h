@@ -156,15 +156,16 @@ static inline void change_places(Integrator *p, Contact contact, double xi) {
 }
 
 /* What bends the beam with the bit at `xi` in the state `x`. */
-static inline Loads loads_at(const Integrator *p, double xi, const double x[COMPONENTS], double F_rss) {
+static inline void find_loads(const Integrator *p, double xi, const double x[COMPONENTS], double F_rss, Loads *loads) {
     const Places *places = &p->now.places;
-    double delayed[MAX_PLACES][DIRECTIONS] = {{0}};
-    Loads loads;
-    loads.count = places->count, loads.F_rss = F_rss;
-    hole_at_places(&p->now.hole, places, xi, delayed);
-    for (int i = 0; i < places->count; i++) loads.e[i] = x[LATERAL] - delayed[i][0] - places->s[i] * x[ANGLE];
-    loads.g = sin(p->scaled.axial ? x[ANGLE] : x[LATERAL] - delayed[0][0]);
-    return loads;
+    double behind[DIRECTIONS], turn = 0.0;
+    loads->count = places->count, loads->F_rss = F_rss;
+    for (int i = 0; i < places->count; i++) {
+        hole_at_place(&p->now.hole, places, i, xi, behind);
+        loads->e[i] = x[LATERAL] - behind[0] - places->s[i] * x[ANGLE];
+        if (i == 0) turn = x[LATERAL] - behind[0];
+    }
+    loads->g = sin(p->scaled.axial ? x[ANGLE] : turn);
 }
 
 /* The inputs with the bit at `xi`, ahead of where they were taken over. */

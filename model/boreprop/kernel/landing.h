@@ -22,7 +22,7 @@ APART static Status no_contacts(
 static inline int stays_off(Integrator *p, double xi, const double x[COMPONENTS], const Loads *loads) {
     Pull pull[DIRECTIONS];
     if (p->scaled.axial) return 0;
-    const Mode *mode = settle(&p->modes, loads, p->now.regime.contact);
+    const Mode *mode = settle(&p->modes, loads, &p->now.regime.contact);
     pull_under(p, mode, loads, pull);
     if (wall_distance(p, xi, x, pull) == 0.0) return 0;
     change_places(p, mode->contact, xi);
@@ -37,7 +37,8 @@ static inline Status touch_down(Integrator *p, double xi, const double x[COMPONE
     Bent bent = {.end = p->modes.beam.end};
     double Y[MAX_POINTS][DIRECTIONS];
     Contact contact;
-    Loads loads = loads_at(p, xi, x, force_at(&p->now, xi));
+    Loads loads;
+    find_loads(p, xi, x, force_at(&p->now, xi), &loads);
     if (stays_off(p, xi, x, &loads)) return DONE;
     bent.F_rss = loads.F_rss, bent.g = loads.g;
     memcpy(bent.e, loads.e, (size_t)n * sizeof *bent.e);

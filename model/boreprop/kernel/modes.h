@@ -214,12 +214,12 @@ static inline void load_beam(Modes *modes, const Scaled *scaled, Axial axial) {
     modes->count = modes->next = 0;
 }
 
-static inline const Mode *mode_of(Modes *modes, Contact contact) {
-    if (modes->count && same_contact(&modes->made[modes->last].contact, &contact)) return &modes->made[modes->last];
+static inline const Mode *mode_of(Modes *modes, const Contact *contact) {
+    if (modes->count && same_contact(&modes->made[modes->last].contact, contact)) return &modes->made[modes->last];
     for (modes->last = 0; modes->last < modes->count; modes->last++)
-        if (same_contact(&modes->made[modes->last].contact, &contact)) return &modes->made[modes->last];
+        if (same_contact(&modes->made[modes->last].contact, contact)) return &modes->made[modes->last];
     modes->last = modes->next;
-    make_mode(&modes->made[modes->last], &modes->beam, modes->y_star, contact);
+    make_mode(&modes->made[modes->last], &modes->beam, modes->y_star, *contact);
     modes->next = (modes->next + 1) % MODES;
     if (modes->count < MODES) modes->count++;
     return &modes->made[modes->last];
@@ -257,20 +257,21 @@ static inline const Row *contact_bounds(const Modes *modes, const Mode *mode, in
 #define MOST_PIVOTS 243 /* contacts at five stabilizers: a search that takes more pivots goes in circles */
 #define LOOSER 8.0      /* factor on the slack for the next search: about a digit */
 
-/* The mode that satisfies (7) under `loads`, starting the search from `contact`.
+/* The mode that satisfies (7) under `loads`, starting the search from some contacts.
 
    Least-index pivoting: switch the first stabilizer that is beyond its bounds, until none is. K is positive definite, so
    no set of contacts comes back and the search ends (Murty 1974; Júdice & Pires 1992 for two walls). Where one does
    come back, by rounding under huge loads or of stabilizers close together, stabilizers may lie beyond their bounds by
    more and more until a mode is within them: at last by any amount. */
-static inline const Mode *settle(Modes *modes, const Loads *loads, Contact contact) {
+static inline const Mode *settle(Modes *modes, const Loads *loads, const Contact *start) {
+    Contact contact = *start;
     int n = modes->beam.n;
     double slack = ROUNDING;
     for (int i = 0; i < n - 1; i++)
         if (modes->y_star[i] == 0.0) contact.of[i] = 1;
     for (int pivots = 1;; pivots++) {
         int side = 0;
-        const Mode *mode = mode_of(modes, contact);
+        const Mode *mode = mode_of(modes, &contact);
         for (int i = 0; i < loads->count && !side; i++) {
             double lower, upper;
             if (i == n - 1) continue;

@@ -35,8 +35,8 @@ static inline Present present(Drilling *d) {
     at.earlier = earlier_inclination(p, now->xi - 1.0);
     step_state(&now->step, now->xi, state);
     at.theta = state[ANGLE], at.Y = state[LATERAL];
-    at.loads = present_loads(p);
-    at.mode = settle(&p->modes, &at.loads, now->regime.contact);
+    find_present_loads(p, state, &at.loads);
+    at.mode = settle(&p->modes, &at.loads, &now->regime.contact);
     at.F_0 = row_value(&at.mode->F_0, &at.loads);
     contact_forces(at.mode, &at.loads, at.F);
     at.inputs = inputs_here(now);
