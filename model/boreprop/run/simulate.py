@@ -107,12 +107,9 @@ def simulate(
     drilled = np.count_nonzero(~np.isnan(table[:, 0]))
     outputs = np.ascontiguousarray(table[:drilled].T)  # a run is read column by column
     on_rows = rows >= 0
-    given = course.at(lengths[on_rows], pieces[on_rows])[:drilled].T.copy()
-    columns = {
-        name: values
-        for name, values in zip(course.names, given, strict=True)
-        if name not in CONSTANT or course.changes(name)
-    }
+    at, piece = lengths[on_rows][:drilled], pieces[on_rows][:drilled]
+    told = [name for name in course.names if name not in CONSTANT or course.changes(name)]
+    columns = {name: course.column(name, at, piece) for name in told}
     if case.in_layers:
         columns |= rock_in_layers(case, outputs[names.index("formation")])
     stopped = f"after {drilling.drilled_length:g} m of {length:g} m: {failure}" if failure else None
