@@ -222,8 +222,7 @@ static inline int law_here(
         at->rate[LATERAL + d] = x[ANGLE + d] - at->psi[d];
     }
     if (!slopes) return 1;
-    for (int d = 0; d < 2; d++)
-        row_slopes(&law->M, d, &across, M_by[d]), row_slopes(&law->F_0, d, &across, F_0_by[d]);
+    for (int d = 0; d < 2; d++) row_slopes(&law->M, d, &across, M_by[d]), row_slopes(&law->F_0, d, &across, F_0_by[d]);
     for (int k = 0; k < m; k++)
         for (int d = 0; d < 2; d++)
             for (int c = 0; c < COMPONENTS; c++) {
