@@ -2,22 +2,22 @@
 
    The wall pushes support i with F_i = −λ_i δ_i and leaves it the room s_i:
 
-       δ = q̃ + K⁻¹F ,   s_i = ½(y*_i² − |δ_i|²) > 0 ,   λ_i > 0 ,   λ_i s_i = μ
+       δ = q̃ + K⁻¹F ,   s_i = ½(y*_i² − |δ_i|²) > 0 ,   λ_i > 0 ,   λ_i s_i = μ w_i
 
-   For μ → 0 that is the contact problem. It is convex, and Newton's method leads there from anywhere if no step goes as far as
-   to where a λ_i or s_i ends. Each is tried for μ = 0 first; how far that could go says for which μ it is taken, together with
+   For μ → 0 that is the contact problem, whatever the weights w_i. It is convex, and Newton's method leads there if no step goes
+   as far as to where a λ_i or s_i ends. Each is tried for μ = 0 first; how far that could go says for which μ it is taken, with
    what the changes add in second order (Mehrotra 1992). A support without clearance is held, and F_i is not bound to δ_i. */
 #ifndef BOREPROP_INTERIOR_H
 #define BOREPROP_INTERIOR_H
 
 #include "touching.h"
 
-/* A support on its way to the solution, with the weight of its λ s. */
+/* A support on its way to the solution. */
 typedef struct {
     double delta[2], F[2], lambda, room, weight;
 } Inner;
 
-/* What a step adds to it: δ·dδ is what it takes of the room, in first order; and to λ s in second order. */
+/* What a step adds to it: `along` is δ·dδ, by which the room shrinks, and `product` what λ s gains in second order. */
 typedef struct {
     double delta[2], F[2], lambda, along, product;
 } Change;
@@ -62,7 +62,7 @@ static inline double look_missing(
     return off;
 }
 
-/* Find the step towards λ_i s_i = μ, with what the one in `by` adds in second order. */
+/* Find the step towards λ_i s_i = μ w_i, with what the one in `by` adds in second order. */
 static inline void step_towards(
     const Touching *of, const Symmetric *eliminated, const Inner *at, double missing[MAX_PLACES][2], double mu,
     Change *by
@@ -122,8 +122,8 @@ static inline void move_inside(const Touching *of, const Change *by, double shar
     }
 }
 
-/* μ: λ s over their weights, on the whole. */
-static inline double mean_product(const Touching *of, const Inner *at) {
+/* The μ of all supports together. */
+static inline double mean_mu(const Touching *of, const Inner *at) {
     double sum = 0.0, weights = 0.0;
     for (int a = 0; a < of->touching; a++)
         if (of->y[a] > 0) sum += at[a].lambda * at[a].room, weights += at[a].weight;
@@ -135,13 +135,13 @@ static inline double mean_product(const Touching *of, const Inner *at) {
 #define LEFT_LEAST 1e-3   /* … and so much near it */
 enum { MOST_STEPS = 40 }; /* from one start: thirteen as a rule */
 
-/* Go from a start, where δ = 0 and λ s is `mu` times its weight, to the solution; returns 0 if that takes too many steps. */
+/* Go from δ = 0 and λ_i s_i = μ w_i to the solution; returns 0 if that takes too many steps. */
 static inline int approach_from(const Touching *of, double q[MAX_PLACES][2], double mu, Inner at[MAX_PLACES]) {
     double missing[MAX_PLACES][2];
     Symmetric matrix;
     for (int a = 0; a < of->touching; a++) {
         double y = of->y[a], way = larger(larger(fabs(q[a][0]), fabs(q[a][1])), y), weight = y * way / of->K_inv[a][a];
-        Inner start = {{0.0, 0.0}, {0.0, 0.0}, 2 * mu * weight / (y * y), y * y / 2, weight};
+        Inner start = {{0.0, 0.0}, {0.0, 0.0}, y > 0 ? 2 * mu * weight / (y * y) : 0.0, y * y / 2, weight};
         at[a] = start;
     }
     for (int step = 0; step < MOST_STEPS; step++) {
@@ -157,7 +157,7 @@ static inline int approach_from(const Touching *of, double q[MAX_PLACES][2], dou
         }
         memcpy(tried, at, sizeof tried);
         move_inside(of, by, smaller(1.0, longest(of, at, by)), tried);
-        double now = mean_product(of, at), left = now > 0 ? mean_product(of, tried) / now : 0.0;
+        double now = mean_mu(of, at), left = now > 0 ? mean_mu(of, tried) / now : 0.0;
         step_towards(of, &matrix, at, missing, left * left * left * now, by);
         double share = 1 - larger(LEFT_LEAST, smaller(LEFT_OUT, off));
         move_inside(of, by, smaller(1.0, share * longest(of, at, by)), at);
