@@ -13,6 +13,7 @@ from boreprop.case.case import Case
 from boreprop.case.formations import Formation
 from boreprop.case.inputs import InputSchedule, Schedule
 from boreprop.case.paper import paper_case
+from boreprop.core.errors import ParameterError
 from boreprop.core.ground import Wear
 from boreprop.core.options import Options
 from boreprop.core.survey import Survey
@@ -175,6 +176,23 @@ def test_a_worn_bit_without_weight_stops_where_nothing_is_left(engine: str) -> N
     assert stopped.value.trajectory["drilled_length"][-1] == 7.5
 
 
+def test_layers_thinner_than_what_the_bit_stays_in_one_are_passed_together(engine: str) -> None:
+    """Straight down, where depths are lengths: it stays in the second one for a centimetre, and is beyond all then."""
+    case = inclined(0.0, formations=tuple(layer(1.0 + 0.003 * k, 5.0 + k) for k in range(4)))
+    run = simulate(case, engine=engine, length=1.1, sample_interval=0.005)
+    at = run["drilled_length"]
+    assert run["formation"].tolist() == np.select([at < 1.0 - 1e-9, at < 1.01 - 1e-9], [0.0, 1.0], 4.0).tolist()
+
+
+@pytest.mark.usefixtures("kernel")
+def test_errors_in_layers_are_below_the_tolerance() -> None:
+    """At an inclination at which the sine that goes with the weight is curved most."""
+    case = replace(inclined(85.0, formations=LAYERED.formations), schedule=Schedule((0.0, 6.0), (-2e4, 2e4)))
+    usual, tight = (simulate(case, sample_interval=0.25, relative_tolerance=each) for each in (1e-7, 1e-11))
+    assert np.ptp(tight["bit_inclination"]) > 0.02
+    assert np.abs(usual["bit_inclination"] - tight["bit_inclination"]).max() < 1e-7
+
+
 def test_along_a_boundary_the_bit_changes_layers_only_now_and_then(engine: str) -> None:
     """A bit that each rock turns into the other one would go to and fro without end."""
     case = inclined(88.571, formations=(layer(0.01821, 50.0),), schedule=Schedule((0.0,), (12858.0,)))
@@ -206,6 +224,18 @@ def test_layers_stand_in_for_the_rock_at_the_start_only(engine: str) -> None:
     run.advance(8.0, 0.0, 1600.0, bit=own)
     eta = {1: 20.0, 2: 5.0, 3: 25.0}[int(run.outputs()["formation"])]
     assert run.outputs()["eta_pi"] == pytest.approx(eta * weight / LAYERED.bha.force_scale, rel=1e-12)
+
+
+def test_inputs_of_a_call_that_was_refused_are_new_when_they_come_again(engine: str) -> None:
+    case = replace(LAYERED, wear=None)
+    refused, other = (start(case, engine, Options(), case.ground) for _ in range(2))
+    for run in (refused, other):
+        run.advance(4.0, 5e3, 1600.0)
+    with pytest.raises(ParameterError, match="drilled_length"):
+        refused.advance(3.9, -3e3, 1600.0)
+    for run in (refused, other):
+        run.advance(4.001, -3e3, 1600.0)
+    assert refused.outputs() == other.outputs()
 
 
 def test_a_call_that_fails_in_layers_changes_nothing(engine: str) -> None:

@@ -107,7 +107,7 @@ static double change_with(
     if (off_bottom && (given == IN_ACTIVE_WEIGHT_ON_BIT || output->quantity == OUT_ETA_PI)) return 0.0;
     const Drilling *drilling = &c->run->drilling;
     if (is_layers_own(c, (int)given, c->value[given])) return 0.0;
-    double eta = drilling->given.lateral_steering_resistance; /* in the layer where the bit is */
+    double eta = drilling->acting.lateral_steering_resistance; /* in the layer where the bit is */
     return output_gain(drilling, at, (Output)output->quantity, output->index, (Input)given, eta);
 }
 

@@ -60,6 +60,8 @@ class Integrator:
         If there is no finite state to start from.
     """
 
+    stay = 0.0  # where the bit may leave again the last layer that it has met, if it has met any
+
     def __init__(
         self,
         modes: Modes,
@@ -369,7 +371,7 @@ class Integrator:
             h = self._choose_length(law, plan, xi)
             if h < shortest:
                 raise self._failure("too short", xi)
-            trial = try_step(law, self.hole, xi, h, theta, Y, self.options)
+            trial = try_step(law, self.hole, xi, h, theta, Y, self.options, self.present if self.stay else None)
             if not isfinite(trial.error):
                 raise self._failure("not finite", xi)
             if trial.error > 1.0:

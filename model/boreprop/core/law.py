@@ -84,7 +84,7 @@ class Linear(NamedTuple):
 
 
 class Sine(NamedTuple):
-    """sin⟨Θ⟩_1 about its value at the start of a step, where ⟨Θ⟩_1 = Y(ξ) − Y(ξ−1) is `average`."""
+    """sin⟨Θ⟩_1 about its value at one place of a step, where ⟨Θ⟩_1 = Y(ξ) − Y(ξ−1) is `average`."""
 
     average: float
     value: float

@@ -11,6 +11,7 @@ from .options import Options
 GAUSS = [(0.5 - 0.15**0.5, 5 / 18), (0.5, 8 / 18), (0.5 + 0.15**0.5, 5 / 18)]  # nodes and weights on [0, 1]
 REST = 0.03  # what may be neglected of sin⟨Θ⟩_1, in tolerances of θ: little beside the error that a step may have
 LESS_REST = 0.003  # the same once inputs have changed on the way: steps that pass kinks leave no room for more
+MIDDLE = 2  # the point next to the middle of a step
 ITERATIONS = 10  # on what is neglected, at most; each gains two digits or more
 RAMP_ITERATIONS = 20  # the same under a changing ηΠ; each gains a digit or more
 NOT_FOUND = 2.0  # the least error of a trial whose iterations do not end: it is tried again, shorter
@@ -75,14 +76,19 @@ class Trial(NamedTuple):
     error: float  # estimated, over the tolerance
 
 
-def try_step(law: Law, hole: Hole, xi: float, h: float, theta: float, Y: float, options: Options) -> Trial:
+def try_step(
+    law: Law, hole: Hole, xi: float, h: float, theta: float, Y: float, options: Options, last: Step | None = None
+) -> Trial:
     """Collocation from (θ, Y) at `xi` over `h`, in the regime of `law`.
 
     This is one linear solve, but for sin⟨Θ⟩_1: its linear part belongs to the Jacobian. Where the rest counts, it is
-    added to the right-hand side and the solve is repeated.
+    added to the right-hand side and the solve is repeated. That part is at the start of the step; after a last step, if
+    it has a length, at the middle, if the step goes straight on from it: the sine is half as far from it.
     """
     delayed = [hole.look_up(xi - s_i, h, radau.POINTS) for s_i in law.s]
     average = Y - delayed[0][0]
+    if last and last.end > last.xi:
+        average = Y + last.derivative(1, last.end) * h * radau.POINTS[MIDDLE] - delayed[0][MIDDLE]
     sine = Sine(average, sin(average), cos(average))
     J = law.jacobian(sine)
     aheads = [xi - law.xi + t * h for t in radau.POINTS] if law.inputs.ramp else []

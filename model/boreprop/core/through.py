@@ -15,7 +15,6 @@ class GroundIntegrator(Integrator):
 
     ground: Ground
     layer: int  # in which the bit is
-    stay: float  # where it may leave the layer again
 
     def take_ground(self, ground: Ground) -> None:
         """Take the ground over that is to be drilled."""

@@ -85,7 +85,7 @@ static inline void make_law(
 ) {
     Contact nothing = regime.contact;
     memset(nothing.of, 0, sizeof nothing.of);
-    const Mode *mode = mode_of(modes, nothing);
+    const Mode *mode = mode_of(modes, &nothing);
     int n = scaled->n;
     law->count = places->count, law->n = n, law->axial = scaled->axial, law->saturated = regime.saturation != 0;
     law->stands = mode->stands;
@@ -109,7 +109,7 @@ static inline void make_law(
     }
     if (law->saturated) add_bound(law, n - 1, inputs.psi_star, INFINITY);
     else add_bound(law, n - 1, -INFINITY, inputs.psi_star);
-    find_gains(law, mode_of(modes, regime.contact), places);
+    find_gains(law, mode_of(modes, &regime.contact), places);
 }
 
 /* The bit tilt under F_0, and its derivative: |ψ| <= ψ*, and F_0 − ηΠ R₂(ϖ)ψ in the normal cone of that disc. */

@@ -4,18 +4,37 @@
 
 #include "propagation.h"
 
-enum { LEAST_CAPACITY = 1024, MOST_PIECES = 1 << 19 }; /* of hole */
+enum { LEAST_CAPACITY = 256, MOST_PIECES = 1 << 19 }; /* of hole: enough for most, and little memory to go through */
+
+/* One of the values that the outputs of a drilling system have, and its index if its output has several. */
+typedef struct {
+    Output which;
+    int index;
+} Value;
 
 /* A borehole as it is drilled, from the end of the survey on. */
 typedef struct {
     System system;
     double drilled_length; /* m */
-    Inputs given;          /* the inputs that were given last, and … */
-    ScaledInputs scaled;   /* … what they are in the paper's numbers */
+    Inputs given;          /* the inputs under which the bit has come here through the ground, if there is any; … */
+    Inputs acting;         /* … those that were last to act, and … */
+    ScaledInputs scaled;   /* … what these are in the paper's numbers */
     Ground ground;
     double buckling_weight; /* over F*: under it the BHA buckles; infinite if the axial load does not count */
+    int values;
+    Value value[MOST_OUTPUTS]; /* in the order of the table of quantities */
     Integrator integrator;
 } Drilling;
+
+/* Note which values the outputs have. */
+static inline void list_values(Drilling *d) {
+    d->values = 0;
+    for (int k = 0; k < OUTPUT_COUNT; k++)
+        for (int i = 0; i < value_count(OUTPUT_SIZE[k], d->system.structure); i++) {
+            Value value = {(Output)k, i};
+            d->value[d->values++] = value;
+        }
+}
 
 /* Whether bit and rock are in their ranges, and ε = χ/η and its inverse finite. */
 static inline int check_rock(Inputs inputs, Problem *problem) {
@@ -67,7 +86,8 @@ static inline int check_weight(const Drilling *d, Inputs inputs, Problem *proble
     double weight = whole_weight(inputs), least = inputs.active_weight_on_bit;
     double most = d->buckling_weight * force_scale(&d->system);
     if (!check_number(Q_WEIGHT_ON_BIT, 0, weight, -INFINITY, least, INFINITY, problem)) return 0;
-    return weight < most || wrong(problem, BUCKLES, Q_WEIGHT_ON_BIT, 0, weight, most);
+    Code code = DIRECTIONS > 1 ? BUCKLES_IN_SPACE : BUCKLES;
+    return weight < most || wrong(problem, code, Q_WEIGHT_ON_BIT, 0, weight, most);
 }
 
 /* The inputs as the paper's numbers. */
@@ -97,20 +117,25 @@ static inline ScaledInputs scale_inputs(const System *system, Inputs given) {
     return scaled;
 }
 
-/* Make the inputs dimensionless; 0, and the problem, if these numbers, or the inputs, are out of range. */
-static inline int take_given(Drilling *d, Inputs inputs, Problem *problem) {
-    if (!memcmp(&inputs, &d->given, sizeof inputs)) return 1;
-    ScaledInputs scaled = scale_inputs(&d->system, inputs);
-    if (!check_inputs(inputs, problem) || (d->system.structure.axial && !check_weight(d, inputs, problem)) ||
-        !check_finite(Q_SCALED_FORCE, 0, scaled.F_rss, problem) ||
-        !check_finite(Q_SCALED_SLOPE, 0, scaled.F_rss_slope, problem) ||
-        !check_positive(Q_ETA_PI, scaled.eta_pi, problem) ||
-        !check_finite(Q_ETA_PI_CHANGE, 0, scaled.eta_pi_slope + scaled.eta_pi_curve, problem) ||
-        !check_finite(Q_CHI_PI_CHANGE, 0, scaled.chi_pi_slope + scaled.chi_pi_curve, problem) ||
-        !check_finite(Q_PSI_STAR_CHANGE, 0, scaled.psi_star_slope, problem) ||
-        !check_finite(Q_INVERSE_ETA_PI, 0, 1 / scaled.eta_pi, problem))
-        return 0;
-    d->given = inputs, d->scaled = scaled;
+/* Make inputs dimensionless; 0, and the problem, if these numbers, or the inputs, are out of range. */
+static inline int scale_checked(const Drilling *d, Inputs inputs, ScaledInputs *scaled, Problem *problem) {
+    *scaled = scale_inputs(&d->system, inputs);
+    return check_inputs(inputs, problem) && (!d->system.structure.axial || check_weight(d, inputs, problem)) &&
+           check_finite(Q_SCALED_FORCE, 0, scaled->F_rss, problem) &&
+           check_finite(Q_SCALED_SLOPE, 0, scaled->F_rss_slope, problem) &&
+           check_positive(Q_ETA_PI, scaled->eta_pi, problem) &&
+           check_finite(Q_ETA_PI_CHANGE, 0, scaled->eta_pi_slope + scaled->eta_pi_curve, problem) &&
+           check_finite(Q_CHI_PI_CHANGE, 0, scaled->chi_pi_slope + scaled->chi_pi_curve, problem) &&
+           check_finite(Q_PSI_STAR_CHANGE, 0, scaled->psi_star_slope, problem) &&
+           check_finite(Q_INVERSE_ETA_PI, 0, 1 / scaled->eta_pi, problem);
+}
+
+/* Let inputs act, if they may. */
+static inline int let_act(Drilling *d, Inputs inputs, Problem *problem) {
+    ScaledInputs scaled;
+    if (!memcmp(&inputs, &d->acting, sizeof inputs)) return 1;
+    if (!scale_checked(d, inputs, &scaled, problem)) return 0;
+    d->acting = inputs, d->scaled = scaled;
     return 1;
 }
 
@@ -146,7 +171,8 @@ static inline Status drilling_prepare(
         return FAILED;
     d->system = *system, d->ground = ground;
     d->drilled_length = 0.0;
-    d->given.rss_force = (double)NAN;
+    list_values(d);
+    d->given.rss_force = d->acting.rss_force = (double)NAN; /* none so far */
     options.relative_tolerance = system->relative_tolerance;
     prepare(&d->integrator, &scaled, length_scale(system), force_scale(system), options);
     take_cosine(d, 0.0);
@@ -159,7 +185,7 @@ static inline Status drilling_start(Drilling *d, const Survey *survey, Inputs in
     if (!check_survey(survey, problem)) return FAILED;
     take_cosine(d, cos(survey->inclination[survey->count - 1]));
     int layer = d->integrator.now.layer = first_layer(&d->ground);
-    if (!take_given(d, d->ground.there ? rock_in(&d->ground, layer, inputs) : inputs, problem)) return FAILED;
+    if (!let_act(d, d->ground.there ? rock_in(&d->ground, layer, inputs) : inputs, problem)) return FAILED;
     if (d->integrator.now.hole.capacity < drilling_capacity(&d->system, survey)) return FULL;
     return begin(&d->integrator, survey, d->scaled, problem);
 }
@@ -183,7 +209,7 @@ static inline Status drill_through(Drilling *d, double xi, Inputs given, Problem
         double until;
         Inputs inputs = rock_in(&d->ground, now->layer, given_ahead(given, (now->xi - start) * l1));
         int good = wear_off(&d->ground, now->xi * l1, xi * l1, &inputs, &until, problem);
-        Status status = good && take_given(d, inputs, problem) ? DONE : FAILED;
+        Status status = good && let_act(d, inputs, problem) ? DONE : FAILED;
         end = smaller(xi, until / l1);
         if (status == DONE && are_others(now, d->scaled, end - now->xi)) {
             if (!set_out(p) || !has_room(p)) return FULL;
@@ -199,17 +225,30 @@ static inline Status drill_through(Drilling *d, double xi, Inputs given, Problem
     return DONE;
 }
 
+/* Go on in the present step and layer to `xi` under the inputs that have led here; 0 if the way leads farther. */
+static inline int go_straight_on(Drilling *d, double xi) {
+    Integrator *p = &d->integrator;
+    if (!is_ahead(d, xi) || are_ramps(&p->now.inputs)) return 0;
+    p->now.xi = xi;
+    read_sensors(p, xi);
+    return 1;
+}
+
 /* Drill on to a length, m from the start, under inputs from here; where the bit is, only they are taken over.
    After FULL: `drilling_move`, and the same call again, which goes on; or `drilling_cancel`, and nothing has moved. */
 static inline Status drilling_advance(Drilling *d, double drilled_length, Inputs inputs, Problem *problem) {
-    if (!take_given(d, inputs, problem)) return FAILED;
+    int there = d->ground.there, same = there && !memcmp(&inputs, &d->given, sizeof inputs);
+    double xi = drilled_length / length_scale(&d->system);
+    Status status = DONE;
+    ScaledInputs scaled; /* of no use where layers stand in */
+    if (!same && !(there ? scale_checked(d, inputs, &scaled, problem) : let_act(d, inputs, problem))) return FAILED;
     if (!check_number(Q_DRILLED_LENGTH, 0, drilled_length, -INFINITY, d->drilled_length, INFINITY, problem))
         return FAILED;
-    double xi = drilled_length / length_scale(&d->system);
-    Status status =
-        d->ground.there ? drill_through(d, xi, inputs, problem) : drill(&d->integrator, xi, d->scaled, problem);
-    if (status == DONE) d->drilled_length = drilled_length;
-    return status;
+    if (!there) status = drill(&d->integrator, xi, d->scaled, problem);
+    else if (!same || !go_straight_on(d, xi)) status = drill_through(d, xi, inputs, problem);
+    if (status != DONE) return status;
+    d->drilled_length = drilled_length, d->given = inputs;
+    return DONE;
 }
 
 /* Whether clearances, m, are others than those that the stabilizers have. */

@@ -117,9 +117,11 @@ static inline void choose_length(const Integrator *p, const Law *law, double xi,
 static inline void try_step(
     const Integrator *p, const Law *law, double xi, double h, const double x[COMPONENTS], Trial *trial
 ) {
-    trial->step = next_step(&p->now.step, xi, h);
+    const Step *last = &p->now.step;
+    trial->step = next_step(last, xi, h);
+    trial->follows = p->now.stay > 0 && last->end > last->xi;
     look_up(&p->now.hole, &p->now.places, trial);
-    law_try(law, &p->options, &p->now.step, x, trial);
+    law_try(law, &p->options, last, x, trial);
 }
 
 /* Whether the numbers of a trial step are finite. */
@@ -131,6 +133,12 @@ static inline int is_finite(const Trial *trial) {
 
 /* How much longer than a trial with this error the next one may be: the error grows as h^(S+1). */
 static inline double growth(double error) { return SAFETY * pow(larger(error, LEAST_ERROR), -1.0 / (S + 1)); }
+
+/* The length that is planned for the next step after one with this error. */
+static inline double next_length(const Plan *plan, double error) {
+    double least = plan->h < plan->resumed ? plan->resumed : 0.0, most = LARGEST_GROWTH * plan->h;
+    return least >= most ? least : larger(least, smaller(plan->h * growth(error), most));
+}
 
 /* The weight on the bit that a BHA bears while it is held at some contacts alone, over F*; it bears none of `most`. */
 APART static double borne(const Integrator *p, const Contact *contact, double most) {
@@ -256,8 +264,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     Step *step = &now->step;
     *step = trial.step;
     p->exit_known = 0;
-    step->next_h =
-        larger(plan.h < plan.resumed ? plan.resumed : 0.0, plan.h * smaller(growth(trial.error), LARGEST_GROWTH));
+    step->next_h = next_length(&plan, trial.error);
     step_state(step, step->end, end);
     if (turns_over(present_law(p), &trial, end)) return failed(p, TURNS_OVER, step->end, problem);
     append(&now->hole, step, &now->inputs, last.end - now->inputs_xi);

@@ -74,18 +74,16 @@ typedef struct {
 /* Of a step of length `h`, where errors of θ have this weight. It is no more than what a kink changes over twice the step,
    which counts where there are not many: before inputs change on the way, while no point of the body is watched.
    Such runs keep their steps to the last bit. */
-static inline Harm harm_of(double h, double theta_weight, int many) {
+static inline void find_harm(double h, double theta_weight, int many, Harm *harm) {
     static const double factorial[] = {1, 1, 2, 6, 24};
-    Harm harm = {{0}};
     double power = h, twice = 2 * h;
     for (int m = 1; m <= SMOOTHEST_KINK; m++) {
         twice *= 2 * h;
-        harm.by[m] = twice / factorial[m + 1];
+        harm->by[m] = twice / factorial[m + 1];
         double errs = power * larger(PASSED_Y[m] * h, theta_weight * PASSED_THETA[m]);
-        if (many) harm.by[m] = smaller(harm.by[m], errs);
+        if (many) harm->by[m] = smaller(harm->by[m], errs);
         power *= h;
     }
-    return harm;
 }
 
 /* Where the next kink within `h` of `xi` lies that a step must not pass; infinity if there is none. It may pass
@@ -112,8 +110,9 @@ static inline double reach(
     const Kinks *kinks, const Places *places, const double *gains, const Options *options, int many, double xi,
     double *h
 ) {
+    Harm harm;
     for (;; *h /= 2) {
-        Harm harm = harm_of(*h, options->theta_weight, many);
+        find_harm(*h, options->theta_weight, many, &harm);
         double way = next_kink(kinks, places, gains, &harm, options->relative_tolerance, xi, 2 * *h) - xi;
         if (!many || way > *h / 2) return way;
     }

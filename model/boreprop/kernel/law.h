@@ -94,7 +94,7 @@ static inline void make_law(
     Law *law, const Scaled *scaled, const Places *places, Modes *modes, Regime regime, ScaledInputs inputs,
     double inputs_xi
 ) {
-    const Mode *mode = mode_of(modes, regime.contact);
+    const Mode *mode = mode_of(modes, &regime.contact);
     int n = scaled->n, count = places->count;
     Bound *of_tilt = &law->bounds[0];
     law->count = count, law->last = n - 1, law->axial = scaled->axial, law->inputs_xi = inputs_xi, law->bound_count = 1;
@@ -182,19 +182,27 @@ static inline void linear_frozen(
 #define LESS_REST 0.003 /* the same once inputs have changed on the way: steps that pass kinks leave no room for more */
 #define ITERATIONS 10   /* on what is neglected, at most; each gains two digits or more */
 
-/* The sine about its value at the start of a step, where its angle is `from`: it is part ANGLE or LATERAL of the state,
-   less what is `behind` at the points of the step, so that it is θ or ⟨Θ⟩_1 = Y(ξ) − Y(ξ−1). */
+/* The sine about its value at an angle `from`, which is part ANGLE or LATERAL of the state, less what is `behind` at the
+   points of the step, so that it is θ or ⟨Θ⟩_1 = Y(ξ) − Y(ξ−1). */
 typedef struct {
     int part;
     const double *behind;
     double from, sine, cosine;
 } Tangent;
 
-static inline Tangent tangent_of(const Law *law, const double x[COMPONENTS], const Trial *trial) {
+enum { MIDDLE = 2 }; /* the point next to the middle of a step */
+
+/* The tangent at the start of a step. In a step that follows on the last one it is at its middle, if it goes straight on: the
+   sine is half as far from it. */
+static inline Tangent tangent_of(const Law *law, const Step *last, const double x[COMPONENTS], const Trial *trial) {
     static const double nothing[POINTS] = {0};
     int part = law->axial ? ANGLE : LATERAL;
     const double *behind = law->axial ? nothing : trial->delayed[0][0];
     double from = x[part] - behind[0];
+    if (trial->follows) {
+        double way = polynomial_slope(last->x[part], (last->end - last->xi) / last->h) * trial->step.h / last->h;
+        from = x[part] + way * POINT[MIDDLE] - behind[MIDDLE];
+    }
     Tangent tangent = {part, behind, from, sin(from), cos(from)};
     return tangent;
 }
@@ -296,8 +304,7 @@ static inline void law_try(
     const Linear *rate = &law->theta_rate, *Theta = &law->Theta;
     const double theta = x[ANGLE], Y = x[LATERAL], h = trial->step.h;
     double frozen[POINTS], f_theta[POINTS], f_Y[POINTS], parts_theta[S], parts_Y[S];
-    (void)last;
-    Tangent tangent = tangent_of(law, x, trial);
+    Tangent tangent = tangent_of(law, last, x, trial);
     Jacobian J = {rate->theta, rate->Y, Theta->theta, Theta->Y};
     *(law->axial ? &J.theta_theta : &J.theta_Y) += rate->g * tangent.cosine;
     *(law->axial ? &J.Y_theta : &J.Y_Y) += Theta->g * tangent.cosine;

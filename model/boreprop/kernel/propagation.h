@@ -5,10 +5,11 @@
 
 #include "integrator.h"
 
-/* Take over inputs where the bit is, in the state `x`: find the regime under them, and mark the jump of the direction of
-   the hole, which was Θ so far. */
+/* Take over inputs where the bit is, in the state `x`: find the regime under them, unless what it answers is known, and mark
+   the jump of the direction of the hole, which was Θ so far. */
 static inline Status restart(
-    Integrator *p, ScaledInputs inputs, const double x[COMPONENTS], const double Theta[DIRECTIONS], Problem *problem
+    Integrator *p, ScaledInputs inputs, const double x[COMPONENTS], const double Theta[DIRECTIONS],
+    const Response *answer, Problem *problem
 ) {
     State *now = &p->now;
     double jump = 0.0;
@@ -17,7 +18,7 @@ static inline Status restart(
     p->exit_known = 0;
     bear(p, inputs.W);
     if (lands(p) && touch_down(p, now->xi, x, problem) != DONE) return FAILED;
-    Response at = respond(p, x, inputs);
+    const Response at = answer ? *answer : respond(p, x, inputs);
     for (int d = 0; d < DIRECTIONS; d++) {
         if (!isfinite(at.Theta[d]) || !isfinite(at.F_0[d])) return failed(p, NOT_FINITE, now->xi, problem);
         jump = larger(jump, fabs(at.Theta[d] - Theta[d]));
@@ -39,9 +40,10 @@ static inline Status steer(Integrator *p, ScaledInputs inputs, Problem *problem)
     ScaledInputs before = inputs_here(now);
     double x[COMPONENTS];
     step_state(&now->step, now->xi, x);
-    Response so_far = respond(p, x, before);
+    Response so_far = respond(p, x, before), answer;
+    int known = answer_is_known(p, x, inputs, before, &so_far, &answer);
     move_path(now, now->xi);
-    Status status = restart(p, inputs, x, so_far.Theta, problem);
+    Status status = restart(p, inputs, x, so_far.Theta, known ? &answer : NULL, problem);
     if (status != DONE) return status;
     double bent = curvature_jump(p, x, before, inputs);
     if (!isfinite(bent)) return failed(p, NOT_FINITE, now->xi, problem);
@@ -89,7 +91,7 @@ static inline Status change_clearances(Integrator *p, const double *y_star, Prob
     memcpy(now->y_star, y_star, (size_t)(p->scaled.n - 1) * sizeof *y_star);
     now->cleared = now->xi;
     clear(p);
-    Status status = restart(p, inputs, x, so_far.Theta, problem);
+    Status status = restart(p, inputs, x, so_far.Theta, NULL, problem);
     if (status != DONE) go_back(p);
     p->under_way = 0;
     return status;
@@ -99,7 +101,7 @@ static inline Status change_clearances(Integrator *p, const double *y_star, Prob
    After FULL the same call goes on. */
 static inline Status drill_in_layer(Integrator *p, const Ground *ground, double end, int *left, Problem *problem) {
     State *now = &p->now;
-    double last = p->before.accepted + p->options.most_steps, l1 = p->length_scale, path[AXES];
+    double last = p->before.accepted + p->options.most_steps, l1 = p->length_scale;
     double top = layer_top(ground, now->layer) / l1, bottom = layer_bottom(ground, now->layer) / l1;
     for (;;) {
         double begin = larger(now->step.xi, now->stay);
@@ -113,12 +115,15 @@ static inline Status drill_in_layer(Integrator *p, const Ground *ground, double 
         Status status = take_step(p, problem);
         if (status != DONE) return status;
     }
+    int stayed = p->exit == larger(now->step.xi, now->stay);
     now->xi = p->exit, now->layer += *left;
-    position(now, path);
-    double z = path[AXES - 1];
-    while (*left > 0 ? z * l1 - layer_bottom(ground, now->layer) > AT_TOP /* through a thin layer */
-                     : layer_top(ground, now->layer) - z * l1 > AT_TOP)
-        now->layer += *left;
+    if (stayed) { /* the bit is not at the bound, but beyond, maybe through thin layers */
+        double path[AXES], z;
+        position(now, path);
+        z = path[AXES - 1] * l1;
+        while (*left > 0 ? z - layer_bottom(ground, now->layer) > AT_TOP : layer_top(ground, now->layer) - z > AT_TOP)
+            now->layer += *left;
+    }
     now->stay = now->xi + STAY / l1;
     p->exit_known = 0;
     return DONE;
@@ -162,7 +167,7 @@ static inline Status begin(Integrator *p, const Survey *survey, ScaledInputs inp
         if (!check_finite(Q_STATION_RATE, 0, piece(&now->hole, k)->rate, problem)) return FAILED;
     find_places(now, &p->scaled, now->xi);
     if (p->scaled.points) start_noting(now);
-    if (restart(p, inputs, x, heading.angle, problem) != DONE) {
+    if (restart(p, inputs, x, heading.angle, NULL, problem) != DONE) {
         if (problem->code == NOT_FINITE) wrong(problem, NO_START, Q_PARAMETERS, 0, NAN, NAN);
         return FAILED;
     }

@@ -5,37 +5,38 @@
 #include "bit.h"
 
 /* What bends the beam where the bit is. */
-static inline Loads present_loads(const Integrator *p) {
-    double x[COMPONENTS];
-    step_state(&p->now.step, p->now.xi, x);
-    return loads_at(p, p->now.xi, x, inputs_here(&p->now).F_rss);
+static inline void find_present_loads(const Integrator *p, const double x[COMPONENTS], Loads *loads) {
+    find_loads(p, p->now.xi, x, force_at(&p->now, p->now.xi), loads);
 }
 
 /* Θ under given loads, eq. (16): algebraic, so it jumps with the inputs. */
 static inline double inclination_under(Integrator *p, double theta, const Loads *loads, ScaledInputs inputs) {
-    const Mode *mode = settle(&p->modes, loads, p->now.regime.contact);
+    const Mode *mode = settle(&p->modes, loads, &p->now.regime.contact);
     return theta - bit_tilt(row_value(&mode->F_0, loads), inputs.eta_pi, inputs.psi_star);
 }
 
 /* How the BHA is bent with the bit at `xi` in the state `x`. */
 static inline void bend(Integrator *p, double xi, const double x[COMPONENTS], Bending bending[DIRECTIONS]) {
-    Loads loads = loads_at(p, xi, x, force_at(&p->now, xi));
-    bending[0] = bending_of(settle(&p->modes, &loads, p->now.regime.contact), &loads, p->scaled.n);
+    Loads loads;
+    find_loads(p, xi, x, force_at(&p->now, xi), &loads);
+    bending[0] = bending_of(settle(&p->modes, &loads, &p->now.regime.contact), &loads, p->scaled.n);
 }
 
-/* What bends it in the present regime with the bit at `xi` in the state `x`, in a step. */
-static inline void pull_under(Integrator *p, const Loads *loads, Pull pull[DIRECTIONS]) {
-    contact_forces(mode_of(&p->modes, p->now.regime.contact), loads, pull->F);
+/* What bends it under loads in a mode. */
+static inline void pull_under(const Integrator *p, const Mode *mode, const Loads *loads, Pull pull[DIRECTIONS]) {
+    contact_forces(mode, loads, pull->F);
     pull->count = loads->count, pull->F_rss = loads->F_rss, pull->g = loads->g;
     pull->end = loads->e[p->scaled.n - 1] - p->modes.beam.end;
 }
 
+/* The same in the present regime with the bit at `xi` in the state `x`, in a step. */
 static inline void pull_at(
     Integrator *p, const Step *step, double xi, const double x[COMPONENTS], Pull pull[DIRECTIONS]
 ) {
-    Loads loads = loads_at(p, xi, x, force_at(&p->now, xi));
+    Loads loads;
+    find_loads(p, xi, x, force_at(&p->now, xi), &loads);
     (void)step;
-    pull_under(p, &loads, pull);
+    pull_under(p, mode_of(&p->modes, &p->now.regime.contact), &loads, pull);
 }
 
 /* The same where a step ends that is being tried, in the state `x`. */
@@ -51,7 +52,7 @@ static inline void pull_after(Integrator *p, const Trial *trial, const double x[
     for (int i = 0; i < places->count; i++)
         loads.e[i] = x[LATERAL] - trial->delayed[i][0][POINTS - 1] - places->s[i] * x[ANGLE];
     loads.g = sin(p->scaled.axial ? x[ANGLE] : x[LATERAL] - trial->delayed[0][0][POINTS - 1]);
-    pull_under(p, &loads, pull);
+    pull_under(p, mode_of(&p->modes, &p->now.regime.contact), &loads, pull);
 }
 
 /* The regime in the state `x`, and the direction of the hole there. */
@@ -60,16 +61,31 @@ typedef struct {
     double Theta[DIRECTIONS], F_0[DIRECTIONS];
 } Response;
 
-static inline Response respond(Integrator *p, const double x[COMPONENTS], ScaledInputs inputs) {
-    Loads loads = loads_at(p, p->now.xi, x, inputs.F_rss);
-    const Mode *mode = settle(&p->modes, &loads, p->now.regime.contact);
-    double F_0 = row_value(&mode->F_0, &loads), psi_star = inputs.psi_star;
+/* What it answers in given rock where F_0 and the contacts are these. */
+static inline Response respond_in(ScaledInputs inputs, double theta, double F_0, Contact contact) {
     Response response = {
-        {mode->contact, side_beyond(F_0 / inputs.eta_pi, -psi_star, psi_star, ROUNDING)},
-        {x[ANGLE] - bit_tilt(F_0, inputs.eta_pi, psi_star)},
+        {contact, side_beyond(F_0 / inputs.eta_pi, -inputs.psi_star, inputs.psi_star, ROUNDING)},
+        {theta - bit_tilt(F_0, inputs.eta_pi, inputs.psi_star)},
         {F_0}
     };
     return response;
+}
+
+static inline Response respond(Integrator *p, const double x[COMPONENTS], ScaledInputs inputs) {
+    Loads loads;
+    find_loads(p, p->now.xi, x, inputs.F_rss, &loads);
+    const Mode *mode = settle(&p->modes, &loads, &p->now.regime.contact);
+    return respond_in(inputs, x[ANGLE], row_value(&mode->F_0, &loads), mode->contact);
+}
+
+/* Whether it is known what it answers under other inputs than those `before`, where it did so far, and what: unless forces
+   change, F_0 does not. */
+static inline int answer_is_known(
+    const Integrator *p, const double x[COMPONENTS], ScaledInputs inputs, ScaledInputs before, const Response *so_far,
+    Response *answer
+) {
+    *answer = respond_in(inputs, x[ANGLE], so_far->F_0[0], so_far->regime.contact);
+    return inputs.F_rss == before.F_rss && inputs.W == before.W && !p->scaled.points;
 }
 
 /* The jump of Θ' where ε, or the slope of an input, changes in the present regime. */
@@ -80,8 +96,9 @@ static inline double curvature_jump(
     int saturation = p->now.regime.saturation, on_ramp = bend != 0 || turn != 0, turns = turns_anew(&inputs, &before);
     double bent = -saturation * (inputs.psi_star_slope - before.psi_star_slope); /* jump of Θ' = θ' − ψ' */
     if ((saturation || !on_ramp) && !turns) return fabs(bent);
-    Loads loads = loads_at(p, p->now.xi, x, inputs.F_rss);
-    const Mode *mode = mode_of(&p->modes, p->now.regime.contact);
+    Loads loads;
+    find_loads(p, p->now.xi, x, inputs.F_rss, &loads);
+    const Mode *mode = mode_of(&p->modes, &p->now.regime.contact);
     if (turns) { /* θ' = M/(εηΠ) */
         double moment = row_value(&mode->M, &loads);
         bent += present_law(p)->Theta.theta * moment / inputs.eta_pi * (1 / epsilon(&inputs) - 1 / epsilon(&before));
@@ -104,7 +121,8 @@ static inline double earlier_inclination(Integrator *p, double xi) {
     double ahead = larger(xi - at->start, 0.0), x[COMPONENTS];
     for (int c = 0; c < COMPONENTS; c++) x[c] = polynomial(at->x[c], ahead * at->rate);
     ScaledInputs inputs = inputs_ahead(&at->inputs, ahead);
-    Loads loads = loads_at(p, at->start + ahead, x, inputs.F_rss);
+    Loads loads;
+    find_loads(p, at->start + ahead, x, inputs.F_rss, &loads);
     bear(p, inputs.W);
     double Theta = inclination_under(p, x[ANGLE], &loads, inputs);
     bear(p, p->now.inputs.W);

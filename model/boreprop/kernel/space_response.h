@@ -64,6 +64,15 @@ static inline Response respond(Integrator *p, const double x[COMPONENTS], Scaled
     return respond_at(p, &p->now.step, p->now.xi, x, inputs);
 }
 
+/* In space the answer under other inputs is never known before: sides and walk may turn F_0. */
+static inline int answer_is_known(
+    const Integrator *p, const double x[COMPONENTS], ScaledInputs inputs, ScaledInputs before, const Response *so_far,
+    Response *answer
+) {
+    (void)p, (void)x, (void)inputs, (void)before, (void)so_far, (void)answer;
+    return 0;
+}
+
 /* How the BHA is bent, in either direction, where the drilling system answers so. */
 static inline void bend_under(const Integrator *p, const Response *is, Bending bending[DIRECTIONS]) {
     const Contact *contact = &is->regime.contact;

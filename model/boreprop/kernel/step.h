@@ -36,6 +36,7 @@ typedef struct {
 /* A step as the collocation gives it, before events cut it, with values at its points. */
 typedef struct {
     Step step;
+    int follows; /* on the last one, among layers, so that this tells where it leads */
     double delayed[MAX_PLACES][DIRECTIONS][POINTS]; /* the hole's lateral coordinate at ξ − s_i */
     double x[COMPONENTS][POINTS];
     double sines[POINTS],
