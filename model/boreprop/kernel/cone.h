@@ -265,7 +265,7 @@ static inline double improve(const Touching *all, double q[MAX_PLACES][2], doubl
 /* Bring v to the solution over all supports, from a guess if that leads there. */
 static inline void settle_all(const Touching *all, double q[MAX_PLACES][2], double v[MAX_PLACES][2]) {
     double near[MAX_PLACES][2], off = improve(all, q, v);
-    if (!(off > ROUNDING)) return;
+    if (off <= ROUNDING) return;
     approach(all, q, near);
     if (improve(all, q, near) < off) memcpy(v, near, (size_t)all->touching * sizeof near[0]);
 }
@@ -289,7 +289,8 @@ static inline void guess_under(
     for (int a = 0; a < held.touching; a++) restate(v_C[a], held.y[a], held.k[a], held.K_inv[a][a], v[held.C[a]]);
 }
 
-/* The contacts that hold under q̃ among the supports that have places, with their v where k_i = K⁻¹_ii, sought from those in `contact`. */
+/* The contacts that hold under q̃ among the supports that have places, with their v where k_i = K⁻¹_ii, sought from those in
+   `contact`. */
 static inline Contact settle_discs(
     const Modes *modes, double q[MAX_PLACES][2], double v[MAX_PLACES][2], Contact contact
 ) {
