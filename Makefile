@@ -60,6 +60,7 @@ bench: .venv/bench.compiled  # speed, side by side with something else
 	$(BIN)/python benchmarks/study.py
 	$(BIN)/python benchmarks/native.py
 	$(BIN)/python benchmarks/ground.py
+	$(BIN)/python benchmarks/body.py
 	$(BIN)/python benchmarks/space.py
 
 clean:

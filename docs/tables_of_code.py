@@ -15,7 +15,7 @@ from typer.cli import get_docs_for_click
 import boreprop.cli.app
 import boreprop_fmu.cli
 import boreprop_viz.cli
-from boreprop.case.schema import TABLES
+from boreprop.case.messages import TABLES
 from boreprop.cli.lazy import load_command
 from boreprop.core.quantities import QUANTITIES, Quantity
 

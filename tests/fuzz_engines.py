@@ -191,8 +191,9 @@ def examine(space: str, seed: int, number: int, compared: bool) -> Finding:
             found.fault = "a column is not finite"
         if (compared or failure) and case.bha.structure.is_of_the_paper and not found.fault:
             compare(case if failure else replace(case, length=min(COMPARED, case.length)), tolerance, found)
-    except CannotContinue as error:  # where the run starts
-        return Finding(number, error.problem.code, None if error.problem.code in EXPLAINED else str(error))
+    except Stopped as error:  # where the run starts
+        code = getattr(error.__cause__, "code", None)
+        return Finding(number, code, None if code in EXPLAINED else str(error))
     except Exception as error:  # whatever it is, it is what is looked for
         return Finding(number, None, f"{type(error).__name__}: {error}")
     return found

@@ -138,8 +138,8 @@ def drill(case: Case, tolerance: float, stops: int = 1, saves: bool = False) -> 
 
 def as_on(case: Case, course: Course, length: float, piece: int, layer: int = 0) -> Case:
     """A case with bit and clearances as they are at a drilled length on a piece of its course, in a layer."""
-    values = course.at(np.array([length]), np.array([piece], dtype=np.intc))[0].tolist()
-    given = dict(zip(course.names, values, strict=True))
+    where = np.array([length]), np.array([piece], dtype=np.intc)
+    given = {name: course.column(name, *where).item() for name in course.names}
     clearances = zip(CLEARANCES, case.bha.stabilizer_clearances, strict=False)
     bha = replace(case.bha, stabilizer_clearances=tuple(given.get(name, own) for name, own in clearances))
     bit = BitRock(**fields_of("bit", values_of("bit", case.bit) | given, case.structure))

@@ -81,6 +81,20 @@ class SpatialCase:
         return found
 
 
+TURNING = SpatialCase(
+    s=(1.0, 1.8, 3.1),
+    y_star=(8e-4, 1.5e-3),
+    eta_pi=0.15,
+    walk=0.2,
+    stations=(-3.2, -1.0, -0.4, 0.0),
+    inclination=(0.5, 0.5, 0.505, 0.51),
+    azimuth=(1.0, 1.0, 1.02, 1.02),
+    force=5e-3,
+    toolface=0.8,
+)
+"""A hole that turns and walks, with all stabilizers between the walls and on them."""
+
+
 def referred(name: str) -> SpatialCase:
     """A case of tests/reference_spatial under its first force, which is held in the frame of the bit."""
     p = CASES[name]

@@ -90,3 +90,14 @@ def test_the_command_prints_a_line_a_station_and_draws_them(command_here: Comman
     table = command_here("boreprop", "compare", "run.csv", EXAMPLES / "build_section_plan.csv").stdout
     for depth in document["measured_depth"]:
         assert f" {depth:.1f} " in table
+
+
+def test_azimuths_that_a_run_in_a_plane_has_not_are_told_to_be_left_out(command_here: Command, tmp_path: Path) -> None:
+    write_trajectory(simulate(PAPER, length=20.0), tmp_path / "run.csv")
+    warning = "warning: survey.csv: its azimuths are left out, since the run stays in a plane"
+    for azimuth, said in ((10, warning), (9, "")):
+        (tmp_path / "survey.csv").write_text(f"measured_depth,inclination_deg,azimuth_deg\n0,9,9\n15,9,{azimuth}\n")
+        done = command_here("boreprop", "compare", "run.csv", "survey.csv")
+        assert done.returncode == 0
+        assert done.stderr.startswith(said)
+        assert bool(done.stderr) == bool(said)

@@ -105,5 +105,5 @@ def test_a_plan_that_does_not_include_the_start_is_refused() -> None:
 
 
 def test_a_plan_that_turns_is_refused_in_the_plane() -> None:
-    with pytest.raises(InputError, match=r"must be the same everywhere for a run in the plane.*--dimensions 3"):
+    with pytest.raises(InputError, match=r"must be the same everywhere .*drilling.dimensions = 3"):
         planned_hole(Survey((100.0, 260.0), (0.1, 0.5), (0.0, 0.5)), start=150.0)

@@ -1,5 +1,6 @@
 """Cases that leave their vertical plane: azimuth, toolface and walk angle in case files."""
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from math import cos, pi, radians, sin
@@ -84,7 +85,7 @@ def test_a_survey_in_a_file_may_have_azimuths_all_round(tmp_path: Path) -> None:
     path.write_text("measured_depth,inclination_deg,azimuth_deg\n0,10,359\n100,20,181\n")
     assert read_survey(path).azimuth == (radians(359), radians(181))
     path.write_text("measured_depth,inclination_deg,azimuth_deg\n0,10,361\n")
-    with pytest.raises(InputError, match=r"survey.csv:2: azimuth_deg: must be between -360 and 360, got 361.0"):
+    with pytest.raises(InputError, match=r"survey.csv:2: azimuth_deg: must be <= 360, got 361.0"):
         read_survey(path)
 
 
@@ -106,6 +107,9 @@ def test_an_azimuth_is_not_given_twice(write: Write, tmp_path: Path) -> None:
             "",
             r"hole.azimuth_deg\[1\]: must be <= 360, got 400.0",
         ),
+        (HOLE + "azimuth_deg = '45'\n", "", r"hole.azimuth_deg: must be a number or a list of numbers, got '45'$"),
+        (HOLE, FORCE + "toolface_deg = 400\n", r"rss.toolface_deg\[1\]: must be <= 360, got 400.0$"),
+        (HOLE, FORCE + "toolface_deg = -720\n", r"rss.toolface_deg\[1\]: must be >= -360, got -720.0$"),
         (HOLE, FORCE + "toolface_deg = [90.0]\n", r"must hold one value per drilled_length, 2 in all, got \(90.0,\)"),
         (HOLE, FORCE + 'toolface_deg = 9\ntoolface_reference = "up"\n', r"must be gravity, north or frame, got 'up'"),
         (HOLE, FORCE + "toolface_deg = 9\ntoolface_reference = 1\n", r"rss.toolface_reference: .*got 1$"),
@@ -141,6 +145,53 @@ def test_a_schedule_of_inputs_may_have_toolface_and_walk(write: Write) -> None:
     assert case.schedule == Schedule((0.0, 9.0), (1e3, 2e3), "held", (0.0, radians(45.0)), ("gravity", "north"))
     assert case.profiles()["bit_walk_angle"].values == (0.0, radians(5.0))
     assert parse_case(dump_case(case), "again.toml") == case
+
+
+def test_a_schedule_of_inputs_is_spelled_as_in_a_csv_file(write: Write, tmp_path: Path) -> None:
+    columns = {"drilled_length_ft": 0.0, "force_kN": 8.0, "toolface_deg": 45.0, "walk_angle_deg": -5.0}
+    inline = ", ".join(f"{name} = [{value}]" for name, value in columns.items())
+    (tmp_path / "s.csv").write_text(f"{','.join(columns)}\n{','.join(map(str, columns.values()))}\n")
+    here, there = (load_case(write(drilling=f"schedule = {table}")) for table in (f"{{ {inline} }}", '"s.csv"'))
+    assert here == there
+    assert here.schedule == Schedule((0.0,), (8e3,), rss_toolface=(radians(45.0),))
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "says"),
+    [
+        ("toolface_deg", 400, "must be <= 360, got 400.0"),
+        ("rss_toolface_deg", -400, "must be >= -360, got -400.0"),
+        ("bit_walk_angle_deg", 100, "must be <= 89, got 100.0"),
+        ("tilt_limit_deg", 0, "must be > 0, got 0.0"),
+    ],
+)
+def test_an_angle_in_degrees_is_refused_in_degrees(
+    write: Write, tmp_path: Path, column: str, value: float, says: str
+) -> None:
+    (tmp_path / "s.csv").write_text(f"drilled_length,force,{column}\n0,1e3,{value}\n")
+    for table, where in (
+        (f"{{ drilled_length = [0.0], force = [1e3], {column} = [{value}] }}", f"drilling.schedule.{column}[1]"),
+        ('"s.csv"', f"s.csv:2: {column}"),
+    ):
+        with pytest.raises(InputError, match=re.escape(f"{where}: {says}")):
+            load_case(write(drilling=f"schedule = {table}"))
+
+
+def test_a_column_is_not_given_under_two_names(write: Write) -> None:
+    with pytest.raises(InputError, match=r"drilling.schedule.rss_force: must be left out, since another column gives"):
+        load_case(write(drilling="schedule = { drilled_length = [0.0], force = [1e3], rss_force = [1e3] }"))
+
+
+def test_an_angle_without_its_unit_does_not_pass_unread(write: Write, tmp_path: Path) -> None:
+    (tmp_path / "s.csv").write_text("drilled_length,force,toolface\n0,1e3,90\n")
+    with pytest.raises(InputError, match=r"or 'toolface_deg' \(deg\), or none of it, got 'toolface'$"):
+        load_case(write(drilling='schedule = "s.csv"'))
+
+
+def test_two_dimensions_are_refused_to_a_case_in_space(write: Write) -> None:
+    with pytest.raises(InputError, match=r"drilling.dimensions: must be 3 for a case with an azimuth, .*, got 2$"):
+        load_case(write(HOLE + "azimuth_deg = 40\n", drilling="dimensions = 2"))
+    assert not load_case(write(HOLE, drilling="dimensions = 2")).in_space
 
 
 def test_a_toolface_without_a_force_is_refused(write: Write) -> None:
@@ -186,7 +237,7 @@ def test_a_hole_that_only_looks_as_if_it_turned_stays_in_its_plane() -> None:
     assert Survey((0.0, 10.0, 20.0), (0.1, 0.1, 0.2), (1.0, 0.3, 0.3)).turns
 
 
-@pytest.mark.parametrize("toolface", [0.0, pi, -pi, 2 * pi, 3 * pi])
+@pytest.mark.parametrize("toolface", [0.0, pi, -pi, 2 * pi, -2 * pi])
 def test_up_and_down_are_signs_of_the_force(toolface: float) -> None:
     assert Schedule((0.0,), (1e3,), rss_toolface=(toolface,)) == Schedule((0.0,), (1e3 * round(cos(toolface)),))
 

@@ -156,7 +156,7 @@ def test_a_case_by_depth_is_the_same_case_by_drilled_length(by_depth: Text) -> N
         ("", "measured_depth = []\nforce = []", "rss.measured_depth: must start at 1040 or before, "),
         ("", "measured_depth = [1041]\nforce = [1]", "rss.measured_depth: must start at 1040 or before, "),
         ("", "measured_depth = [nan]\nforce = [1]", "rss.measured_depth: must be a finite number, got nan"),
-        ("", "measured_depth = [1]\nforce = [inf]", "rss.force: must be a finite number, got inf"),
+        ("", "measured_depth = [1]\nforce = [inf]", "rss.force[1]: must be a finite number, got inf"),
         ("", "measured_depth = [1]\ndrilled_length = [0]\nforce = [1]", "rss: must hold either drilled_length and fo"),
         ("bit_dept = 1", "", "hole.bit_dept: must be a known key (hole.bit_depth?), got 1"),
     ],

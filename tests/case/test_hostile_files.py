@@ -106,5 +106,5 @@ def test_a_schedule_of_integers(engine: str) -> None:
 
 
 def test_an_integer_that_is_no_float() -> None:
-    with pytest.raises(ParameterError, match=r"rss_force: must be a finite number, got inf"):
+    with pytest.raises(ParameterError, match=r"rss_force\[1\]: must be a finite number, got inf"):
         Schedule((0.0,), (10**400,))

@@ -165,7 +165,7 @@ SURVEY = b"measured_depth,inclination_deg\n2500,26\n"
     [
         (b"PK\x03\x04" + bytes(range(256)), ": must be a CSV file, got a workbook: save its sheet as CSV"),
         (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", ": must be a CSV file, got a workbook: save its sheet as CSV"),
-        (SURVEY + b"2510,-999.25\n", ":3: inclination_deg: must be between -180 and 180, got -999.25"),
+        (SURVEY + b"2510,-999.25\n", ":3: inclination_deg: must be >= -180, got -999.25"),
         (
             SURVEY + b"-999.25,26\n",
             ":3: measured_depth: must be a value, got -999.25, which stands for no value: leave",
@@ -177,7 +177,7 @@ SURVEY = b"measured_depth,inclination_deg\n2500,26\n"
         (SURVEY + b"1e30,26\n", ":3: measured_depth: must be a value, got 1e+30, which stands for no value: leave"),
         (SURVEY + b"2510,\n", ":3: inclination_deg: must be a finite number, got ''"),
         (SURVEY + b"2510,NaN\n", ":3: inclination_deg: must be a finite number, got 'NaN'"),
-        (SURVEY + b"2510,180.5\n", ":3: inclination_deg: must be between -180 and 180, got 180.5"),
+        (SURVEY + b"2510,180.5\n", ":3: inclination_deg: must be <= 180, got 180.5"),
         (SURVEY + b"2_510,26\n", ":3: measured_depth: must be a finite number, got '2_510'"),
         (SURVEY + b'2510,"26\n', ": must be a CSV file with quotes in pairs, got: unexpected end of data in line 3"),
         (

@@ -45,10 +45,6 @@ def test_each_unusual_value_is_named_with_its_usual_range(case: Case) -> None:
             "bit.tilt_limit_deg: is usually 0.05 to 5 °, got 0.02",
         ),
         (replace(case, active_weight_on_bit=60.0), "drilling.active_weight_on_bit: is usually 300 to 500000 N, got 60"),
-        (
-            replace(case, schedule=Schedule((0.0,), (8e3,), rss_toolface=(90.0,))),
-            "rss.toolface_deg: is usually -360 to",
-        ),
         (replace(case, bit_diameter=1.2), "bit.diameter: is usually 0.05 to 1 m, got 1.2"),
         (
             replace(case, survey=Survey((0.0, 7.0), (0.0, 0.0))),

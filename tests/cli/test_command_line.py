@@ -23,7 +23,7 @@ from boreprop.run.results import read_trajectory, write_trajectory
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Stopped
 from conftest import Command, assert_refused
-from places import ROOT
+from places import EXAMPLES, ROOT
 
 EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
 
@@ -308,3 +308,10 @@ def test_what_is_far_from_any_bha_is_a_warning_of_one_line(
         "hole.measured_depth: spans 2 m, less than the 7.32 m of the BHA: "
         "the hole is extended straight above its first station\n"
     )
+
+
+def test_what_the_engine_refuses_is_named_by_the_file_and_the_key(command_here: Command, tmp_path: Path) -> None:
+    pendulum = (EXAMPLES / "pendulum.toml").read_text(encoding="utf-8").replace("88.96e3", "88.96e6")
+    (tmp_path / "case.toml").write_text(pendulum, encoding="utf-8")
+    done = command_here("boreprop", "simulate", "case.toml", "--output", "run.csv")
+    assert_refused(done, "case.toml: drilling.weight_on_bit: must be < ", "got 88960000.0")

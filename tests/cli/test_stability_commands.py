@@ -112,7 +112,7 @@ def test_stability_draws_a_picture_and_prints_the_critical_eta_pi(
         (("roots", "--all", "--contact", "1"), ("--all", "--contact '1'")),
         (("roots", "--contact", "2"), ("contact", "there are 1", "got 2")),
         (("roots", "--eta-pi", "1e-5"), ("eta_pi", "0.0001", "1e-05")),
-        (("roots", "--inclination-deg", "nan"), ("--inclination-deg", "finite", "nan")),
+        (("roots", "--inclination-deg", "nan"), ("--inclination-deg", "from -180 to 180", "nan")),
         (("stability", "--output", "chart.pdf"), ("chart.pdf", ".png")),
         (("stability", "--output", "chart.png", "--eta-pi", "0:1:5"), ("--eta-pi", "START:STOP:COUNT", "'0:1:5'")),
         (("stability", "--output", "chart.png", "--lambda2", "1:2"), ("--lambda2", "START:STOP:COUNT", "'1:2'")),

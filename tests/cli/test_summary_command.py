@@ -57,8 +57,9 @@ def test_with_a_plan_it_says_how_far_the_hole_is_off(command_here: Command, buil
     most = int(np.argmax(np.abs(off.distance)))
     side = {True: "high", False: "low"}
     alone = dict(cells(command_here("boreprop", "summary", "run.csv", "--plan", str(PLAN)).stdout))
-    end = f"{abs(off.distance[-1]):.2f} m {side[off.distance[-1] > 0]}, {np.degrees(off.inclination[-1]):+.2f} °"
-    assert alone["off the plan at the end"] == end
+    end = f"{abs(off.distance[-1]):.2f} m {side[off.distance[-1] > 0]}"
+    turned = f"inclination {np.degrees(off.inclination[-1]):+.2f} °"
+    assert alone["off the plan at the end"] == f"{end}, {turned}"
     farthest = f"{abs(off.distance[most]):.2f} m {side[off.distance[most] > 0]}"
     assert alone["off the plan at most"] == f"{farthest} at {2594.0 + built['drilled_length'][most]:.1f} m"
     both = command_here("boreprop", "summary", "run.csv", "--plan", str(PLAN), "--stations", "30").stdout

@@ -107,7 +107,7 @@ def test_a_hole_that_is_inclined_by_more_than_a_half_turn_is_refused(engine: str
     beyond = nextafter(pi, inf)
     for inclination in (beyond, -beyond):
         survey = SimpleNamespace(measured_depth=(0.0, 5.0), inclination=(0.5, inclination))
-        with pytest.raises(ParameterError, match=r"^inclination\[2\]: must be [<>]= -?3\.14159, got -?3\.14"):
+        with pytest.raises(ParameterError, match=r"^inclination\[2\]: must be [<>]= -?3\.14159 rad, got -?3\.14"):
             drilling(engine, case, survey=survey if engine == "native" else Survey(**vars(survey)))
     drilling(engine, case, survey=Survey((0.0, 5.0), (-pi, pi)))
 

@@ -16,7 +16,7 @@ from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop.kernel.binding import NativeDrilling, available
 from boreprop.kernel.space import SpaceDrilling
 from reference.spatial import CASES, Drilling, Push, read_reference, system_of
-from space_runs import IN_SECTIONS, SpatialCase, Vector, direction, pair, place, referred, rows_of
+from space_runs import IN_SECTIONS, TURNING, SpatialCase, Vector, direction, pair, place, referred, rows_of
 
 pytestmark = pytest.mark.skipif(not available(), reason="the kernel is not built")
 
@@ -190,18 +190,6 @@ def test_sections_and_a_load_along_the_beam_count_as_in_the_plane() -> None:
 
 
 # symmetries
-
-TURNING = SpatialCase(
-    s=(1.0, 1.8, 3.1),
-    y_star=(8e-4, 1.5e-3),
-    eta_pi=0.15,
-    walk=0.2,
-    stations=(-3.2, -1.0, -0.4, 0.0),
-    inclination=(0.5, 0.5, 0.505, 0.51),
-    azimuth=(1.0, 1.0, 1.02, 1.02),
-    force=5e-3,
-    toolface=0.8,
-)
 
 
 def test_a_turn_about_the_vertical_turns_the_hole() -> None:

@@ -16,7 +16,7 @@ from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock
 from boreprop.kernel.binding import NativeDrilling, available
 from boreprop.kernel.space import SpaceDrilling
-from space_runs import IN_SECTIONS, Outputs, SpatialCase, Vector, direction, pair
+from space_runs import IN_SECTIONS, TURNING, Outputs, Vector, direction, pair
 
 pytestmark = pytest.mark.skipif(not available(), reason="the kernel is not built")
 
@@ -29,18 +29,7 @@ INSTRUMENTS: dict[str, Any] = {
     "sensor_body_clearances": (0.02,) * 5,
 }
 SENSING = replace(IN_SECTIONS, sensor_positions=(0.0, 2.0, 6.5, 16.0), sensor_body_clearances=(0.05,) * 4)
-TURNING = SpatialCase(
-    s=(1.0, 1.8, 3.1),
-    y_star=(8e-4, 1.5e-3),
-    eta_pi=0.15,
-    walk=0.2,
-    stations=(-3.2, -1.0, -0.4, 0.0),
-    inclination=(0.5, 0.5, 0.505, 0.51),
-    azimuth=(1.0, 1.0, 1.02, 1.02),
-    force=5e-3,
-    toolface=0.8,
-    sensors=(0.7, 1.0, 2.5),
-)
+SENSING_TURN = replace(TURNING, sensors=(0.7, 1.0, 2.5))
 
 
 def axis(row: Outputs, i: int) -> Vector:
@@ -114,7 +103,7 @@ def test_axis_moment_and_clearance_are_those_of_finite_elements_in_two_planes(to
 
 
 def test_without_weight_a_bha_in_any_plane_is_bent_as_in_a_vertical_one() -> None:
-    given = replace(TURNING, w=0.0, walk=0.0, reference="frame", toolface=0.0, azimuth=(0.0,) * 4)
+    given = replace(SENSING_TURN, w=0.0, walk=0.0, reference="frame", toolface=0.0, azimuth=(0.0,) * 4)
     tilt = Rotation.from_rotvec([0.5, 0.1, 0.9]).as_matrix()
     turned = [tilt @ [sin(angle), 0.0, cos(angle)] for angle in given.inclination]
     tilted = replace(
@@ -136,8 +125,8 @@ def test_without_weight_a_bha_in_any_plane_is_bent_as_in_a_vertical_one() -> Non
 
 
 def test_a_turn_about_the_vertical_turns_the_sensors() -> None:
-    turned = replace(TURNING, azimuth=tuple(a + 2.0 for a in TURNING.azimuth))
-    [row], [other] = (case.rows([7.0], relative_tolerance=1e-9) for case in (TURNING, turned))
+    turned = replace(SENSING_TURN, azimuth=tuple(a + 2.0 for a in SENSING_TURN.azimuth))
+    [row], [other] = (case.rows([7.0], relative_tolerance=1e-9) for case in (SENSING_TURN, turned))
     turn = np.array([[cos(2.0), -sin(2.0), 0.0], [sin(2.0), cos(2.0), 0.0], [0.0, 0.0, 1.0]])
     for i in (1, 2, 3):
         assert axis(other, i) == pytest.approx(turn @ axis(row, i), abs=1e-9)

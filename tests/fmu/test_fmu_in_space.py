@@ -4,6 +4,7 @@ from dataclasses import replace
 from functools import partial
 from math import pi, radians
 from pathlib import Path
+from typing import Any
 from zipfile import ZipFile
 
 import numpy as np
@@ -156,6 +157,31 @@ def test_a_wrong_reference_is_refused_where_it_is_used(one: Instance) -> None:
     one.slave.setInteger([one.variables["toolface_reference"].valueReference], [3])
     with refused(one, "toolface_reference: must be <= 2, got 3", status=2):
         one.slave.doStep(0.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("degrees", "told"),
+    [
+        ({"rss_toolface": 90.0}, "rss_toolface: must be <= 6.28319 rad, got 90.0"),
+        ({"rss_toolface": -45.0}, "rss_toolface: must be >= -6.28319 rad, got -45.0"),
+        ({"bit_walk_angle": 5.0}, "bit_walk_angle: must be <= 1.55334 rad, got 5.0"),
+        ({"bit_tilt_limit": 2.0}, "bit_tilt_limit: must be <= 1.5708 rad, got 2.0"),
+    ],
+)
+def test_an_angle_in_degrees_discards_the_step(one: Instance, degrees: dict[str, Any], told: str) -> None:
+    one.initialize()
+    right = {name: one.get(name) for name in degrees}
+    one.set_names(degrees)
+    with refused(one, told, status=2):
+        one.slave.doStep(0.0, 1.0)
+    one.set_names(right)
+    one.slave.doStep(0.0, 1.0)
+
+
+def test_a_bias_in_degrees_is_refused(one: Instance) -> None:
+    one.set_names({"sensor_bias[1]": -5.0})
+    with refused(one, "sensor_bias[1]: must be >= -3.14159 rad, got -5.0"):
+        one.initialize()
 
 
 def test_a_survey_file_may_have_azimuths(one: Instance, tmp_path: Path) -> None:

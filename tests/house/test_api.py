@@ -78,13 +78,17 @@ def test_what_goes_wrong_is_one_kind_of_error() -> None:
             lambda case: API.stability_chart(case, [], [1.0]),
             r"eta_pi: must be a list of at least one value, got \[\]",
         ),
-        (lambda case: API.stability_chart(case, [0.1], [[1.0]]), "lambda2: must be a list of at least one value"),
-        (lambda case: API.walk_chart(case, 0.1), "walk_angle: must be a list of at least one value, got 0.1"),
+        (lambda case: API.stability_chart(case, [0.1], [[1.0]]), r"lambda2\[1\]: must be a number, got \[1.0\]"),
+        (lambda case: API.walk_chart(case, 0.1), r"walk_angle: must be a list, such as \[0.1\], got 0.1"),
         (
             lambda _: API.InputSchedule((0.0,), (("eta_pi", (0.1,)),)),
             "inputs: must be some of rss_force, .*, got 'eta_pi'",
         ),
-        (lambda case: API.hysteresis(case, "eta_pi", [], 0.01), "values: must be at least one value of eta_pi"),
+        (lambda case: API.hysteresis(case, "eta_pi", [], 0.01), "values: must be a list of at least one value"),
+        (lambda case: API.hysteresis(case, "eta_pi", [0.2, 0.1], 0.01), r"values: must increase, got \(0.2, 0.1\)"),
+        (lambda case: API.sample(case, {"eta_pi": 0.1}, 3, 1), "eta_pi: must be a frozen distribution of scipy.stats"),
+        (lambda case: API.grid(case, {"eta_pi": "0.1"}), "eta_pi: must be a list of numbers, got '0.1'"),
+        (lambda case: API.find_roots(case, contact="12"), "contact: must be the number of a non-ideal stabilizer"),
         (lambda case: API.critical_dogleg(case, side=0), "side: must be 1 or -1, got 0"),
         (lambda _: API.find_rippling([0.0, 1.0], [0.0]), r"inclination: .* got the shapes \(1,\) for \(2,\)"),
         (
@@ -97,6 +101,20 @@ def test_what_goes_wrong_is_one_kind_of_error() -> None:
 def test_an_argument_that_cannot_be_is_named(call: Callable[[boreprop.Case], object], message: str) -> None:
     with pytest.raises(boreprop.BorepropError, match=message):
         call(boreprop.paper_case())
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        lambda case: API.find_roots(case, inclination=30.0),
+        lambda case: API.critical_eta_pi(case, inclination=30.0),
+        lambda case: API.stability_chart(case, [0.1], [1.0], inclination=30.0),
+        lambda case: API.steady_response(case, 1e3, 30.0),
+    ],
+)
+def test_an_inclination_in_degrees_is_refused(asked: Callable[[boreprop.Case], object]) -> None:
+    with pytest.raises(boreprop.BorepropError, match=r"^inclination: must be <= 3.14159 rad, got 30.0$"):
+        asked(boreprop.paper_case())
 
 
 def test_another_name_is_no_attribute() -> None:

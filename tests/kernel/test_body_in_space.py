@@ -20,7 +20,7 @@ from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock, BottomHoleAssembly
 from boreprop.kernel.binding import NativeDrilling
 from boreprop.kernel.space import SpaceDrilling
-from space_runs import Outputs, direction, pair, place
+from space_runs import IN_SECTIONS, Outputs, direction, pair, place
 
 pytestmark = pytest.mark.usefixtures("kernel")
 PAPER = paper_case()
@@ -63,16 +63,11 @@ def test_contacts_are_those_of_the_contact_problem(
 ) -> None:
     """In a hole that has turned along an arc, with a beam of finite elements: e = −κ s²/2, in both directions."""
     azimuth, weight, reach, kappa = 0.4, 6e4, 24.0, np.array(curvature)
-    bha = BottomHoleAssembly(
-        (3.0, 12.0, reach),
-        (2e-3, 4e-3),
-        0.6,
-        1500.0,
-        1e7,
+    bha = replace(
+        IN_SECTIONS,
+        stabilizer_positions=(3.0, 12.0, reach),
         section_lengths=(4.0, 20.0),
-        section_distributed_weights=(1500.0, 900.0),
-        section_flexural_stiffnesses=(1e7, 5e6),
-        section_outer_diameters=(0.0, 0.0),
+        end_deflection=0.0,
         axial_load=axial,
         body_point_positions=(7.5, 16.0, 20.0),
         body_point_clearances=tuple(clearances),
@@ -247,7 +242,7 @@ def test_more_contacts_than_there_is_room_for_are_refused() -> None:
 def test_a_bha_bears_what_it_bears_without_its_stabilizers(stabilizers: tuple[float, ...]) -> None:
     """A clamped and hinged beam buckles under 4.4934² EI/ℓ²; held to no side it may be in a higher mode by far."""
     bha = BottomHoleAssembly(stabilizers, (0.0,) * len(stabilizers[1:]), 0.5, 0.0, 1e7, axial_load=True)
-    with pytest.raises(ParameterError, match=r"^weight_on_bit: must be < .*, where the BHA buckles") as refused:
+    with pytest.raises(ParameterError, match=r"^weight_on_bit: must be < .* in space, .* nearer to the bit") as refused:
         SpaceDrilling(bha, PAPER.bit, Survey((0.0,), (0.3,)), active_weight_on_bit=1e3, weight_on_bit=1e12)
     assert refused.value.problem
     assert refused.value.problem.limit == pytest.approx(4.493409458**2 * 1e7 / 40.0**2, rel=1e-5)

@@ -111,7 +111,7 @@ def test_the_command_prints_the_table_and_draws_only_if_asked(command: Command, 
     [
         (("--output", "steering.pdf"), (".png", "'.pdf'")),
         (("--force-limit", "-5"), ("--force-limit", "> 0", "'-5'")),
-        (("--inclination-deg", "nan"), ("--inclination-deg", "finite", "nan")),
+        (("--inclination-deg", "400"), ("--inclination-deg", "from -180 to 180", "400")),
     ],
 )
 def test_the_command_refuses_a_wrong_argument(

@@ -2,7 +2,7 @@
 
 import json
 from dataclasses import replace
-from math import cos, hypot, pi, radians, sin
+from math import cos, hypot, isnan, pi, radians, sin
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,7 @@ from boreprop.core.ground import Wear
 from boreprop.core.survey import Survey
 from boreprop.core.system import BottomHoleAssembly
 from boreprop.errors import ParameterError
+from boreprop.report.tables.summary import lines
 from boreprop.run.completion import complete
 from boreprop.run.results import read_trajectory, write_trajectory
 from boreprop.run.simulate import simulate
@@ -176,9 +177,9 @@ def test_minimum_curvature_between_two_stations_is_the_textbook_formula(turn: fl
     np.testing.assert_allclose(hole.at(np.array([-40.0])), hole.position[:1] - 10.0 * u[:1], atol=1e-9)
 
 
-def test_stations_of_a_level_turn(case: Case) -> None:
+def level_turn(case: Case, rate: float, drilled: float) -> Trajectory:
     """A hole at 90° that turns at a constant rate, made by hand: azimuth, position and dogleg severity are known."""
-    rate, length = radians(3.0) / 30.0, np.arange(0.0, 300.5, 0.5)
+    length = np.arange(0.0, drilled + 0.5, 0.5)
     zeros = np.zeros_like(length)
     turned = rate * length
     columns = {
@@ -188,13 +189,32 @@ def test_stations_of_a_level_turn(case: Case) -> None:
         "true_vertical_depth": zeros,
         "bit_inclination": zeros + pi / 2,
         "borehole_inclination": zeros + pi / 2,
+        "borehole_azimuth": turned,
         "bit_tilt": zeros,
         "bit_tilt_saturation": zeros,
         "stabilizer_contact[1]": zeros,
         "stabilizer_force[1]": zeros,
     }
+    parts = ("bit_tilt_high", "bit_tilt_right", "stabilizer_force_high[1]", "stabilizer_force_right[1]")
+    columns |= dict.fromkeys(parts, zeros)
     survey = Survey((0.0, 100.0), (pi / 2,) * 2, (0.0, 0.0))
-    run = Trajectory(columns, replace(case, survey=survey, dimensions=3, true_vertical_depth=2000.0))
+    return Trajectory(columns, replace(case, survey=survey, dimensions=3, true_vertical_depth=2000.0))
+
+
+def test_the_dogleg_severity_of_a_level_turn(case: Case) -> None:
+    rate = radians(3.0) / 30.0
+    found = summarize(level_turn(case, rate, 300.0))
+    turned = 300.0 - found.averaging_length / 2  # the mean direction is that in the middle of its chord
+    assert found.dogleg_severity == pytest.approx(rate * turned / 300.0, rel=1e-4)
+    assert found.largest_dogleg_severity == pytest.approx(rate, rel=1e-4)
+    assert found.largest_build_rate == pytest.approx(0.0, abs=1e-9)
+    assert ("dogleg severity, mean", "2.98 °/30 m, 29.8 ° in all") in lines(found)
+    assert isnan(summarize(level_turn(case, rate, 29.0)).largest_dogleg_severity or 0.0)
+
+
+def test_stations_of_a_level_turn(case: Case) -> None:
+    rate = radians(3.0) / 30.0
+    run = level_turn(case, rate, 300.0)
     found = list_stations(run, 30.0, averaged_over=3.0)
     at = found.measured_depth - 100.0
     assert found.azimuth is not None

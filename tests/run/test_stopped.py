@@ -8,10 +8,15 @@ import numpy as np
 import pytest
 import typer
 
+from beams_as_built import with_points
+from boreprop.analysis.study.figures import key_figures, outcome
+from boreprop.analysis.tipping import drill_until_steady
 from boreprop.case.case import Case
 from boreprop.case.file import dump_case, load_case
 from boreprop.case.inputs import Schedule
 from boreprop.cli.options import tolerance
+from boreprop.core.survey import Survey
+from boreprop.core.system import BottomHoleAssembly
 from boreprop.errors import BorepropError, InputError
 from boreprop.run.files import case_path
 from boreprop.run.results import read_trajectory, write_trajectory
@@ -204,3 +209,20 @@ def test_boreprop_fmu_run_sets_the_tolerance_of_the_fmu(
     loose = simulate(case, length=20.0, relative_tolerance=1e-4, engine="native")["bit_inclination"]
     np.testing.assert_allclose(run, loose, atol=1e-11)
     assert np.abs(FmuRun(fmu, step=0.1, stop=20.0).trajectory()["bit_inclination"] - run).max() > 1e-8
+
+
+def test_a_run_that_cannot_start_stops_without_rows(case: Case, command_here: Command, tmp_path: Path) -> None:
+    points = [1.0 + 0.37 * k for k in range(100)]
+    bha = with_points(BottomHoleAssembly((20.0, 40.0), (0.0,), 0.5, 1500.0, 1e4), points, 0.01)
+    limp = replace(case, bha=bha, survey=Survey((0.0, 40.0), (1.5, 1.5)))
+    for crowded in (limp, replace(limp, dimensions=3)):
+        with pytest.raises(Stopped, match=r"^after 0 m: more than .* supports touch the wall, .* at 0 m: ") as caught:
+            simulate(crowded)
+        assert caught.value.trajectory is None
+    with pytest.raises(Stopped, match=r"^after 0 m: more than "):
+        drill_until_steady(limp)
+    assert str(outcome(key_figures, limp, (), ())).startswith("after 0 m: more than ")
+    (tmp_path / "crowded.toml").write_text(dump_case(limp), encoding="utf-8")
+    done = command_here("boreprop", "simulate", "crowded.toml", "--output", "run.csv")
+    assert (done.returncode, len(done.stderr.splitlines())) == (3, 2)  # and a warning that the weight is unusual
+    assert not (tmp_path / "run.csv").exists()

@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 
 from boreprop.case.file import load_case
+from boreprop.case.inputs import Schedule
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Trajectory
 from boreprop_viz.card import case_facts
 from boreprop_viz.record import record
 from boreprop_viz.scales import choose_scales
+from boreprop_viz.space_scene import disc_places
 from places import EXAMPLES
 from rrd import read
 
@@ -52,6 +54,24 @@ def test_the_largest_arrow_is_the_force_that_the_run_says(recorded: Path, run: T
     arrows = read(recorded, "bit_frame/body_contact_force", "Arrows2D:vectors")
     largest = scales.newtons_per_metre * np.array([max(x for x, _ in each) for each in arrows.values()])
     assert np.median(np.abs(largest / run["body_contact_force"] - 1.0)) < 0.1
+
+
+def test_across_a_hole_in_space_the_largest_force_is_on_the_side_from_which_it_pushes(tmp_path: Path) -> None:
+    case = replace(load_case(EXAMPLES / "pendulum.toml"), length=6.0, dimensions=3)
+    side = Schedule((0.0,), (2e4,), rss_toolface=(1.5,))
+    run = simulate(replace(case, schedule=side), sample_interval=2.0)
+    record(run, save=tmp_path / "run.rrd")
+    disc = disc_places(5)[2]  # after those of two stabilizers, before those of tilt and toolface
+    marks = read(tmp_path / "run.rrd", "across/contact_point/body", "Points2D:positions")
+    arrows = read(tmp_path / "run.rrd", "across/contact_force/body", "Arrows2D:vectors")
+    from_the_bit = read(tmp_path / "run.rrd", "across/body/label", "Points2D:labels")
+    right, high = run["body_contact_force_right"], run["body_contact_force_high"]
+    assert (abs(right) > high).any()
+    pushes = np.column_stack((right, -high)) / np.hypot(right, high)[:, None]
+    np.testing.assert_allclose([mark[0] for mark in marks.values()], disc - pushes, atol=1e-6)
+    lengths, force = [np.hypot(*arrow[0]) for arrow in arrows.values()], run["body_contact_force"]
+    np.testing.assert_allclose(lengths / lengths[0], force / force[0], rtol=1e-5)
+    assert from_the_bit[0] == [f"{run['body_contact_position'][0]:.1f} m"]
 
 
 def test_a_hole_that_curves_along_a_long_bha_fits_into_the_bit_frame(run: Trajectory) -> None:

@@ -24,7 +24,7 @@ from boreprop_viz.record import Drawing, find_sources, record
 from boreprop_viz.scales import Extremes
 from boreprop_viz.scene import Bounds
 from boreprop_viz.space_scales import SpaceScales
-from boreprop_viz.space_scene import PLAY, Discs, disc_places, tube
+from boreprop_viz.space_scene import PLAY, Discs, contact_points, disc_places, tube
 from boreprop_viz.style import BY_SEVERITY
 from conftest import Command
 from rrd import read, stacked, static
@@ -188,7 +188,7 @@ def test_blades_meet_the_wall_where_it_pushes_and_are_inside_elsewhere(
     apart = np.linalg.norm(discs.middle[:, 0], axis=1)
     np.testing.assert_allclose(apart[touching], PLAY, rtol=1e-5)
     assert np.all(apart[~touching] <= PLAY * (1 + 1e-9))
-    contact = discs.contact_points[:, 0]
+    contact = contact_points(discs.force)[:, 0]
     assert np.all(np.isnan(contact[~touching]))
     farthest = discs.middle[:, 0] / PLAY  # of the blades towards the wall, if they are not bent inwards
     np.testing.assert_allclose(contact[touching], farthest[touching], atol=1e-5)
@@ -269,7 +269,7 @@ def test_several_runs_in_space_have_their_own_colours(spiral: Trajectory, turnin
 
 def test_runs_in_the_plane_and_in_space_are_not_drawn_together(case: Case, spiral: Trajectory, tmp_path: Path) -> None:
     plane = simulate(replace(case, length=5.0))
-    with pytest.raises(InputError, match=r"flat: must be a run in space like the others.*--dimensions 3"):
+    with pytest.raises(InputError, match=r"flat: must be a run in space like the others.*drilling.dimensions = 3"):
         record({"flat": plane, "spiral": spiral}, save=tmp_path / "x.rrd")
 
 
@@ -333,7 +333,7 @@ def test_azimuths_are_plotted_without_a_jump_and_only_where_they_say_something(t
     azimuth = np.linspace(-0.5, 0.4, turning.row_count)
     north = np.mod(azimuth + math.pi, 2 * math.pi) - math.pi
     columns = turning.columns | {"borehole_azimuth": np.mod(north, 2 * math.pi), "bit_azimuth": north}
-    space = SpaceScales(-0.2, Bounds((0.0, 1.0), (0.0, 1.0)), 1.0, 1.0, 1.0, 1)
+    space = SpaceScales(-0.2, Bounds((0.0, 1.0), (0.0, 1.0)), 1.0, 1.0, 1.0, 1, 0)
     shown = space.plotted(replace(turning, columns=columns))
     for axis in ("bit", "borehole"):
         np.testing.assert_allclose(shown[f"{axis}_azimuth"], azimuth + 2 * math.pi, atol=1e-12)

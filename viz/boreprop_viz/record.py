@@ -210,7 +210,8 @@ def scales_in_space(sources: Sequence[Source], plan: Survey | None) -> Scales:
     in_plane = [source.name for source in sources if not source.spatial]
     if in_plane:
         raise InputError(
-            f"{in_plane[0]}: must be a run in space like the others, got one in the plane: use --dimensions 3"
+            f"{in_plane[0]}: must be a run in space like the others, got one in the plane: drill it with "
+            "drilling.dimensions = 3"
         )
     ahead = [source.likely_positions_in_space() for source in sources]
     if plan is not None:

@@ -209,7 +209,7 @@ def choose_scales_in_space(runs: Sequence[Trajectory], *, whole: bool, positions
         Positions north, east and down that vertical section and plan view should show, (N, 3).
     """
     cases = [case_of(run) for run in runs]
-    space = SpaceScales(section_azimuth(positions), Bounds((0.0, 1.0), (0.0, 1.0)), 1.0, 1.0, 1.0, 0)
+    space = SpaceScales(section_azimuth(positions), Bounds((0.0, 1.0), (0.0, 1.0)), 1.0, 1.0, 1.0, 0, 0)
     seen = choose_scales(
         [space.projected(run) for run in runs],
         whole=whole,
@@ -229,6 +229,7 @@ def choose_scales_in_space(runs: Sequence[Trajectory], *, whole: bool, positions
         / LONGEST_ARROW
         / LONGEST_IN_SPACE,
         stabilizers=max(len(case.bha.stabilizer_clearances) for case in cases),
+        body=int(any(case.bha.body_point_positions for case in cases)),
     )
     size, plotted = SMALL_LENGTH.factor * ripple, [space.plotted(run) for run in runs]
     return replace(

@@ -21,7 +21,7 @@ from .scene import Array
 from .section import severity_colours
 from .source import Stretch
 from .space_scales import SpaceScales
-from .space_scene import PLAY, TILT, TOOLFACE, Discs, Tube, circle, tube
+from .space_scene import PLAY, TILT, TOOLFACE, Discs, Tube, circle, contact_points, tube
 from .track import Moments, Track, arrivals, moments, send, send_curve, send_numbers, send_strips
 
 RIPPLE_EAST = f"{RIPPLE}_east"
@@ -131,17 +131,34 @@ def log_ripple_in_space(
 def log_stabilizers_across(track: Track, space: SpaceScales, discs: Discs) -> None:
     """The blades of each stabilizer in its disc, their middle, and where the wall pushes, with its force."""
     at, blades = moments(discs.rows), (1.0 - PLAY) * circle(POINTS_OF_BLADES)
-    contacts = discs.contact_points
-    for i, place in enumerate(space.discs[: contacts.shape[1]]):
+    for i, place in enumerate(space.discs[: discs.force.shape[1]]):
         middle = place + discs.middle[:, i]
         send_strips(track, f"across/blades/{i + 1}", at, (middle[:, None] + blades)[:, None])
         for dot in ("middle", "trail"):
             send(track, f"across/{dot}/{i + 1}", at, rr.Points2D.columns(positions=middle))
-        there = np.isfinite(contacts[:, i, 0])
-        touched = (place + contacts[:, i])[there]
-        send(track, f"across/contact_point/{i + 1}", at, rr.Points2D.columns(positions=touched).partition(there))
-        send_force(track, f"across/contact_force/{i + 1}", at, space, discs.force[:, i], place + contacts[:, i])
-        log_size(track, f"across/contact_force/{i + 1}/label", at, place, discs.force[:, i])
+        log_contact(track, space, at, str(i + 1), place, discs.force[:, i])
+
+
+def log_body_across(track: Track, space: SpaceScales, discs: Discs) -> None:
+    """Where the wall pushes most on the body, in its disc, with the force there and the distance from the bit."""
+    if not track.case.bha.body_point_positions:
+        return
+    at, place = moments(discs.rows), space.discs[space.stabilizers]
+    log_contact(track, space, at, "body", place, discs.body_force)
+    if track.numbered:
+        inside = place + np.array([0.0, 0.25 * track.place])
+        send(track, "across/body/label", at, rr.Points2D.columns(positions=np.tile(inside, (len(at.length), 1))))
+        behind = np.round(discs.rows["body_contact_position"], 1)
+        send_numbers(track, "across/body/label", at, behind, lambda far: f"{far:.1f} m" if far else "free")
+
+
+def log_contact(track: Track, space: SpaceScales, at: Moments, which: str, place: Array, force: Array) -> None:
+    """Where the wall pushes in a disc with some forces, N, (rows, 2), and these with their size."""
+    touched = place + contact_points(force)
+    there = np.isfinite(touched[:, 0])
+    send(track, f"across/contact_point/{which}", at, rr.Points2D.columns(positions=touched[there]).partition(there))
+    send_force(track, f"across/contact_force/{which}", at, space, force, touched)
+    log_size(track, f"across/contact_force/{which}/label", at, place, force)
 
 
 def log_tilt_across(track: Track, space: SpaceScales, discs: Discs) -> None:

@@ -24,10 +24,11 @@ from .scales import Scales
 from .scene import Array, round_down
 from .space_entities import RIPPLE_EAST, projections
 from .space_scales import SpaceScales
-from .space_scene import PLAY, TILT, TOOLFACE, circle
+from .space_scene import PLAY, TOOLFACE, circle
 from .style import (
     BIT,
     BLUE,
+    BODY,
     BY_STABILIZER,
     FAINT,
     FURNITURE,
@@ -84,16 +85,16 @@ def log_plan_in_space(rec: rr.RecordingStream, space: SpaceScales, paths: list[A
 def log_discs(rec: rr.RecordingStream, space: SpaceScales, runs: list[Trajectory]) -> None:
     """The discs across the hole: walls, clearances, the limit of the tilt, the dial of the toolface, their names."""
     edges = space.discs[:, None] + circle(POINTS_OF_DISC)
-    colours = [HOLE] * space.stabilizers + [GREY, GREY]
+    colours = [HOLE] * (space.stabilizers + space.body) + [GREY, GREY]
     rec.log("across/edges", rr.LineStrips2D(list(edges), colors=colours, radii=rr.Radius.ui_points(1.5)), static=True)
-    clearances = space.discs[:TILT, None] + PLAY * circle(POINTS_OF_DISC)
+    clearances = space.discs[: space.stabilizers, None] + PLAY * circle(POINTS_OF_DISC)
     ticks = np.array(
         [[[0.0, -1.0], [0.0, -0.85]], [[1.0, 0.0], [0.85, 0.0]], [[0.0, 1.0], [0.0, 0.85]], [[-1.0, 0.0], [-0.85, 0.0]]]
     )
     faint = [*clearances, *(space.discs[TOOLFACE] + ticks)]
     rec.log("across/marks", rr.LineStrips2D(faint, colors=GREY, radii=rr.Radius.ui_points(0.5)), static=True)
     names = [f"stabilizer {i + 1}{clearance(runs, i)}" for i in range(space.stabilizers)]
-    names += [f"bit tilt{limit(runs)}", f"toolface, from {reference(runs)}"]
+    names += ["body, largest force"] * space.body + [f"bit tilt{limit(runs)}", f"toolface, from {reference(runs)}"]
     log_labels(rec, "across/names", space.discs + np.array([0.0, BELOW]), names)
 
 
@@ -186,6 +187,10 @@ def log_styles_across(track: Track, n: int) -> None:
         log_stroke(rec, track.entity(f"across/blades/{i}"), Stroke(track.colour or BIT, 3.0, 2.0))
         rec.log(track.entity(f"across/contact_point/{i}"), dots(colour, 5.0), static=True)
         forces[f"contact_force/{i}"] = colour
+    if track.case.bha.body_point_positions:
+        rec.log(track.entity("across/contact_point/body"), dots(track.colour or BODY, 5.0), static=True)
+        rec.log(track.entity("across/body/label"), text, static=True)
+        forces["contact_force/body"] = track.colour or BODY
     for thing in [*map(str, range(1, n)), "tilt"]:
         rec.log(track.entity(f"across/middle/{thing}"), dots(WHITE, 4.0), static=True)
         rec.log(track.entity(f"across/trail/{thing}"), dots(track.colour or BIT, 1.0), static=True)

@@ -126,7 +126,7 @@ def across(scales: Scales, space: SpaceScales, tracks: Sequence[Track]) -> rrb.S
         origin="across",
         name="Looking down",
         background=GROUND,
-        visual_bounds=visual(disc_bounds(space.stabilizers + 2)),
+        visual_bounds=visual(disc_bounds(len(space.discs))),
         overrides={track.entity(f"across/trail/{thing}"): trail(scales) for track in tracks for thing in things},
     )
 

@@ -25,11 +25,12 @@ class SpaceScales:
     thickness: float  # radius with which the enlarged hole is drawn, m
     newtons: float  # force of which the arrow is as long as the radius of a disc, N
     stabilizers: int  # which have a disc each, beside those of tilt and toolface
+    body: int  # 1: the body of a run may touch the wall, and has a disc after those of the stabilizers; else 0
 
     @property
     def discs(self) -> Array:
         """The middle of each disc, (discs, 2)."""
-        return disc_places(self.stabilizers + 2)
+        return disc_places(self.stabilizers + self.body + 2)
 
     def projected(self, rows: Trajectory) -> Trajectory:
         """Rows as seen in the vertical section: positions and inclinations of a run in the plane."""

@@ -23,7 +23,7 @@ SIDES = 10  # of the tube of a hole
 PLAY = 0.35  # part of the radius of a disc which is the clearance of a stabilizer: it is enlarged
 APART = 3.2  # radii from the middle of a disc to that of the next
 ROOM, BELOW = 1.6, 2.2  # radii from the middle of a disc to the edges of the view, with room for text
-IN_ONE_COLUMN = 4  # discs at most
+IN_ONE_COLUMN = 6  # discs at most: in two columns seven are larger, but there is less room for text
 TILT, TOOLFACE = -2, -1  # which discs, after those of the stabilizers
 
 
@@ -75,6 +75,14 @@ def disc_bounds(count: int) -> Bounds:
     return Bounds((-ROOM, float(right) + ROOM), (-ROOM, float(bottom) + BELOW))
 
 
+def contact_points(force: Array) -> Array:
+    """Where the wall pushes with some forces, at the edge of a disc, (…, 2); nan where it does not."""
+    size = np.linalg.norm(force, axis=-1)[..., None]
+    places = np.full(force.shape, np.nan)
+    np.divide(-force, size, out=places, where=size > 0.0)
+    return places
+
+
 @dataclass(frozen=True)
 class Discs:
     """What the discs of a run show at m of its rows, in radii of its disc, y down the screen."""
@@ -110,12 +118,9 @@ class Discs:
         return PLAY * inside
 
     @property
-    def contact_points(self) -> Array:
-        """Where the wall pushes on each stabilizer, at the edge of its disc, (m, n−1, 2); nan where it does not."""
-        size = np.linalg.norm(self.force, axis=2)[..., None]
-        places = np.full(self.force.shape, np.nan)
-        np.divide(-self.force, size, out=places, where=size > 0.0)
-        return places
+    def body_force(self) -> Array:
+        """The largest force of the wall on the body, N, (m, 2)."""
+        return self._parts("body_contact_force")
 
     @cached_property
     def tilt(self) -> Array:

@@ -11,6 +11,7 @@ from .source import Stretch, joined
 from .space_entities import (
     DrilledTube,
     log_bha_in_hole,
+    log_body_across,
     log_ripple_in_space,
     log_stabilizers_across,
     log_tilt_across,
@@ -62,7 +63,7 @@ class SpaceStream:
         self.tube.log(stretch, rows)
         log_bha_in_hole(self.track, self.space, stretch)
         discs = Discs(self.track.case, stretch.rows)
-        for log in (log_stabilizers_across, log_tilt_across, log_toolface, log_upright):
+        for log in (log_stabilizers_across, log_body_across, log_tilt_across, log_toolface, log_upright):
             log(self.track, self.space, discs)
         for log_curves in (log_plots, log_tilt_limits):
             log_curves(self.track, self.space.plotted(stretch.rows))

@@ -262,12 +262,12 @@ static void give_back(Component *c, double *before) {
 /* The outputs of the present hole under the present inputs: 0 with `why` if there are none. */
 static int compute(Component *c, char why[LINE]) {
     const Variables *all = &c->packed.variables;
-    double outputs[MOST_OUTPUTS], *before;
+    double outputs[MOST_OUTPUTS] = {0.0}, *before;
     Problem problem;
     if (!take_inputs(c, &before, why)) return 0;
     int count = drilling_outputs(&c->run->drilling, outputs);
     give_back(c, before);
-    if (!check_outputs(all->structure, outputs, &problem)) return tell(&problem, why);
+    if (!check_outputs(&c->run->drilling, outputs, &problem)) return tell(&problem, why);
     memcpy(c->value + all->first_output, outputs, (size_t)count * sizeof *outputs);
     if (c->value[IN_ACTIVE_WEIGHT_ON_BIT] == 0.0) c->value[all->eta_pi] = 0.0;
     return 1;

@@ -63,7 +63,8 @@ def build_fmu(
     if runtime == "python" and platforms is not None:
         raise InputError(f"platforms: must be left out for the runtime python, got {', '.join(platforms) or 'none'}")
     if runtime == "python" and not case.bha.structure.is_of_the_paper:
-        raise InputError(f"runtime: must be native for a BHA with {case.bha.structure.beyond_the_paper}, got 'python'")
+        beyond = case.bha.structure.beyond_the_paper
+        raise InputError(f"runtime: must be native for a BHA with {beyond}, got 'python': use --runtime native")
     native_here = platforms is not None or is_native_here(binaries, case.in_space)
     if case.in_space and (runtime == "python" or (runtime == "auto" and not native_here)):
         remedy = "use --runtime native; where a binary is missing, run: python -m boreprop_fmu.native"

@@ -2,14 +2,15 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from math import pi
 from typing import NamedTuple
 
 import numpy as np
 
 from ..case.case import Case
+from ..core.checks import check_increasing, check_number, some_numbers
 from ..core.options import RELATIVE_TOLERANCE
 from ..core.survey import Survey
-from ..errors import InputError
 from ..run.trajectory import Stopped, Trajectory
 from .rippling import Rippling
 from .study.design import vary
@@ -104,8 +105,9 @@ def hysteresis(
     >>> [wave.ripples for wave in found.up], [wave.ripples for wave in found.down]
     ([True], [False])
     """
-    if not len(values):
-        raise InputError(f"values: must be at least one value of {name}, got none")
+    values = some_numbers("values", values)
+    check_increasing("values", values)
+    check_number("dogleg", dogleg, at_least=-pi / 2, at_most=pi / 2)
     ramp = _Ramp(case, name, dogleg, relative_tolerance)
     for value in values:
         ramp.at(value)  # raises if the value is out of range, before any work is done

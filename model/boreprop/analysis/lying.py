@@ -11,6 +11,7 @@ import numpy as np
 
 from ..arrays import Floats
 from ..case.case import Case
+from ..core.checks import check_quantity
 from ..core.system import BottomHoleAssembly, check_in_plane
 from ..kernel.binding import Lie, lie
 
@@ -97,6 +98,7 @@ class _Steady:
     """What is missing of the balance of a bit at some tilt in a hole of some curvature."""
 
     def __init__(self, case: Case, inclination: float, gravity: bool) -> None:
+        check_quantity("inclination", inclination)
         self.case, self.inclination, self.weight = case, inclination, float(gravity)
         self.s, self.pressing = supports_of(case.bha), pressing_weight(case)
         check_in_plane(case.bit)

@@ -74,7 +74,7 @@ def planned_hole(plan: Survey, start: float) -> SurveyedHole:
     if plan.turns:
         raise InputError(
             "azimuth of the plan: must be the same everywhere for a run in the plane, got a plan that turns: "
-            "drill it in space (--dimensions 3)"
+            "drill it in space (drilling.dimensions = 3)"
         )
     return SurveyedHole.of(plan, start)
 

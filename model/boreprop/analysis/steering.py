@@ -33,7 +33,7 @@ from math import cos, inf, nan, sin
 import numpy as np
 
 from ..case.case import Case
-from ..core.checks import check_number
+from ..core.checks import check_number, check_quantity
 from ..core.errors import ParameterError
 from ..core.linear import dot
 from ..core.modes import ROUNDING, Bound, Loads, Mode, Modes, Regime, Row, wall
@@ -156,7 +156,7 @@ def responses_as_built(
     case: Case, rss_forces: Sequence[float], inclination: float, *, gravity: bool = True
 ) -> tuple[SteadyResponse, ...]:
     """`steady_response` to each of some forces, with whatever the BHA has of sections, axial load and body contact."""
-    check_number("inclination", inclination)
+    check_quantity("inclination", inclination)
     forces, count = np.array(rss_forces), len(case.bha.stabilizer_positions) - 1
     found = steady_lie(case, forces, inclination, gravity=gravity)
     s = supports_of(case.bha)
@@ -263,7 +263,7 @@ def _build_rate(response: SteadyResponse) -> float:
 
 
 def _steady(case: Case, inclination: float, gravity: bool) -> "Steady":
-    check_number("inclination", inclination)
+    check_quantity("inclination", inclination)
     scaled = scale(case.bha, case.bit)
     if not gravity:
         scaled = replace(scaled, w=0.0)

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import ceil, pi
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ from ..run.completion import case_of
 from ..run.trajectory import Trajectory
 from ..units import BUILD_LENGTH
 from .hole import bit_positions, hole_of
-from .hole_in_space import azimuth_of, chord_direction, hole_in_space, inclination_of, is_in_space
+from .hole_in_space import angle_between, azimuth_of, chord_direction, hole_in_space, inclination_of, is_in_space
 from .rippling import Rippling, find_rippling, visible_waves
 from .sag import Sag, largest_sag
 from .search import State
@@ -62,6 +63,11 @@ class Summary:
     start_azimuth, end_azimuth
         Of a run in space, the mean azimuth there, rad, from north over east; None in the plane, nan in a hole that is
         within `NO_AZIMUTH` of the vertical.
+    dogleg_severity
+        Of a run in space, the angle by which the mean direction turns, added up every 30 m as by the method of minimum
+        curvature, over the drilled length, rad/m; None in the plane, where build rates say it.
+    largest_dogleg_severity
+        Likewise, the largest over any 30 m, rad/m; nan in a shorter run.
     build_rate
         Mean build rate over the whole run, rad/m; positive builds inclination.
     largest_build_rate
@@ -101,6 +107,8 @@ class Summary:
     body_contact: BodyContact | None = None
     start_azimuth: float | None = None
     end_azimuth: float | None = None
+    dogleg_severity: float | None = None
+    largest_dogleg_severity: float | None = None
 
 
 def summarize(trajectory: Trajectory) -> Summary:
@@ -147,11 +155,9 @@ def sum_up(trajectory: Trajectory, rippling: Rippling) -> Summary:
     def share(happens: NDArray[np.bool_]) -> float:
         return float(weights[happens].sum() / weights.sum())
 
-    later = length + BUILD_LENGTH
-    drilled_by_then = slice(int(np.searchsorted(later, length[-1], side="right")))
-    rates = (np.interp(later[drilled_by_then], length, inclination) - inclination[drilled_by_then]) / BUILD_LENGTH
+    later = _later(length)
+    rates = (np.interp(later, length, inclination) - inclination[: len(later)]) / BUILD_LENGTH
     drilled = float(length[-1] - length[0])
-    start_azimuth, end_azimuth = _azimuths(trajectory, over)
     return Summary(
         drilled_length=drilled,
         averaging_length=over,
@@ -165,19 +171,34 @@ def sum_up(trajectory: Trajectory, rippling: Rippling) -> Summary:
         rippling=rippling,
         stopped=trajectory.stopped,
         body_contact=_body_contact(trajectory, share),
-        start_azimuth=start_azimuth,
-        end_azimuth=end_azimuth,
+        **(_turning(trajectory, over) if is_in_space(trajectory) else {}),
     )
 
 
-def _azimuths(run: Trajectory, over: float) -> tuple[float | None, float | None]:
-    """The mean azimuths at the first and the last row of a run in space; None in the plane."""
-    if not is_in_space(run):
-        return None, None
-    hole, ends = hole_in_space(run, case_of(run).survey, over), run["drilled_length"][[0, -1]]
-    direction = chord_direction(hole, ends, over)
-    azimuth = np.where(np.sin(inclination_of(direction)) > np.sin(NO_AZIMUTH), azimuth_of(direction), np.nan)
-    return float(azimuth[0]), float(azimuth[1])
+def _later(length: Floats) -> Floats:
+    """The lengths 30 m after those of the first rows, as far as the run has them, m."""
+    later = length + BUILD_LENGTH
+    return later[: int(np.searchsorted(later, length[-1], side="right"))]
+
+
+def _turning(run: Trajectory, over: float) -> dict[str, Any]:
+    """The azimuths and dogleg severities of a run in space."""
+    hole, length = hole_in_space(run, case_of(run).survey, over), run["drilled_length"]
+
+    def directions(at: Floats) -> Floats:
+        return chord_direction(hole, at, over)
+
+    start, end = length[0], length[-1]
+    each = directions(np.append(np.arange(start, end, BUILD_LENGTH), end))
+    azimuth = np.where(np.sin(inclination_of(each)) > np.sin(NO_AZIMUTH), azimuth_of(each), np.nan)
+    later = _later(length)
+    turned = angle_between(directions(length[: len(later)]), directions(later))
+    return {
+        "start_azimuth": float(azimuth[0]),
+        "end_azimuth": float(azimuth[-1]),
+        "dogleg_severity": float(angle_between(each[:-1], each[1:]).sum() / (end - start)),
+        "largest_dogleg_severity": float(turned.max() / BUILD_LENGTH) if len(turned) else float("nan"),
+    }
 
 
 def _body_contact(run: Trajectory, share: Callable[[NDArray[np.bool_]], float]) -> BodyContact | None:

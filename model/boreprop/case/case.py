@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from operator import attrgetter
 
-from ..core.checks import check_increasing, check_number, check_part, check_quantity
+from ..core.checks import check_increasing, check_number, check_part, check_quantity, take_fields
 from ..core.errors import ParameterError
 from ..core.ground import Ground, Wear
 from ..core.quantities import BY_NAME, CLEARANCES, INPUTS, ROCK, Structure, quantity_of
@@ -79,6 +79,7 @@ class Case:
     dimensions: int = 2
 
     def __post_init__(self) -> None:
+        take_fields("", self)
         if self.in_layers and not all(formation.measured_depth is None for formation in self.formations):
             depths = tuple(formation.depth for formation in self.formations)
             raise ParameterError("true_vertical_depth", "must be given of all formations, or of none", depths)
@@ -192,6 +193,21 @@ class Case:
     def eta_pi(self) -> float:
         """ηΠ: the stiffness of the rock over that of the BHA, dimensionless, eq. (9)."""
         return eta_pi(self.bha, self.bit, self.active_weight_on_bit)
+
+
+def in_dimensions(case: Case, dimensions: int) -> Case:
+    """The case as it is drilled in so many dimensions.
+
+    Raises
+    ------
+    ParameterError
+        If they are neither 2 nor 3, or the case leaves the plane.
+    """
+    made = replace(case, dimensions=dimensions)
+    if dimensions == 2 and made.in_space:
+        constraint = "must be 3 for a case with an azimuth, a walk angle or a toolface other than 0 or 180"
+        raise ParameterError("dimensions", constraint, dimensions)
+    return made
 
 
 def check_plane(case: Case) -> None:

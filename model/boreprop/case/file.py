@@ -16,7 +16,8 @@ from ..core.quantities import CLEARANCES, QUANTITIES, TOOLFACE_REFERENCES
 from ..errors import InputError
 from .case import Case
 from .formations import file_degrees, formations_in_file
-from .schema import OF_FILES, TABLES, Read, parse, read_toml
+from .messages import TABLES
+from .schema import OF_FILES, Read, parse, read_toml
 from .sections import sections_in_file
 from .sensors import sensors_in_file
 

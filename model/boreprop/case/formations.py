@@ -6,7 +6,7 @@ from math import degrees, radians
 from pathlib import Path
 from typing import Any
 
-from ..core.checks import check_number, check_quantity
+from ..core.checks import check_number, check_quantity, take_fields
 from ..core.errors import ParameterError
 from ..core.ground import Wear
 from ..core.quantities import BY_NAME, ROCK
@@ -46,6 +46,7 @@ class Formation:
     true_vertical_depth: float | None = None
 
     def __post_init__(self) -> None:
+        take_fields("bit", self)
         given = [name for name in DEPTHS if getattr(self, name) is not None]
         if len(given) != 1:
             raise ParameterError(DEPTHS[0], f"must be given, or {DEPTHS[1]}, and not both", None)

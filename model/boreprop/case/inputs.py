@@ -1,13 +1,21 @@
 """Schedules: what acts on the bit over the drilled length."""
 
 from bisect import bisect_right
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import repeat
 from math import cos, sin
 from typing import Any, NamedTuple
 
-from ..core.checks import check_increasing, check_number, check_part, check_value, checked_float
+from ..core.checks import (
+    check_increasing,
+    check_number,
+    check_part,
+    check_quantity,
+    check_value,
+    checked_float,
+    numbers,
+    take_fields,
+)
 from ..core.errors import ParameterError
 from ..core.quantities import CLEARANCES, INPUTS, TOOLFACE_REFERENCES, quantity_of
 
@@ -66,8 +74,7 @@ class Schedule:
     toolface_reference: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        for name in ("drilled_length", "rss_force", "rss_toolface"):
-            object.__setattr__(self, name, tuple(map(checked_float, repeat(name), getattr(self, name))))
+        take_fields("schedule", self)
         _check_entries(self.drilled_length, {"rss_force": self.rss_force}, self.interpolation)
         for index, reference in enumerate(self.toolface_reference, 1):
             if reference not in TOOLFACE_REFERENCES:
@@ -146,7 +153,8 @@ class Schedule:
         >>> schedule.drilled_length, schedule.rss_force
         ((0.0, 6.0), (8000.0, 4000.0))
         """
-        drilled_length, [force] = from_bit(measured_depth, {"rss_force": rss_force}, bit_depth, interpolation)
+        depths, forces = numbers("measured_depth", measured_depth), {"rss_force": numbers("rss_force", rss_force)}
+        drilled_length, [force] = from_bit(depths, forces, checked_float("bit_depth", bit_depth), interpolation)
         return cls(drilled_length, force, interpolation)
 
 
@@ -187,10 +195,10 @@ class InputSchedule:
     interpolation: str = "held"
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "drilled_length", numbers("drilled_length", self.drilled_length))
+        object.__setattr__(self, "inputs", tuple(_columns(self.inputs)))
         _check_entries(self.drilled_length, dict(self.inputs), self.interpolation)
         for name, values in self.inputs:
-            if name not in NAMES_OF_COLUMNS:
-                raise ParameterError("inputs", f"must be some of {', '.join(NAMES_OF_COLUMNS)}", name)
             for index, value in enumerate(values, 1):
                 check_value(name, value, index)
             if name == RATE:
@@ -211,10 +219,26 @@ class InputSchedule:
         return replace(self, inputs=left) if left else None
 
 
+def _columns(inputs: Any) -> Iterator[tuple[str, tuple[float, ...]]]:
+    """Pairs of the name of an input and its values; `ParameterError` if they are something else."""
+    try:
+        columns = dict(inputs)
+    except (TypeError, ValueError):
+        raise ParameterError("inputs", "must be pairs of a name and its values", inputs) from None
+    for name, values in columns.items():
+        if name not in NAMES_OF_COLUMNS:
+            raise ParameterError("inputs", f"must be some of {', '.join(NAMES_OF_COLUMNS)}", name)
+        yield name, numbers(name, values)
+
+
 def signed(
     force: tuple[float, ...], toolface: tuple[float, ...], reference: tuple[str, ...]
 ) -> tuple[float, ...] | None:
-    """The force where it pushes up and down only, negative down; None where it pushes to other sides."""
+    """The force where it pushes up and down only, negative down; None where it pushes to other sides.
+
+    Raises `ParameterError` if a toolface is beyond a whole turn.
+    """
+    check_quantity("rss_toolface", toolface)
     if set(reference) - {"gravity"} or len(toolface) not in (0, len(force)):
         return None
     if any(abs(sin(angle)) > UP_OR_DOWN for angle in toolface):

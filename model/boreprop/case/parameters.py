@@ -4,11 +4,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from ..core.checks import check_quantity
 from ..core.quantities import INPUTS, PARAMETERS, TOOLFACE_REFERENCES, fields_of, quantity_of, scalar_names, values_of
 from ..errors import InputError
 from .body import keep_clearances
 from .case import Case
 from .inputs import Schedule
+from .schedules import SIDES
 
 HOLE = "bit_diameter"
 PARTS = ("bha", "bit")  # the fields of a case that are dataclasses of parameters
@@ -65,9 +67,10 @@ def with_parameters(case: Case, values: Mapping[str, float]) -> Case:
     parts: dict[str, Any] = {
         part: replace(getattr(case, part), **fields_of(part, wanted, structure)) for part in PARTS if part in changed
     }
-    if "schedule" in changed:
+    if {"rss_force", *SIDES} & values.keys():
         sides: dict[str, Any] = {}
         if case.in_space:
+            check_quantity("toolface_reference", wanted["toolface_reference"])
             reference = TOOLFACE_REFERENCES[int(wanted["toolface_reference"])]
             sides = {"rss_toolface": (wanted["rss_toolface"],), "toolface_reference": (reference,)}
         parts["schedule"] = Schedule((0.0,), (wanted["rss_force"],), **sides)

@@ -6,38 +6,30 @@ The keys are those of the table of quantities; the types are those of the datacl
 import json
 import re
 import tomllib
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import asdict, replace
-from difflib import get_close_matches
-from math import degrees, isclose, radians
+from math import isclose, radians
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from pydantic import TypeAdapter, ValidationError
-from pydantic_core import ErrorDetails
 
-from ..core.checks import check_number
 from ..core.errors import ParameterError
-from ..core.quantities import BY_NAME, CLEARANCES, ROCK, Quantity, columns_of, quantity_of
+from ..core.quantities import BY_NAME, CLEARANCES, ROCK, columns_of
 from ..core.survey import Survey
 from ..errors import InputError, shown
 from .body import place_points
-from .case import Case
+from .case import Case, in_dimensions
 from .formations import file_degrees, lift_formations, lift_wear
 from .inputs import CLOSE, INTERPOLATIONS, NAMES_OF_COLUMNS, InputSchedule, Schedule
+from .messages import MAY_BE_ONE, TABLES, Document, message_of, naming_keys, unknown_key, written_at, wrong_type
 from .schedules import LENGTHS, force_schedule, input_schedule
 from .sections import lift_sections
 from .sensors import lift_sensors
-from .tables import BY_KEY, read_inputs, read_schedule, read_survey
+from .tables import ANGLES, BY_KEY, INPUTS_SPELLED, in_degrees, read_inputs, read_schedule, read_survey
 
-Document = dict[str, dict[str, Any]]  # table → key → value
-
-IN_DEGREES = {f"{name}_deg": name for name in NAMES_OF_COLUMNS if quantity_of(name).unit == "rad"}
-"""Columns of a schedule in degrees → what they stand for."""
 ROUNDING = 1e-15  # relative: not every angle in radians is one in degrees
 DEEPEST = 100  # parts that a dotted key may have
-TABLES = ("bha", "bit", "drilling", "hole", "rss", "run")  # of a file, in the order in which they are written
 OF_FILES = ("hole.survey", "rss.schedule", "drilling.schedule")
 """Keys that name a CSV file."""
 
@@ -90,13 +82,16 @@ def parse(text: str, source: Path) -> Read:
     if "bit_depth" in document["hole"]:
         bit_depth = _typed(_NUMBER, document, "hole.bit_depth", source)
         notes = _beyond(case.survey, bit_depth)
-        with _naming("hole", source):
+        with naming_keys("hole", source):
             case = replace(case, survey=case.survey.with_bit_at(bit_depth))
     bit = case.survey.measured_depth[-1]
     if "rss" in document:
         case = replace(case, schedule=_force(document, bit, source))
     if "schedule" in document["drilling"]:
         case = _with_inputs(case, document, bit, source)
+    if "dimensions" in document["drilling"]:
+        with naming_keys("drilling", source):
+            case = in_dimensions(case, case.dimensions)
     try:
         return Read(replace(case, formations=formations, wear=wear), notes)
     except ParameterError as error:
@@ -112,7 +107,7 @@ def _force(document: Document, bit_depth: float, source: Path) -> Schedule:
     if (full_force is None) == ("duty" in table) and "schedule" not in table:
         constraint = "must be given with duty and toolface_deg, and only with them"
         raise InputError(f"{source}: rss.full_force: {constraint}, got {shown(table)}")
-    with _naming("rss", source):
+    with naming_keys("rss", source):
         if "schedule" in table:
             return read_schedule(source.parent / table["schedule"], bit_depth, interpolation, full_force, reference)
         keys = [key for key in table if key not in BESIDE["rss"]]
@@ -127,15 +122,8 @@ def _with_inputs(case: Case, document: Document, bit_depth: float, source: Path)
     if isinstance(given, str):
         force, inputs = read_inputs(source.parent / given, bit_depth, interpolation)
     else:
-        lengths = set(given) & set(LENGTHS)
-        known = (*NAMES_OF_COLUMNS, *IN_DEGREES)
-        if len(lengths) != 1 or len(given) == 1 or set(given) - lengths - set(known):
-            constraint = f"must hold either {' or '.join(LENGTHS)}, and any of {', '.join(known)}"
-            raise InputError(f"{source}: {where}: {constraint}, got {shown(given)}")
-        columns = {key: _typed(_COLUMN, document, f"{where}.{key}", source) for key in given}
-        for name in IN_DEGREES.keys() & columns.keys():
-            columns[IN_DEGREES[name]] = tuple(map(radians, columns.pop(name)))
-        with _naming(where, source):
+        columns = _scheduled(document, source)
+        with naming_keys(where, source):
             force, inputs = input_schedule(columns, bit_depth, interpolation)
     if force is not None:
         if "rss" in document:
@@ -144,10 +132,32 @@ def _with_inputs(case: Case, document: Document, bit_depth: float, source: Path)
     for name in SCHEDULED:
         _check_start(document, name, dict(inputs.inputs).get(name, ()) if inputs else (), source)
     _check_first_clearances(case, inputs, source)
-    with _naming(where, source):
+    with naming_keys(where, source):
         scheduled = replace(case, weight_on_bit=0.0, inputs=inputs)
-    with _naming("drilling", source):
+    with naming_keys("drilling", source):
         return replace(scheduled, weight_on_bit=case.weight_on_bit)
+
+
+def _scheduled(document: Document, source: Path) -> dict[str, tuple[float, ...]]:
+    """The columns of the schedule that stands in the table [drilling], spelled as in a CSV file, in SI units."""
+    given, where = document["drilling"]["schedule"], "drilling.schedule"
+    lengths = [key for key in given if key in INPUTS_SPELLED and INPUTS_SPELLED[key].name in LENGTHS]
+    if len(lengths) != 1 or len(given) == 1 or given.keys() - INPUTS_SPELLED.keys():
+        known = (*NAMES_OF_COLUMNS, *(key for key in INPUTS_SPELLED if key in ANGLES))
+        constraint = f"must hold either {' or '.join(LENGTHS)}, and any of {', '.join(known)}"
+        raise InputError(f"{source}: {where}: {constraint}, got {shown(given)}")
+    columns: dict[str, tuple[float, ...]] = {}
+    for key in given:
+        of, values = INPUTS_SPELLED[key], _typed(_COLUMN, document, f"{where}.{key}", source)
+        for index, value in enumerate(values if key in ANGLES else (), 1):
+            if constraint := in_degrees(ANGLES[key], value):
+                raise InputError(f"{source}: {where}.{key}[{index}]: {constraint}, got {value!r}")
+        if of.name in columns:
+            raise InputError(
+                f"{source}: {where}.{key}: must be left out, since another column gives {of.name}, got both"
+            )
+        columns[of.name] = values if of.factor == 1.0 else tuple(of.factor * value for value in values)
+    return columns
 
 
 def _check_start(document: Document, name: str, scheduled: tuple[float, ...], source: Path) -> None:
@@ -193,13 +203,12 @@ def _case(document: Document, source: Path) -> Case:
     except ValidationError as error:
         errors = error.errors(include_url=False)
         more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
-        raise InputError(f"{source}: {_message(errors[0], document)}{more}") from error
+        raise InputError(f"{source}: {message_of(errors[0], document)}{more}") from error
 
 
 def repeat_angles(document: Document) -> None:
     """Let an angle that is one number stand for a column of it."""
-    hole = ("measured_depth",)
-    for where, along in (("hole.inclination_deg", hole), ("hole.azimuth_deg", hole), ("rss.toolface_deg", LENGTHS)):
+    for where, along in MAY_BE_ONE.items():
         name, _, key = where.partition(".")
         table = document.get(name, {})
         columns = [table[other] for other in along if isinstance(table.get(other), list)]
@@ -216,7 +225,7 @@ def _surveyed(document: Document, source: Path) -> Survey:
     if survey.azimuth:
         constraint = f"must be left out, since {document['hole']['survey']} has a column azimuth_deg"
         raise InputError(f"{source}: hole.azimuth_deg: {constraint}, got {azimuth!r}")
-    with _naming("hole", source):
+    with naming_keys("hole", source):
         return replace(survey, azimuth=(radians(azimuth),) * len(survey.measured_depth))
 
 
@@ -233,27 +242,11 @@ def _beyond(survey: Survey, bit_depth: float) -> list[str]:
 def _typed(kind: TypeAdapter[Any], document: Document, where: str, source: Path) -> Any:
     """The value under "table.key" or "table.key.key", which must be of a kind."""
     try:
-        return kind.validate_json(json.dumps(_written(document, where), default=str), strict=True)
+        return kind.validate_json(json.dumps(written_at(document, where), default=str), strict=True)
     except ValidationError as error:
         [first, *_] = error.errors(include_url=False)
         index = next((part + 1 for part in first["loc"] if isinstance(part, int)), None)
-        raise InputError(f"{source}: {_wrong_type(first, where, index, document)}") from error
-
-
-@contextmanager
-def _naming(table: str, source: Path) -> Iterator[None]:
-    """Turn errors about what a table holds into an `InputError` that names file and key."""
-    try:
-        yield
-    except ParameterError as error:
-        quantity = quantity_of(error.name)
-        key = quantity.key.rpartition(".")[2] if table != "drilling.schedule" else quantity.name
-        where = f"{table}.{key}{error.name.removeprefix(quantity.name)}"
-        constraint, value = error.constraint, error.value
-        if key.endswith("_deg") and isinstance(value, (float, tuple)):
-            value = tuple(map(file_degrees, value)) if isinstance(value, tuple) else file_degrees(value)
-            constraint = _in_degrees(quantity, value) or constraint
-        raise InputError(f"{source}: {where}: {constraint}, got {shown(value)}") from error
+        raise InputError(f"{source}: {wrong_type(first, where, index, document)}") from error
 
 
 def _no_toml(error: tomllib.TOMLDecodeError, text: str) -> str:
@@ -292,13 +285,13 @@ def check_keys(document: dict[str, Any], source: Path) -> None:
     """
     for table, content in document.items():
         if table not in (*TABLES, "section", "sensor"):
-            raise InputError(f"{source}: {table}: {_unknown(table)}, got {shown(content)}")
+            raise InputError(f"{source}: {table}: {unknown_key(table)}, got {shown(content)}")
         if not isinstance(content, dict):
             raise InputError(f"{source}: {table}: must be a table, got {shown(content)}")
         for key, value in content.items():
             where = f"{table}.{key}"
             if where not in BY_KEY:
-                raise InputError(f"{source}: {where}: {_unknown(key)}, got {shown(value)}")
+                raise InputError(f"{source}: {where}: {unknown_key(key)}, got {shown(value)}")
             if where == "drilling.schedule" and isinstance(value, dict):
                 continue
             if BY_KEY[where].kind == "String" and not isinstance(value, str):
@@ -326,15 +319,6 @@ def case_fields(document: Document) -> dict[str, Any]:
     return fields
 
 
-def _unknown(key: str) -> str:
-    """The constraint that an unknown key breaks, with the key that was probably meant."""
-    names = {table: table for table in TABLES}
-    for where, quantity in BY_KEY.items():
-        names |= {quantity.name: where, quantity.attribute: where, where.partition(".")[2]: where}
-    meant = get_close_matches(key, names, n=1)
-    return "must be a known key" + (f" ({names[meant[0]]}?)" if meant else "")
-
-
 def _radians(value: Any) -> Any:
     """Degrees in radians. Anything but a number of usual size is returned as it is: the check of types reports it."""
     if isinstance(value, list):
@@ -342,59 +326,4 @@ def _radians(value: Any) -> Any:
     with suppress(OverflowError):
         if type(value) in (int, float):
             return radians(value)
-    return value
-
-
-def _message(error: ErrorDetails, document: Document) -> str:
-    """The message for a wrong value, "TABLE.KEY: CONSTRAINT, got VALUE", in the names and units of the file."""
-    if error["type"] == "value_error":
-        return _out_of_range(error["ctx"]["error"], document)
-    field = ".".join(part for part in error["loc"] if isinstance(part, str))
-    index = next((part + 1 for part in error["loc"] if isinstance(part, int)), None)
-    quantity = next((quantity for quantity in BY_KEY.values() if quantity.field == field), None)
-    if quantity is None:  # the field is a whole part of a case: its table is missing
-        where = next(key for key, quantity in BY_KEY.items() if quantity.part == field).partition(".")[0]
-    else:
-        where = quantity.key
-    if error["type"] == "missing":
-        return f"{where}: must be given, got nothing"
-    return _wrong_type(error, where, index, document)
-
-
-def _wrong_type(error: ErrorDetails, where: str, index: int | None, document: Document) -> str:
-    """The message for a value, or for the one with an index in a list, that is of another type."""
-    where += f"[{index}]" if index else ""
-    value = shown(_written(document, where))
-    constraint = f"must be a list, such as [{value}]" if error["type"] == "tuple_type" else error["msg"]
-    return f"{where}: {constraint.replace('Input should', 'must')}, got {value}"
-
-
-def _out_of_range(error: ParameterError, document: Document) -> str:
-    quantity, constraint, value = quantity_of(error.name), error.constraint, error.value
-    where = quantity.key + error.name.removeprefix(quantity.name)
-    if quantity.key.endswith("_deg"):
-        value = _written(document, where)
-        constraint = _in_degrees(quantity, value) or constraint
-    if quantity.key.startswith("sensor."):  # sensor.position[1] stands under [[sensor]]
-        where = re.sub(r"^sensor(\..+)(\[\d+\])$", r"sensor\2\1", where)
-    return f"{where}: {constraint}, got {shown(value)}"
-
-
-def _in_degrees(quantity: Quantity, value: Any) -> str:
-    """The constraint that an angle in degrees breaks; empty if it breaks none."""
-    bounds: dict[str, Any] = {bound: degrees(getattr(quantity, bound)) for bound in ("above", "at_least", "at_most")}
-    try:
-        if isinstance(value, (int, float)):
-            check_number(quantity.key, value, **bounds)
-    except ParameterError as error:
-        return error.constraint
-    return ""
-
-
-def _written(document: Document, where: str) -> Any:
-    """The value that the file has under "table.key" or "table.key[i]"; a key may itself end in an index."""
-    value: Any = document
-    for key in where.split("."):
-        name, _, index = key.rpartition("[")
-        value = value[key] if key in value else value[name][int(index[:-1]) - 1]
     return value

@@ -2,12 +2,13 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from math import pi, radians
+from math import degrees, pi, radians
 from pathlib import Path
 from typing import NamedTuple
 
+from ..core.checks import check_number
 from ..core.errors import ParameterError
-from ..core.quantities import CLEARANCES, QUANTITIES, quantity_of
+from ..core.quantities import CLEARANCES, QUANTITIES, Quantity, quantity_of
 from ..core.survey import Survey
 from ..errors import InputError, shown
 from .inputs import NAMES_OF_COLUMNS, InputSchedule, Schedule
@@ -25,8 +26,13 @@ OTHER_UNITS = {
 """Unit of a column → the ends of names under which it may stand in another unit, and what that is in the first one."""
 
 
-ALL_ROUND = ("azimuth_deg", "toolface_deg", "rss_toolface_deg")
-"""Angles that may be given up to a whole turn."""
+ANGLES = {
+    heading: quantity
+    for quantity in QUANTITIES
+    for heading in (f"{quantity.name}_deg", quantity.key.rpartition(".")[2])
+    if quantity.unit == "rad" and quantity.key and heading.endswith("_deg")
+}
+"""Column of angles in degrees → its quantity."""
 
 
 class Spelling(NamedTuple):
@@ -132,6 +138,17 @@ def naming(path: str | Path) -> Iterator[None]:
         raise InputError(f"{path}: {error.name}: {error.constraint}, got {shown(error.value)}") from error
 
 
+def in_degrees(quantity: Quantity, value: object) -> str:
+    """The constraint that an angle in degrees breaks; empty if it breaks none."""
+    above, at_least, at_most = map(degrees, (quantity.above, quantity.at_least, quantity.at_most))
+    try:
+        if isinstance(value, (int, float)):
+            check_number(quantity.key, value, above=above, at_least=at_least, at_most=at_most)
+    except ParameterError as error:
+        return error.constraint
+    return ""
+
+
 def _read_columns(
     path: str | Path, groups: list[Group], some_of: list[Group] | None = None, *, if_there: Sequence[Group] = ()
 ) -> dict[str, Column]:
@@ -151,9 +168,8 @@ def _read_columns(
     numbers = sheet.numbers(list(found))
     for heading, column in zip(found, numbers, strict=True):
         for line, value in zip(sheet.lines, column, strict=True):
-            most = 360.0 if heading in ALL_ROUND else 180.0
-            if heading.endswith("_deg") and not -most <= value <= most:
-                raise InputError(f"{path}:{line}: {heading}: must be between -{most:g} and {most:g}, got {value!r}")
+            if heading in ANGLES and (constraint := in_degrees(ANGLES[heading], value)):
+                raise InputError(f"{path}:{line}: {heading}: {constraint}, got {value!r}")
             if value in NULLS or abs(value) >= LEAST_NULL:
                 remedy = "which stands for no value: leave the row out"
                 raise InputError(f"{path}:{line}: {heading}: must be a value, got {value!r}, {remedy}")
@@ -177,10 +193,9 @@ def _heading(sheet: Sheet, spellings: Group) -> str:
 
 def _check_no_other_unit(sheet: Sheet, spellings: Group) -> None:
     """Raise `InputError` if a column that the file lacks stands there with another ending: it would pass unread."""
-    ours = next(iter(spellings))
-    name = ours.removesuffix("_deg")
+    names = {heading.removesuffix(f"_{of.unit}").removesuffix("_deg") for heading, of in spellings.items()}
     for heading in sheet.headings:
-        if heading == name or heading.startswith(f"{name}_"):
+        if any(heading == name or heading.startswith(f"{name}_") for name in names):
             known = " or ".join(f"{spelling!r} ({of.unit})" for spelling, of in spellings.items())
             raise InputError(f"{sheet.path}: must have the column {known}, or none of it, got {heading!r}")
 
@@ -207,3 +222,9 @@ def _spellings(name: str, unit: str) -> Group:
     """The headings under which a column is found."""
     others = OTHER_UNITS.get(unit, {}).items()
     return {name: Spelling(name, unit, 1.0)} | {f"{name}_{end}": Spelling(name, end, factor) for end, factor in others}
+
+
+INPUTS_SPELLED = _group("rss", *LENGTHS) | {
+    heading: of for name in NAMES_OF_COLUMNS for heading, of in _input(name).items()
+}
+"""Columns of a schedule of inputs, as people spell them."""

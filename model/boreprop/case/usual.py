@@ -20,8 +20,6 @@ USUAL = {  # key of the case file → from, to, unit there
     "drilling.active_weight_on_bit": (300.0, 5e5, "N"),
     # The pads of rotary steerable tools press with a few kN to some tens of kN.
     "rss.force": (100.0, 1e5, "N"),
-    # A whole turn to either side.
-    "rss.toolface_deg": (-360.0, 360.0, "°"),
     # From the paper's softest rock over stiff near-bit assemblies to its hardest over slender ones, and a decade more.
     "ηΠ": (1e-5, 100.0, ""),
 }
@@ -44,7 +42,6 @@ def unusual(case: Case) -> list[str]:
         "bit.tilt_limit_deg": [degrees(case.bit.tilt_limit)],
         "drilling.active_weight_on_bit": profiles["active_weight_on_bit"].values,
         "rss.force": [max(map(abs, profiles["rss_force"].values))],
-        "rss.toolface_deg": list(map(degrees, case.schedule.rss_toolface)),
         "ηΠ": [case.eta_pi],
     }
     found = [

@@ -1,5 +1,7 @@
 """The case of a command that drills or analyses it, and the run of one that reads it."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -33,26 +35,36 @@ def open_case(path: Path, *, in_plane: bool = True) -> Case:
     A case that leaves its plane is refused `in_plane`; a constant azimuth only says where the plane is.
     """
     case, notes = read_case(path)
-    try:
+    with naming(path):
         if in_plane:
             check_plane(case)
         if case.bha.structure.is_of_the_paper:  # others are checked by the native engine
             scale(case.bha, replace(case.bit, walk_angle=0.0))
-    except ParameterError as error:  # of a number that no key has, so the case is not refused for a key
-        raise InputError(f"{path}: {as_in_file(error)}") from error
     found = notes + unusual(case)
     if found:
         console.warn(f"{path}: {'; '.join(found)}")
     return case
 
 
+@contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Turn an error about a parameter of a case into one that names the file of the case and the key there."""
+    try:
+        yield
+    except ParameterError as error:
+        raise InputError(f"{path}: {as_in_file(error)}") from error
+
+
 def as_in_file(error: ParameterError) -> str:
-    """What is wrong with a parameter; with an angle, by its key in the case file and in degrees."""
-    quantity = BY_NAME.get(error.name)
-    if quantity is None or not quantity.key.endswith("_deg"):
+    """What is wrong with a parameter, by its key in the case file if it has one, angles in degrees."""
+    name, bracket, index = error.name.partition("[")
+    quantity = BY_NAME.get(name)
+    if quantity is None or not quantity.field:
         return str(error)
-    values = np.round(np.degrees(np.asarray(error.value)), 9).tolist()
-    return f"{quantity.key}: {error.constraint}, got {shown(values)}"
+    value = error.value
+    if quantity.key.endswith("_deg"):
+        value = np.round(np.degrees(np.asarray(value)), 9).tolist()
+    return f"{quantity.key}{bracket}{index}: {error.constraint}, got {shown(value)}"
 
 
 def open_run(run_file: Path, case_file: Path | None) -> Trajectory:

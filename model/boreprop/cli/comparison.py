@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from ..analysis.comparison import compare
+from ..analysis.hole_in_space import is_in_space
 from ..case.tables import read_survey
 from ..errors import InputError
 from ..report.tables.comparison import caption, headings, lines
@@ -34,6 +35,9 @@ def compare_command(
     if output is not None:
         console.check_output(output, (".png",), reads=files_read(run_file, survey_file, case_file))
     run, survey = open_run(run_file, case_file), read_survey(survey_file)
+    if survey.turns and not is_in_space(run):
+        what = "its azimuths are left out, since the run stays in a plane"
+        console.warn(f"{survey_file}: {what}: drill it in space (hole.azimuth_deg) to compare them")
     try:
         found = compare(run, survey)
     except InputError as error:

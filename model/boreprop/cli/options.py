@@ -12,6 +12,8 @@ from ..errors import InputError
 from ..units import field_units
 from .console import check_output
 
+LARGEST_TURN = 90.0  # degrees, of a kink in a hole
+
 
 def positive(text: str) -> float:
     """Parse an option that takes a finite number > 0: ``typer.Option(parser=positive)``."""
@@ -30,6 +32,25 @@ def tolerance(text: str) -> float:
     value = positive(text)
     if not allowed.at_least <= value <= allowed.at_most:
         raise typer.BadParameter(f"must be {allowed.at_least:g} to {allowed.at_most:g}, got {text!r}")
+    return value
+
+
+def turn(text: str) -> float:
+    """Parse an option that takes a turn of a hole, degrees."""
+    value = positive(text)
+    if value > LARGEST_TURN:
+        raise typer.BadParameter(f"must be <= {LARGEST_TURN:g}, got {text!r}")
+    return value
+
+
+def inclination(text: str) -> float:
+    """Parse an option that takes an inclination, degrees."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = nan
+    if not -180.0 <= value <= 180.0:
+        raise typer.BadParameter(f"must be a number from -180 to 180, got {text!r}")
     return value
 
 
@@ -85,7 +106,9 @@ AsJson = Annotated[
 Inclination = Annotated[
     float | None,
     typer.Option(
-        metavar="A", help="Inclination of the straight hole, degrees. Default: that at the end of the existing hole."
+        parser=inclination,
+        metavar="A",
+        help="Inclination of the straight hole, degrees. Default: that at the end of the existing hole.",
     ),
 ]
 """The option --inclination-deg: ``inclination_deg: Inclination = None``."""

@@ -6,14 +6,15 @@ from typing import Annotated
 
 import typer
 
+from ..case.case import in_dimensions
 from ..core.checks import check_number
 from ..core.options import RELATIVE_TOLERANCE
-from ..run.engines import ENGINES
+from ..run.engines import ENGINES, chosen
 from ..run.files import files_read
 from ..run.results import keeping_rows, write_trajectory
-from ..run.simulate import SAMPLE_INTERVAL, in_dimensions, simulate
+from ..run.simulate import SAMPLE_INTERVAL, simulate
 from . import console
-from .cases import open_case
+from .cases import naming, open_case
 from .fallback import warn_of_fallback
 from .options import CaseFile, Tolerance, one_of, positive
 from .outputs import check_run_output
@@ -65,7 +66,8 @@ def simulate_command(
         case = in_dimensions(case, dimensions)
     if engine == "auto" and not case.in_space:
         warn_of_fallback()
-    with keeping_rows(output), console.progress("drilling", case.length) as drilled:
+    engine = chosen(engine, in_space=case.in_space)
+    with naming(case_file), keeping_rows(output), console.progress("drilling", case.length) as drilled:
         trajectory = simulate(
             case,
             sample_interval=sample_interval,

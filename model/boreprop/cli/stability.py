@@ -13,7 +13,6 @@ from ..analysis.stability.chart import stability_chart, usual_grid
 from ..analysis.stability.contacts import all_contacts, charted, contacts_met, steady_mode
 from ..analysis.stability.roots import Roots, critical_eta_pi, find_roots, parse_contact
 from ..case.case import Case
-from ..core.checks import check_number
 from ..errors import InputError
 from ..report.tables import stability as tables
 from ..run.files import files_read
@@ -52,8 +51,6 @@ def roots_command(
     if every and contact is not None:
         raise InputError(f"--all: must not be given with --contact, got --contact {contact!r}")
     touching = parse_contact(contact or "")
-    if inclination_deg is not None:
-        check_number("--inclination-deg", inclination_deg)
     case = open_case(case_file)
     inclination = case.survey.inclination[-1] if inclination_deg is None else radians(inclination_deg)
     at = case.eta_pi if eta_pi is None else eta_pi

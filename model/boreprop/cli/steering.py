@@ -6,7 +6,6 @@ from typing import Annotated
 
 import typer
 
-from ..core.checks import check_number
 from ..report.tables import steering_as_built as as_built
 from ..report.tables.steering import SteeringSummary, headings, lines, piece_lines, summarize
 from ..run.files import files_read
@@ -36,8 +35,6 @@ def steering_command(
     """Print how fast a steady steering force turns the hole, and draw it."""
     if output is not None:
         console.check_output(output, (".png",), reads=files_read(case_file))
-    if inclination_deg is not None:
-        check_number("--inclination-deg", inclination_deg)
     case = open_case(case_file)
     inclination = None if inclination_deg is None else radians(inclination_deg)
     summary: SteeringSummary | as_built.SteeringAsBuilt

@@ -19,7 +19,7 @@ from ..run.files import files_read
 from . import console
 from .cases import open_case
 from .fallback import warn_of_fallback
-from .options import AsJson, CaseFile, ClearanceRange, EtaPiRange, Tolerance, Units, check_asked, positive
+from .options import AsJson, CaseFile, ClearanceRange, EtaPiRange, Tolerance, Units, check_asked, turn
 from .printing import print_json, print_table
 from .ranges import parse_range
 
@@ -32,7 +32,7 @@ def dogleg_command(
     eta_pi: EtaPiRange = None,
     clearance_mm: ClearanceRange = None,
     limit_deg: Annotated[
-        float, typer.Option(parser=positive, metavar="A", help="Largest turn that is tried, degrees.")
+        float, typer.Option(parser=turn, metavar="A", help="Largest turn that is tried, degrees.")
     ] = 10.0,
     tolerance: Tolerance = None,
     as_json: AsJson = False,
@@ -84,7 +84,7 @@ def hysteresis_command(
     dogleg_deg: Annotated[
         float,
         typer.Option(
-            parser=positive,
+            parser=turn,
             metavar="A",
             help="Turn, over half the BHA before the bit, of the otherwise straight holes on the way down, degrees.",
         ),

@@ -7,7 +7,7 @@ from itertools import chain
 from math import inf
 from typing import Any, NamedTuple
 
-from .checks import check_increasing, check_number
+from .checks import check_increasing, check_number, take_fields
 from .errors import CannotContinue, ParameterError
 from .events import crossing, extremes
 from .problems import Problem
@@ -45,6 +45,7 @@ class Wear:
     largest_weight: float
 
     def __post_init__(self) -> None:
+        take_fields("wear", self)
         check_number("weight_per_metre", self.weight_per_metre, above=0.0)
         check_number("largest_weight", self.largest_weight, above=0.0)
 

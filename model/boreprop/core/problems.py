@@ -6,6 +6,8 @@ The C sources have codes and sentences from a header that is written from this f
 from dataclasses import dataclass
 from math import nan
 
+from .quantities import QUANTITIES
+
 F_STAR = "(3 flexural_stiffness / stabilizer_position[1]^2)"
 LENGTH_SCALE = "stabilizer_position[1]"
 DERIVED = {
@@ -24,16 +26,24 @@ DERIVED = {
 }
 """What is made of quantities of the table, and how messages name it: by what a user has given."""
 
+ANGLES = frozenset(quantity.name for quantity in QUANTITIES if quantity.unit == "rad")
+"""What a message gives in rad and says so, since people think of angles in degrees."""
+
 CONSTRAINTS = {
     "not a number": ("must be a finite number", "{value}"),
-    "not above": ("must be > {limit}", "{value}"),
-    "too small": ("must be >= {limit}", "{value}"),
-    "too large": ("must be <= {limit}", "{value}"),
+    "not above": ("must be > {limit}{unit}", "{value}"),
+    "too small": ("must be >= {limit}{unit}", "{value}"),
+    "too large": ("must be <= {limit}{unit}", "{value}"),
     "not increasing": ("must increase", "({before}, {value})"),
     "too close": ("must be at least {limit} m from each other and from the bit", "({before}, {value})"),
     "wrong count": ("must hold 1 to {limit} values", "{count}"),
     "out of reach": ("must reach the last stabilizer, {limit} m from the bit, together", "{value}"),
     "buckles": ("must be < {limit}, where the BHA buckles between its stabilizers", "{value}"),
+    "buckles in space": (
+        "must be < {limit} in space, where no wall holds the BHA sideways between bit and last stabilizer, so that it "
+        "buckles; put the last stabilizer nearer to the bit, or take stiffer sections",
+        "{value}",
+    ),
     "no station": ("must hold at least one station", "()"),
     "no start": ("must give a finite state where the run starts", "{value}"),
     "no state": ("must be a valid saved state of this system", "{count} numbers that are not"),
@@ -128,6 +138,7 @@ class Problem:
             before=repr(self.before),
             count=f"{self.value:g}",
             limit=f"{self.limit:g}",
+            unit=" rad" if self.quantity in ANGLES else "",
             place=f"{self.place:.9g}",
         )
 

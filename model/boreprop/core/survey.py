@@ -4,7 +4,7 @@ from bisect import bisect_left
 from dataclasses import dataclass
 from math import acos, atan2, cos, hypot, sin
 
-from .checks import check_increasing, check_part, checked_float
+from .checks import check_increasing, check_part, checked_float, take_fields
 from .errors import ParameterError
 from .problems import CONSTRAINTS
 
@@ -29,7 +29,8 @@ class Survey:
     Raises
     ------
     ParameterError
-        If a value is not finite, an inclination is beyond ±π, the depths do not increase, or the counts differ.
+        If a value is no finite number, an inclination is beyond ±π or an azimuth beyond ±2π, the depths do not
+        increase, or the counts differ.
     """
 
     measured_depth: tuple[float, ...]
@@ -37,6 +38,7 @@ class Survey:
     azimuth: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
+        take_fields("survey", self)
         if not self.measured_depth:
             raise ParameterError("measured_depth", CONSTRAINTS["no station"][0], self.measured_depth)
         check_increasing("measured_depth", self.measured_depth)

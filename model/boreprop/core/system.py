@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from itertools import pairwise
 
-from .checks import check_increasing, check_number, check_part
+from .checks import check_increasing, check_number, check_part, take_fields
 from .errors import ParameterError, error_of
 from .problems import CONSTRAINTS, DERIVED, Problem
 from .quantities import MAX_POINTS, MAX_SECTIONS, MAX_SENSORS, PARAMETERS, Structure
@@ -82,6 +82,7 @@ class BottomHoleAssembly:
     sensor_body_clearances: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
+        take_fields("bha", self)
         if self.section_lengths:
             self._take_sections()
         self._take_sensors()
@@ -218,6 +219,7 @@ class BitRock:
     walk_angle: float = 0.0
 
     def __post_init__(self) -> None:
+        take_fields("bit", self)
         check_part("bit", self)
 
 

@@ -40,13 +40,14 @@ enum { TERMS = 24 }; /* of the series over a stretch on which 3|N|h²/β is at m
 static inline void carry(double h, double beta, double N, double rise, double load, double line[PARTS]) {
     double slope[TERMS + 1] = {line[SLOPE_OF_BEAM]}, moment[TERMS + 1] = {line[MOMENT]}; /* coefficients times h^k */
     double shear[2] = {line[SHEAR], load * h};
-    for (int k = 0; k < TERMS; k++) {
+    int terms = N == 0.0 && rise == 0.0 ? 3 : TERMS; /* the others are zero then */
+    for (int k = 0; k < terms; k++) {
         double q = k < 2 ? shear[k] : 0.0, before = k ? slope[k - 1] * h : 0.0;
         slope[k + 1] = 3 / beta * moment[k] * h / (k + 1);
         moment[k + 1] = (q + N * slope[k] + rise * before) * h / (k + 1);
     }
     line[SLOPE_OF_BEAM] = line[MOMENT] = 0.0;
-    for (int k = TERMS; k >= 0; k--) {
+    for (int k = terms; k >= 0; k--) {
         line[DEFLECTION] += slope[k] * h / (k + 1);
         line[SLOPE_OF_BEAM] += slope[k], line[MOMENT] += moment[k];
     }

@@ -195,8 +195,9 @@ static inline void uniform_line(const Scaled *scaled, const Bending *bending, do
     double load = scaled->w * bending->g, m = -bending->M, q = bending->F_0;
     double v = m * s * s / 2 + q * s * s * s / 6 - load * s * s * s * s / 24;
     double slope = m * s + q * s * s / 2 - load * s * s * s / 6, moment = m + q * s - load * s * s / 2;
-    for (int i = -1; i < scaled->n - 1; i++) { /* first the pads */
+    for (int i = -1; i < scaled->n + scaled->points; i++) { /* first the pads */
         double force = i < 0 ? bending->F_rss : bending->F[i];
+        if (force == 0.0) continue;
         double above = larger(s - (i < 0 ? scaled->Delta : scaled->s[i]), 0.0);
         v += force * above * above * above / 6, slope += force * above * above / 2, moment += force * above;
         q += above > 0 ? force : 0.0;
@@ -208,7 +209,7 @@ static inline void uniform_line(const Scaled *scaled, const Bending *bending, do
 static inline void line_at(
     const Beam *beam, const Scaled *scaled, const Bending *bending, double s, double line[PARTS]
 ) {
-    if (!beam->stepped) {
+    if (scaled->uniform) {
         uniform_line(scaled, bending, s, line);
         return;
     }

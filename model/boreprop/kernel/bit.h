@@ -59,10 +59,11 @@ static inline void copy_around(Surroundings *to, const Surroundings *from, int p
     to->near = from->near, to->known = from->known;
 }
 
-/* Where the hole was at the points of the body, and where the bit, when it was looked at. Nothing but the time that a run
-   takes depends on it. */
+/* Where the hole was at the points of the body, in which of its pieces, and where the bit, when it was looked at. Nothing
+   but the time that a run takes depends on it. */
 typedef struct {
     double Y[DIRECTIONS][MAX_POINTS], at[MAX_POINTS];
+    Count cursor[MAX_POINTS];
 } Seen;
 
 /* The bit at the front of its hole, dimensionless. */
@@ -155,15 +156,16 @@ static inline void change_places(Integrator *p, Contact contact, double xi) {
 }
 
 /* What bends the beam with the bit at `xi` in the state `x`. */
-static inline Loads loads_at(const Integrator *p, double xi, const double x[COMPONENTS], double F_rss) {
+static inline void find_loads(const Integrator *p, double xi, const double x[COMPONENTS], double F_rss, Loads *loads) {
     const Places *places = &p->now.places;
-    double delayed[MAX_PLACES][DIRECTIONS] = {{0}};
-    Loads loads;
-    loads.count = places->count, loads.F_rss = F_rss;
-    hole_at_places(&p->now.hole, places, xi, delayed);
-    for (int i = 0; i < places->count; i++) loads.e[i] = x[LATERAL] - delayed[i][0] - places->s[i] * x[ANGLE];
-    loads.g = sin(p->scaled.axial ? x[ANGLE] : x[LATERAL] - delayed[0][0]);
-    return loads;
+    double behind[DIRECTIONS], turn = 0.0;
+    loads->count = places->count, loads->F_rss = F_rss;
+    for (int i = 0; i < places->count; i++) {
+        hole_at_place(&p->now.hole, places, i, xi, behind);
+        loads->e[i] = x[LATERAL] - behind[0] - places->s[i] * x[ANGLE];
+        if (i == 0) turn = x[LATERAL] - behind[0];
+    }
+    loads->g = sin(p->scaled.axial ? x[ANGLE] : turn);
 }
 
 /* The inputs with the bit at `xi`, ahead of where they were taken over. */

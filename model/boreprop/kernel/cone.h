@@ -1,18 +1,18 @@
 /* Contact in space: a support i whose offset δ_i from the axis of the hole lies within a disc |δ_i| <= y*_i, and which
    the wall pushes towards the axis. F minimises ½ Fᵀ(K⁻¹ ⊗ I)F + q̃·F + Σ y*_i |F_i|, so it is unique.
 
-   With k_i = K⁻¹_ii and v_i = δ_i − k_i F_i, the offset is the point of the disc that is nearest to v_i:
+   With any k_i > 0 and v_i = δ_i − k_i F_i, the offset is the point of the disc that is nearest to v_i:
 
        in contact  δ_i = y*_i v_i/|v_i| ,   F_i = −(v_i − δ_i)/k_i ,   |v_i| >= y*_i ;        free  δ_i = v_i ,   F_i = 0
 
-   and v_i = q̃_i + Σ_{j≠i} K⁻¹_ij F_j . Within a regime this is smooth, and solved by Newton's method. */
+   and v_i = q̃_i + Σ_j (K⁻¹_ij − k_i [i = j]) F_j . Within a regime this is smooth, and solved by Newton's method. k_i is what
+   support i yields to a force while the others that touch stay: so v is of the size of y* beside the wall. */
 #ifndef BOREPROP_CONE_H
 #define BOREPROP_CONE_H
 
-#include "modes.h"
+#include "interior.h"
 
-enum { TOUCHES = -1 };                   /* the contact beyond the bound of a free offset, as `change` has it */
-enum { MOST_TOUCHING = 2 * MAX_PLACES }; /* numbers: two for each support in contact */
+enum { TOUCHES = -1 }; /* the contact beyond the bound of a free offset, as `change` has it */
 
 /* The direction of a vector whose length is known to be at least `least` while its regime holds: a function w of the
    square of the length. It is one over the length from REACHED of that on. Below, where a trial step goes too far, it stays
@@ -29,6 +29,9 @@ static inline void direction_factors(double square, double least, double *w, dou
     *bend = -2 * (1.0 / 2 + t * (3.0 / 4 - t * (21.0 / 8))) / (inner * from);
 }
 
+/* Whether v lies beyond the disc, so that the support touches; without clearance it always does. */
+static inline int is_beyond(const double v[2], double y) { return y == 0.0 || hypot(v[0], v[1]) > y; }
+
 /* What the wall takes of v: v less the nearest point of the disc of radius y, and its derivative by v, row by row. */
 static inline void beyond_disc(const double v[2], double y, double beyond[2], double slope[2][2]) {
     double w = 0.0, bend = 0.0;
@@ -39,132 +42,40 @@ static inline void beyond_disc(const double v[2], double y, double beyond[2], do
     }
 }
 
-/* Solve a system of up to MOST_TOUCHING equations, row by row in `matrix`, for several right sides, which lie behind it in
-   each row and become the solutions. Returns 0 if it is singular. */
-static inline int solve_touching(int size, int sides, double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1]) {
+/* A system of up to MOST_TOUCHING equations, row by row, with right sides behind each row. */
+typedef double Equations[MOST_TOUCHING][MOST_TOUCHING + COMPONENTS];
+
+/* Solve it: the right sides become the solutions. Returns 0 if it is singular. */
+static inline int solve_equations(int size, int sides, Equations row) {
     for (int column = 0; column < size; column++) {
         int pivot = column;
         for (int i = column + 1; i < size; i++)
-            if (fabs(matrix[i][column]) > fabs(matrix[pivot][column])) pivot = i;
-        if (!(fabs(matrix[pivot][column]) > 0)) return 0;
-        double divisor = matrix[pivot][column];
-        for (int j = column; j < size + sides; j++) {
-            double value = matrix[pivot][j];
-            matrix[pivot][j] = matrix[column][j];
-            matrix[column][j] = value / divisor;
+            if (fabs(row[i][column]) > fabs(row[pivot][column])) pivot = i;
+        if (!(fabs(row[pivot][column]) > 0)) return 0;
+        for (int j = column; pivot != column && j < size + sides; j++) {
+            double value = row[pivot][j];
+            row[pivot][j] = row[column][j], row[column][j] = value;
         }
-        for (int i = 0; i < size; i++) {
-            double factor = matrix[i][column];
-            if (i == column || factor == 0.0) continue;
-            for (int j = column; j < size + sides; j++) matrix[i][j] -= factor * matrix[column][j];
+        for (int i = column + 1; i < size; i++) {
+            double factor = row[i][column] / row[column][column];
+            if (factor == 0.0) continue;
+            for (int j = column + 1; j < size + sides; j++) row[i][j] -= factor * row[column][j];
         }
     }
+    for (int i = size - 1; i >= 0; i--)
+        for (int side = size; side < size + sides; side++) {
+            for (int j = i + 1; j < size; j++) row[i][side] -= row[i][j] * row[j][side];
+            row[i][side] /= row[i][i];
+        }
     return 1;
 }
 
-/* The supports of a contact problem: the places of those that touch, C, and what belongs to them. */
-typedef struct {
-    int touching, C[MAX_PLACES], support[MAX_PLACES];
-    double k[MAX_PLACES], y[MAX_PLACES];  /* by number in C */
-    double K_inv[MAX_PLACES][MAX_PLACES]; /* of those in C */
-} Touching;
-
-static inline Touching touching_of(const Modes *modes, const Contact *contact) {
-    Touching touching;
-    int n = modes->beam.n, m = 0;
-    for (int i = 0; i < place_count(*contact, n); i++)
-        if (contact->of[i]) touching.C[m] = i, touching.support[m++] = support_at(contact, n, i);
-    touching.touching = m;
-    for (int a = 0; a < m; a++) {
-        touching.y[a] = modes->y_star[touching.support[a]];
-        for (int b = 0; b < m; b++)
-            touching.K_inv[a][b] = compliance(&modes->beam, touching.support[a], touching.support[b]);
-        touching.k[a] = touching.K_inv[a][a];
-    }
-    return touching;
-}
-
 #define SAME_OFFSET 1e-14 /* relative: so near to the solution no correction brings v nearer */
-enum { MOST_CORRECTIONS = 15, SMOOTHER = 14, MOST_HALVINGS = 40 };
+enum { MOST_CORRECTIONS = 8 };
 /* Over the largest v: after a change as small as this the next would be below rounding. Stabilizers close together enlarge
    the rounding of v, but not that of the equations, over their largest terms. */
 #define NEXT_IS_NOTHING 1e-8
 #define BALANCED 2e-15
-#define SHARPER 0.1 /* of μ, from step to step: after SMOOTHER of them it is rounding */
-
-/* The minimum that F is, with |F_i| made smooth: √(|F_i|² + μ²), in forces times √k_i. */
-typedef struct {
-    int count;
-    double C[MAX_PLACES][MAX_PLACES], root[MAX_PLACES]; /* K⁻¹_ij/√(k_i k_j), √k_i */
-    double q[MAX_PLACES][2], y[MAX_PLACES], mu;
-} Smooth;
-
-static inline double smooth_value(const Smooth *smooth, double u[MAX_PLACES][2]) {
-    double value = 0.0;
-    for (int i = 0; i < smooth->count; i++) {
-        for (int d = 0; d < 2; d++) {
-            double sum = 0.0;
-            for (int j = 0; j < smooth->count; j++) sum += smooth->C[i][j] * u[j][d];
-            value += u[i][d] * (sum / 2 + smooth->q[i][d]);
-        }
-        value += smooth->y[i] * sqrt(u[i][0] * u[i][0] + u[i][1] * u[i][1] + smooth->mu * smooth->mu);
-    }
-    return value;
-}
-
-/* One step of Newton's method towards the minimum, shortened until it goes down; returns 0 where it does not. */
-static inline int go_down(const Smooth *smooth, double u[MAX_PLACES][2]) {
-    int count = smooth->count, size = 2 * count;
-    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1], value = smooth_value(smooth, u), next[MAX_PLACES][2];
-    for (int i = 0; i < count; i++) {
-        double length = sqrt(u[i][0] * u[i][0] + u[i][1] * u[i][1] + smooth->mu * smooth->mu);
-        double w = smooth->y[i] / length;
-        for (int d = 0; d < 2; d++) {
-            double *row = matrix[2 * i + d];
-            row[size] = -smooth->q[i][d] - w * u[i][d];
-            for (int j = 0; j < count; j++) {
-                row[size] -= smooth->C[i][j] * u[j][d];
-                for (int c = 0; c < 2; c++) row[2 * j + c] = d == c ? smooth->C[i][j] : 0.0;
-            }
-            for (int c = 0; c < 2; c++)
-                row[2 * i + c] += (d == c ? w : 0.0) - w * u[i][d] * u[i][c] / (length * length);
-        }
-    }
-    if (!solve_touching(size, 1, matrix)) return 0;
-    double share = 1.0;
-    for (int halving = 0; halving < MOST_HALVINGS; halving++, share /= 2) {
-        for (int i = 0; i < count; i++)
-            for (int d = 0; d < 2; d++) next[i][d] = u[i][d] + share * matrix[2 * i + d][size];
-        if (smooth_value(smooth, next) < value) {
-            memcpy(u, next, (size_t)count * sizeof next[0]);
-            return 1;
-        }
-    }
-    return 0;
-}
-
-/* v near the solution for stabilizers that may touch, whatever the start: the minimum is followed while μ goes to zero. It
-   is convex, so that Newton's method ends at it. */
-APART static void come_near(const Touching *of, double q[MAX_PLACES][2], double v[MAX_PLACES][2]) {
-    Smooth smooth = {.count = of->touching};
-    double u[MAX_PLACES][2] = {{0}};
-    for (int i = 0; i < smooth.count; i++) smooth.root[i] = sqrt(of->k[i]);
-    for (int i = 0; i < smooth.count; i++) {
-        smooth.y[i] = of->y[i] / smooth.root[i];
-        for (int j = 0; j < smooth.count; j++) smooth.C[i][j] = of->K_inv[i][j] / (smooth.root[i] * smooth.root[j]);
-        for (int d = 0; d < 2; d++) {
-            smooth.q[i][d] = q[i][d] / smooth.root[i];
-            smooth.mu = larger(smooth.mu, fabs(smooth.q[i][d]));
-        }
-    }
-    for (int k = 0; k < SMOOTHER; k++, smooth.mu *= SHARPER)
-        for (int step = 0; step < MOST_CORRECTIONS && go_down(&smooth, u); step++) continue;
-    for (int i = 0; i < smooth.count; i++)
-        for (int d = 0; d < 2; d++) {
-            v[i][d] = q[i][d] - smooth.root[i] * u[i][d];
-            for (int j = 0; j < smooth.count; j++) v[i][d] += of->K_inv[i][j] * u[j][d] / smooth.root[j];
-        }
-}
 
 /* What the wall takes of each v, and its derivative. */
 typedef struct {
@@ -175,22 +86,25 @@ static inline void find_walls(const Touching *of, double v[MAX_PLACES][2], Walls
     for (int a = 0; a < of->touching; a++) beyond_disc(v[a], of->y[a], walls->beyond[a], walls->slope[a]);
 }
 
-/* The rows of the derivative of v − q̃ − Σ K⁻¹ F. */
-static inline void fill_rows(
-    const Touching *of, const Walls *walls, double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1]
-) {
+/* By how much v of one support changes with what the wall takes of another's, or its own. */
+static inline double taken(const Touching *of, int a, int b) {
+    return (a == b ? of->K_inv[a][a] - of->k[a] : of->K_inv[a][b]) / of->k[b];
+}
+
+/* The rows of the derivative of v − q̃ − Σ (K⁻¹ − k) F. */
+static inline void fill_rows(const Touching *of, const Walls *walls, Equations matrix) {
     for (int a = 0; a < of->touching; a++)
         for (int b = 0; b < of->touching; b++) {
-            double share = a == b ? 0.0 : of->K_inv[a][b] / of->k[b];
+            double share = taken(of, a, b);
             for (int d = 0; d < 2; d++)
                 for (int c = 0; c < 2; c++)
-                    matrix[2 * a + d][2 * b + c] = a == b ? d == c : share * walls->slope[b][d][c];
+                    matrix[2 * a + d][2 * b + c] = (a == b && d == c) + share * walls->slope[b][d][c];
         }
 }
 
 /* Newton's method from the guess in `v`; returns 0 if it finds nothing. */
 static inline int correct_contacts(const Touching *of, double q[MAX_PLACES][2], double v[MAX_PLACES][2], Walls *walls) {
-    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1];
+    Equations matrix;
     int m = of->touching, size = 2 * m, found = 0;
     for (int correction = 0; correction < MOST_CORRECTIONS && !found; correction++) {
         double change = 0.0, scale = 0.0;
@@ -201,12 +115,12 @@ static inline int correct_contacts(const Touching *of, double q[MAX_PLACES][2], 
                 double *rest = &matrix[2 * a + d][size], terms = fabs(q[a][d]) + fabs(v[a][d]);
                 *rest = q[a][d] - v[a][d];
                 for (int b = 0; b < m; b++) {
-                    double term = a == b ? 0.0 : of->K_inv[a][b] / of->k[b] * walls->beyond[b][d];
+                    double term = taken(of, a, b) * walls->beyond[b][d];
                     *rest -= term, terms += fabs(term);
                 }
                 balanced &= fabs(*rest) <= BALANCED * terms;
             }
-        if (!solve_touching(size, 1, matrix)) return 0;
+        if (!solve_equations(size, 1, matrix)) return 0;
         for (int a = 0; a < m; a++)
             for (int d = 0; d < 2; d++) {
                 double by = matrix[2 * a + d][size];
@@ -220,48 +134,57 @@ static inline int correct_contacts(const Touching *of, double q[MAX_PLACES][2], 
     return found;
 }
 
-/* The v of those that touch under their q̃, sought from a guess in `v`; returns 0 if none is found. Where `answer` is given,
-   it becomes dF/dq̃, row by row, over the directions of each of those that touch. */
+/* The v of those that touch under their q̃, sought from a guess in `v`. Where a wall would have to pull so much that there is
+   none, it is that of the contact problem, in which those that do not reach the wall are free. Where `by` is given,
+   derivatives of q̃ by the state, row by row over the directions of each, it becomes those of F; returns 0 if there are none. */
 static inline int solve_contacts(
     const Touching *of, double q[MAX_PLACES][2], double v[MAX_PLACES][2], double F[MAX_PLACES][2],
-    double answer[MOST_TOUCHING][MOST_TOUCHING]
+    double by[MOST_TOUCHING][COMPONENTS]
 ) {
     int m = of->touching, size = 2 * m;
-    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1];
+    Equations matrix;
     Walls walls;
     if (m == 1) v[0][0] = q[0][0], v[0][1] = q[0][1];
     find_walls(of, v, &walls);
     if (m > 1 && !correct_contacts(of, q, v, &walls)) {
-        come_near(of, q, v);
+        double near[MAX_PLACES][2];
+        approach(of, q, near);
+        memcpy(v, near, (size_t)m * sizeof near[0]);
         find_walls(of, v, &walls);
-        if (!correct_contacts(of, q, v, &walls)) return 0;
+        if (!correct_contacts(of, q, v, &walls)) {
+            memcpy(v, near, (size_t)m * sizeof near[0]);
+            find_walls(of, v, &walls);
+            for (int a = 0; a < m; a++)
+                if (!is_beyond(v[a], of->y[a])) memset(walls.beyond[a], 0, sizeof walls.beyond[a]), memset(walls.slope[a], 0, sizeof walls.slope[a]);
+        }
     }
     for (int a = 0; a < m; a++)
         for (int d = 0; d < 2; d++) F[a][d] = -walls.beyond[a][d] / of->k[a];
-    if (!answer) return 1;
+    if (!by) return 1;
     fill_rows(of, &walls, matrix);
-    for (int i = 0; i < size; i++)
-        for (int j = 0; j < size; j++) matrix[i][size + j] = i == j;
-    if (m > 1 && !solve_touching(size, size, matrix)) return 0;
+    for (int i = 0; i < size; i++) memcpy(&matrix[i][size], by[i], sizeof by[i]);
+    if (m > 1 && !solve_equations(size, COMPONENTS, matrix)) return 0;
     for (int a = 0; a < m; a++)
         for (int d = 0; d < 2; d++)
-            for (int j = 0; j < size; j++) {
-                double by = 0.0;
-                for (int c = 0; c < 2; c++) by += walls.slope[a][d][c] * matrix[2 * a + c][size + j];
-                answer[2 * a + d][j] = -by / of->k[a];
+            for (int c = 0; c < COMPONENTS; c++) {
+                const double *slope = walls.slope[a][d];
+                by[2 * a + d][c] =
+                    -(slope[0] * matrix[2 * a][size + c] + slope[1] * matrix[2 * a + 1][size + c]) / of->k[a];
             }
     return 1;
 }
 
-/* Whether v lies beyond the disc, so that the support touches; without clearance it always does. */
-static inline int is_beyond(const double v[2], double y) { return y == 0.0 || hypot(v[0], v[1]) > y; }
+/* v as it is with another k. */
+static inline void restate(const double v[2], double y, double k, double other, double restated[2]) {
+    double beyond[2] = {0.0, 0.0}, slope[2][2];
+    if (is_beyond(v, y)) beyond_disc(v, y, beyond, slope);
+    for (int d = 0; d < 2; d++) restated[d] = v[d] - (1 - other / k) * beyond[d];
+}
 
-/* How far v is from a solution over all supports, at most; gives where each ought to be for the others. */
-static inline double off_balance(
-    const Touching *all, double q[MAX_PLACES][2], double v[MAX_PLACES][2], double wanted[MAX_PLACES][2]
-) {
+/* How far v is from a solution over all supports, whose k are those on the diagonal of K⁻¹, at most. */
+static inline double off_balance(const Touching *all, double q[MAX_PLACES][2], double v[MAX_PLACES][2]) {
     int count = all->touching;
-    double off = 0.0;
+    double off = 0.0, wanted[MAX_PLACES][2]; /* where each ought to be for the others */
     for (int i = 0; i < count; i++) memcpy(wanted[i], q[i], sizeof wanted[i]);
     for (int j = 0; j < count; j++) {
         double beyond[2], slope[2][2];
@@ -280,10 +203,11 @@ static inline Touching touching_among(const Touching *all, double v[MAX_PLACES][
     Touching of;
     int m = 0;
     for (int i = 0; i < all->touching; i++)
-        if (is_beyond(v[i], all->y[i])) of.C[m] = i, of.k[m] = all->k[i], of.y[m++] = all->y[i];
+        if (is_beyond(v[i], all->y[i])) of.C[m] = i, of.y[m++] = all->y[i];
     of.touching = m;
     for (int a = 0; a < m; a++)
         for (int b = 0; b < m; b++) of.K_inv[a][b] = all->K_inv[of.C[a]][of.C[b]];
+    find_yields(&of);
     return of;
 }
 
@@ -292,18 +216,20 @@ static inline Touching touching_among(const Touching *all, double v[MAX_PLACES][
 static inline double try_contacts(
     const Touching *all, double q[MAX_PLACES][2], double v[MAX_PLACES][2], double tried[MAX_PLACES][2]
 ) {
-    double own[MAX_PLACES][2], q_C[MAX_PLACES][2], F[MAX_PLACES][2], wanted[MAX_PLACES][2];
+    double own[MAX_PLACES][2], q_C[MAX_PLACES][2], F[MAX_PLACES][2];
     int count = all->touching;
     Touching of = touching_among(all, v);
-    for (int a = 0; a < of.touching; a++)
-        memcpy(own[a], v[of.C[a]], sizeof own[a]), memcpy(q_C[a], q[of.C[a]], sizeof q_C[a]);
+    for (int a = 0; a < of.touching; a++) {
+        restate(v[of.C[a]], of.y[a], of.K_inv[a][a], of.k[a], own[a]);
+        memcpy(q_C[a], q[of.C[a]], sizeof q_C[a]);
+    }
     if (!solve_contacts(&of, q_C, own, F, NULL)) return INFINITY;
     for (int i = 0; i < count; i++) memcpy(tried[i], q[i], sizeof tried[i]);
     for (int a = 0; a < of.touching; a++)
         for (int i = 0; i < count; i++)
             for (int d = 0; d < 2; d++) tried[i][d] += all->K_inv[i][of.C[a]] * F[a][d];
-    for (int a = 0; a < of.touching; a++) memcpy(tried[of.C[a]], own[a], sizeof own[a]);
-    return off_balance(all, q, tried, wanted);
+    for (int a = 0; a < of.touching; a++) restate(own[a], of.y[a], of.k[a], of.K_inv[a][a], tried[of.C[a]]);
+    return off_balance(all, q, tried);
 }
 
 /* The largest number of some vectors. */
@@ -315,30 +241,27 @@ static inline double largest_of(int count, double v[MAX_PLACES][2]) {
 
 enum { MOST_ROUNDS = 60 };
 
-/* Bring v to the solution over all supports: Newton's method with the contacts as they are in the guess `v`, again while
-   that brings it nearer; else from near the solution. */
-static inline void settle_all(const Touching *all, double q[MAX_PLACES][2], double v[MAX_PLACES][2]) {
-    int count = all->touching, came_near = 0;
-    double wanted[MAX_PLACES][2], tried[MAX_PLACES][2], best[MAX_PLACES][2], scale = 0.0, least;
-    size_t size = (size_t)count * sizeof best[0];
+/* Go on from v with the contacts as they are there, again while that brings it nearer to a solution over all supports by half.
+   Returns how near it is then, over the largest number. */
+static inline double improve(const Touching *all, double q[MAX_PLACES][2], double v[MAX_PLACES][2]) {
+    int count = all->touching;
+    double tried[MAX_PLACES][2], scale = largest_of(count, q), off = off_balance(all, q, v), before = INFINITY;
     for (int i = 0; i < count; i++) scale = larger(scale, all->y[i]);
-    scale = larger(scale, largest_of(count, q)); /* forces of neighbours may make v much larger */
-    double off = off_balance(all, q, v, wanted);
-    memcpy(best, v, size), least = off;
-    for (int round = 0; round < MOST_ROUNDS && least > SAME_OFFSET * scale; round++) {
+    for (int round = 0; round < MOST_ROUNDS && off > SAME_OFFSET * scale && off < before / 2; round++) {
         double next = try_contacts(all, q, v, tried);
-        int nearer = next < off / 2;
-        if (nearer) off = next, memcpy(v, tried, size);
-        else if (next < off) memcpy(v, tried, size), off = next;
-        if (off < least) least = off, memcpy(best, v, size);
-        if (nearer) continue;
-        if (came_near || least <= ROUNDING * larger(scale, largest_of(count, best))) break;
-        came_near = 1;
-        come_near(all, q, v);
-        off = off_balance(all, q, v, wanted);
-        if (off < least) least = off, memcpy(best, v, size);
+        before = off;
+        if (!(next < off)) break;
+        off = next, memcpy(v, tried, (size_t)count * sizeof tried[0]);
     }
-    memcpy(v, best, size);
+    return off / larger(scale, largest_of(count, v)); /* forces of neighbours may make v much larger */
+}
+
+/* Bring v to the solution over all supports, from a guess if that leads there. */
+static inline void settle_all(const Touching *all, double q[MAX_PLACES][2], double v[MAX_PLACES][2]) {
+    double near[MAX_PLACES][2], off = improve(all, q, v);
+    if (!(off > ROUNDING)) return;
+    approach(all, q, near);
+    if (improve(all, q, near) < off) memcpy(v, near, (size_t)all->touching * sizeof near[0]);
 }
 
 /* Guess each v: under the forces of those that touch in `contact`. Where the body touches, its points are many and near each
@@ -349,6 +272,7 @@ static inline void guess_under(
     double q_C[MAX_PLACES][2], v_C[MAX_PLACES][2], F[MAX_PLACES][2];
     int n = modes->beam.n;
     Touching held = touching_of(modes, contact);
+    find_yields(&held);
     for (int a = 0; a < held.touching; a++)
         memcpy(q_C[a], q[held.C[a]], sizeof q_C[a]), memcpy(v_C[a], q_C[a], sizeof v_C[a]);
     if (!solve_contacts(&held, q_C, v_C, F, NULL)) return;
@@ -356,10 +280,11 @@ static inline void guess_under(
         for (int a = 0; a < held.touching && i != n - 1; a++)
             for (int d = 0; d < 2; d++)
                 v[i][d] += compliance(&modes->beam, support_at(contact, n, i), held.support[a]) * F[a][d];
-    for (int a = 0; a < held.touching; a++) memcpy(v[held.C[a]], v_C[a], sizeof v_C[a]);
+    for (int a = 0; a < held.touching; a++)
+        restate(v_C[a], held.y[a], held.k[a], held.K_inv[a][a], v[held.C[a]]);
 }
 
-/* The contacts that hold under q̃ among the supports that have places, with their v, sought from those in `contact`. */
+/* The contacts that hold under q̃ among the supports that have places, with their v where k_i = K⁻¹_ii, sought from those in `contact`. */
 static inline Contact settle_discs(
     const Modes *modes, double q[MAX_PLACES][2], double v[MAX_PLACES][2], Contact contact
 ) {

@@ -45,6 +45,7 @@ typedef struct {
     ScaledInputs inputs;
     double inputs_xi; /* where the inputs are those that it was made under */
     double longest;   /* step of a law that changes */
+    double finest;    /* of the clearances in contact: by how little the wall is another */
     Touching touching;
     Linear q[MAX_PLACES], M, F_0; /* without contacts */
     double relaxation;
@@ -84,7 +85,7 @@ static inline void make_law(
 ) {
     Contact nothing = regime.contact;
     memset(nothing.of, 0, sizeof nothing.of);
-    const Mode *mode = mode_of(modes, nothing);
+    const Mode *mode = mode_of(modes, &nothing);
     int n = scaled->n;
     law->count = places->count, law->n = n, law->axial = scaled->axial, law->saturated = regime.saturation != 0;
     law->stands = mode->stands;
@@ -96,18 +97,19 @@ static inline void make_law(
     law->changes = law_changes(&inputs);
     law->longest = law->changes ? LONGEST_RAMP / growth_of(&inputs) : INFINITY;
     law->M = linear_of(&mode->M, places), law->F_0 = linear_of(&mode->F_0, places);
-    law->touching = touching_of(modes, &regime.contact);
+    law->touching = touching_of(modes, &regime.contact), law->finest = INFINITY;
+    find_yields(&law->touching);
     for (int i = 0; i < law->count; i++) {
         if (i == n - 1) continue;
         law->q[i] = linear_of(&mode->delta[i], places);
         law->y_star[i] = modes->y_star[support_at(&regime.contact, n, i)];
         if (law->y_star[i] == 0.0) continue;
-        if (regime.contact.of[i]) add_bound(law, i, 0.0, INFINITY);
+        if (regime.contact.of[i]) add_bound(law, i, 0.0, INFINITY), law->finest = smaller(law->finest, law->y_star[i]);
         else add_bound(law, i, -INFINITY, law->y_star[i]);
     }
     if (law->saturated) add_bound(law, n - 1, inputs.psi_star, INFINITY);
     else add_bound(law, n - 1, -INFINITY, inputs.psi_star);
-    find_gains(law, mode_of(modes, regime.contact), places);
+    find_gains(law, mode_of(modes, &regime.contact), places);
 }
 
 /* The bit tilt under F_0, and its derivative: |ψ| <= ψ*, and F_0 − ηΠ R₂(ϖ)ψ in the normal cone of that disc. */
@@ -200,12 +202,14 @@ static inline int law_here(
     ScaledInputs inputs = inputs_ahead(&law->inputs, ahead);
     Across across = across_the_bit(law, &inputs, x, view, first, s_1);
     int m = law->touching.touching;
-    double eta_pi = at->eta_pi = inputs.eta_pi, by_F_0[2][2], answer[MOST_TOUCHING][MOST_TOUCHING];
+    double eta_pi = at->eta_pi = inputs.eta_pi, by_F_0[2][2];
     at->psi_star = inputs.psi_star;
-    double q_C[MAX_PLACES][2], q_by[MOST_TOUCHING][COMPONENTS], M_by[2][COMPONENTS], F_0_by[2][COMPONENTS];
+    double q_C[MAX_PLACES][2], F_by[MOST_TOUCHING][COMPONENTS], M_by[2][COMPONENTS], F_0_by[2][COMPONENTS];
     rows_here(law, x, &across, behind, at);
     for (int k = 0; k < m; k++) memcpy(q_C[k], at->q[law->touching.C[k]], sizeof q_C[k]);
-    if (m && !solve_contacts(&law->touching, q_C, at->v, at->F, slopes ? answer : NULL)) return 0;
+    for (int k = 0; k < 2 * m && slopes; k++) /* those of q̃, and then of F */
+        row_slopes(&law->q[law->touching.C[k / 2]], k % 2, &across, F_by[k]);
+    if (m && !solve_contacts(&law->touching, q_C, at->v, at->F, slopes ? F_by : NULL)) return 0;
     for (int k = 0; k < m; k++)
         for (int d = 0; d < 2; d++) {
             at->M[d] += law->modes->beam.M_F[law->touching.support[k]] * at->F[k][d];
@@ -218,17 +222,13 @@ static inline int law_here(
         at->rate[LATERAL + d] = x[ANGLE + d] - at->psi[d];
     }
     if (!slopes) return 1;
-    for (int d = 0; d < 2; d++) {
+    for (int d = 0; d < 2; d++)
         row_slopes(&law->M, d, &across, M_by[d]), row_slopes(&law->F_0, d, &across, F_0_by[d]);
-        for (int k = 0; k < m; k++) row_slopes(&law->q[law->touching.C[k]], d, &across, q_by[2 * k + d]);
-    }
     for (int k = 0; k < m; k++)
         for (int d = 0; d < 2; d++)
             for (int c = 0; c < COMPONENTS; c++) {
-                double F_by = 0.0;
-                for (int j = 0; j < 2 * m; j++) F_by += answer[2 * k + d][j] * q_by[j][c];
-                M_by[d][c] += law->modes->beam.M_F[law->touching.support[k]] * F_by;
-                F_0_by[d][c] += law->modes->beam.F0_F[law->touching.support[k]] * F_by;
+                M_by[d][c] += law->modes->beam.M_F[law->touching.support[k]] * F_by[2 * k + d][c];
+                F_0_by[d][c] += law->modes->beam.F0_F[law->touching.support[k]] * F_by[2 * k + d][c];
             }
     for (int d = 0; d < 2; d++)
         for (int c = 0; c < COMPONENTS; c++) {

@@ -6,6 +6,12 @@
 
 enum { LEAST_CAPACITY = 256, MOST_PIECES = 1 << 19 }; /* of hole: enough for most, and little memory to go through */
 
+/* One of the values that the outputs of a drilling system have, and its index if its output has several. */
+typedef struct {
+    Output which;
+    int index;
+} Value;
+
 /* A borehole as it is drilled, from the end of the survey on. */
 typedef struct {
     System system;
@@ -15,8 +21,20 @@ typedef struct {
     ScaledInputs scaled;   /* … what these are in the paper's numbers */
     Ground ground;
     double buckling_weight; /* over F*: under it the BHA buckles; infinite if the axial load does not count */
+    int values;
+    Value value[MOST_OUTPUTS]; /* in the order of the table of quantities */
     Integrator integrator;
 } Drilling;
+
+/* Note which values the outputs have. */
+static inline void list_values(Drilling *d) {
+    d->values = 0;
+    for (int k = 0; k < OUTPUT_COUNT; k++)
+        for (int i = 0; i < value_count(OUTPUT_SIZE[k], d->system.structure); i++) {
+            Value value = {(Output)k, i};
+            d->value[d->values++] = value;
+        }
+}
 
 /* Whether bit and rock are in their ranges, and ε = χ/η and its inverse finite. */
 static inline int check_rock(Inputs inputs, Problem *problem) {
@@ -68,7 +86,8 @@ static inline int check_weight(const Drilling *d, Inputs inputs, Problem *proble
     double weight = whole_weight(inputs), least = inputs.active_weight_on_bit;
     double most = d->buckling_weight * force_scale(&d->system);
     if (!check_number(Q_WEIGHT_ON_BIT, 0, weight, -INFINITY, least, INFINITY, problem)) return 0;
-    return weight < most || wrong(problem, BUCKLES, Q_WEIGHT_ON_BIT, 0, weight, most);
+    Code code = DIRECTIONS > 1 ? BUCKLES_IN_SPACE : BUCKLES;
+    return weight < most || wrong(problem, code, Q_WEIGHT_ON_BIT, 0, weight, most);
 }
 
 /* The inputs as the paper's numbers. */
@@ -152,6 +171,7 @@ static inline Status drilling_prepare(
         return FAILED;
     d->system = *system, d->ground = ground;
     d->drilled_length = 0.0;
+    list_values(d);
     d->given.rss_force = d->acting.rss_force = (double)NAN; /* none so far */
     options.relative_tolerance = system->relative_tolerance;
     prepare(&d->integrator, &scaled, length_scale(system), force_scale(system), options);

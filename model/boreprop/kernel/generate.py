@@ -8,7 +8,7 @@ from hashlib import sha256
 
 from ..core import radau
 from ..core.options import Options
-from ..core.problems import DERIVED, OUTSIDE, SENTENCES
+from ..core.problems import ANGLES, DERIVED, OUTSIDE, SENTENCES
 from ..core.quantities import (
     INPUTS,
     MAX_POINTS,
@@ -164,7 +164,7 @@ PROBLEMS_HEADER = """\
    `python -m boreprop.kernel.generate`.
 
    {{name}}, {{value}}, {{before}}, {{limit}} and {{place}} stand for members of a Problem, {{count}} for its value as a
-   whole number. */
+   whole number, {{unit}} for that of the limit of an angle. */
 #ifndef BOREPROP_PROBLEMS_H
 #define BOREPROP_PROBLEMS_H
 
@@ -195,6 +195,8 @@ static const char *const NAME[NAME_COUNT] = {{
     "",
 {texts}
 }};
+
+static const int IS_ANGLE[NAME_COUNT] = {{{angles}}};
 
 /* clang-format on */
 
@@ -297,6 +299,7 @@ def problems_header() -> str:
         outside=OUTSIDE.format(position="%s m", offset="%s mm", side="%s", when=" after %s m", beyond="%s mm"),
         sentences=_lines(f'"{sentence}",' for sentence in SENTENCES.values()),
         texts=_lines(f'"{text}",' for text in NAMES.values()),
+        angles=", ".join(f"[Q_{name.upper()}] = 1" for name in NAMES if name in ANGLES),
     )
 
 

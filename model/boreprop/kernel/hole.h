@@ -84,6 +84,12 @@ static inline void append(Hole *hole, const Step *step, const ScaledInputs *inpu
     memcpy(drilled->x, step->x, sizeof drilled->x);
 }
 
+/* Lateral coordinates of a piece at `xi`. */
+static inline void piece_at(const Piece *own, double xi, double Y[DIRECTIONS]) {
+    double t = (xi - own->start) * own->rate;
+    for (int d = 0; d < DIRECTIONS; d++) Y[d] = polynomial(own->x[LATERAL + d], t);
+}
+
 /* Number of the piece that covers `xi`. */
 static inline Count find(const Hole *hole, double xi) {
     Count low = hole->first, high = hole->end; /* the first that starts beyond xi is among low … high */
@@ -102,21 +108,39 @@ static inline Count find_from(const Hole *hole, Count k, double xi) {
     return k;
 }
 
+enum { NEAR = 16 }; /* pieces: a walk over more of them takes longer than a search among all */
+
+/* The same, by a walk back from piece k, if it is near. */
+static inline Count find_back(const Hole *hole, Count k, double xi) {
+    Count least = k - NEAR > hole->first ? k - NEAR : hole->first;
+    while (k > least && piece(hole, k)->start > xi) k--;
+    return k > least || k == hole->first ? k : find(hole, xi);
+}
+
+/* The same, by a walk from piece k either way. */
+static inline Count find_near(const Hole *hole, Count k, double xi) {
+    if (k < hole->first || k >= hole->end) return find(hole, xi);
+    while (k > hole->first && piece(hole, k)->start > xi) k--;
+    while (k + 1 < hole->end && piece(hole, k + 1)->start <= xi) k++;
+    return k;
+}
+
 /* Bring the cursors to where the places are with the bit at `xi`. */
 static inline void move_cursors(Hole *hole, const Places *places, double xi) {
     for (int i = 0; i < places->count; i++) hole->cursor[i] = find_from(hole, hole->cursor[i], xi - places->s[i]);
 }
 
-/* Lateral coordinates of the hole axis at each place with the bit at `xi`. */
+/* Lateral coordinates of the hole axis at a place with the bit at `xi`. */
+static inline void hole_at_place(const Hole *hole, const Places *places, int i, double xi, double Y[DIRECTIONS]) {
+    double at = xi - places->s[i];
+    piece_at(piece(hole, find_from(hole, hole->cursor[i], at)), at, Y);
+}
+
+/* The same at each place. */
 static inline void hole_at_places(
     const Hole *hole, const Places *places, double xi, double delayed[MAX_PLACES][DIRECTIONS]
 ) {
-    for (int i = 0; i < places->count; i++) {
-        double at = xi - places->s[i];
-        const Piece *own = piece(hole, find_from(hole, hole->cursor[i], at));
-        double t = (at - own->start) * own->rate;
-        for (int d = 0; d < DIRECTIONS; d++) delayed[i][d] = polynomial(own->x[LATERAL + d], t);
-    }
+    for (int i = 0; i < places->count; i++) hole_at_place(hole, places, i, xi, delayed[i]);
 }
 
 /* The same at the points of a trial step: one search a place, then a walk from piece to piece. */

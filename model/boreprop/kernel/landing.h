@@ -17,22 +17,33 @@ APART static Status no_contacts(
     return FAILED;
 }
 
+/* Whether the body stays off the wall with the contacts that follow from the last ones, which are found for it. Without an
+   axial load there are no others. */
+static inline int stays_off(Integrator *p, double xi, const double x[COMPONENTS], const Loads *loads) {
+    Pull pull[DIRECTIONS];
+    if (p->scaled.axial) return 0;
+    const Mode *mode = settle(&p->modes, loads, &p->now.regime.contact);
+    pull_under(p, mode, loads, pull);
+    if (wall_distance(p, xi, x, pull) == 0.0) return 0;
+    change_places(p, mode->contact, xi);
+    return 1;
+}
+
 /* Find all contacts of a BHA whose body may touch the wall, with the bit at `xi`, where the last step ends, in the state
    `x`. Points that are watched stay so. */
 static inline Status touch_down(Integrator *p, double xi, const double x[COMPONENTS], Problem *problem) {
     int n = p->scaled.n, points = p->scaled.points;
     const Contact *now = &p->now.regime.contact;
-    const Piece *nearer = NULL;
     Bent bent = {.end = p->modes.beam.end};
+    double Y[MAX_POINTS][DIRECTIONS];
     Contact contact;
-    Loads loads = loads_at(p, xi, x, force_at(&p->now, xi));
+    Loads loads;
+    find_loads(p, xi, x, force_at(&p->now, xi), &loads);
+    if (stays_off(p, xi, x, &loads)) return DONE;
     bent.F_rss = loads.F_rss, bent.g = loads.g;
     memcpy(bent.e, loads.e, (size_t)n * sizeof *bent.e);
-    for (int k = 0; k < points; k++) {
-        double Y[DIRECTIONS];
-        hole_at_point(p, &p->now.step, xi, k, &nearer, Y);
-        bent.e[n + k] = x[LATERAL] - Y[0] - p->scaled.s[n + k] * x[ANGLE];
-    }
+    hole_at_points(p, xi, Y);
+    for (int k = 0; k < points; k++) bent.e[n + k] = x[LATERAL] - Y[k][0] - p->scaled.s[n + k] * x[ANGLE];
     Code code = search(&p->modes, &bent, points, &contact);
     if (code) {
         double tolerance = p->options.relative_tolerance, place = xi * p->length_scale;

@@ -94,7 +94,7 @@ static inline void make_law(
     Law *law, const Scaled *scaled, const Places *places, Modes *modes, Regime regime, ScaledInputs inputs,
     double inputs_xi
 ) {
-    const Mode *mode = mode_of(modes, regime.contact);
+    const Mode *mode = mode_of(modes, &regime.contact);
     int n = scaled->n, count = places->count;
     Bound *of_tilt = &law->bounds[0];
     law->count = count, law->last = n - 1, law->axial = scaled->axial, law->inputs_xi = inputs_xi, law->bound_count = 1;

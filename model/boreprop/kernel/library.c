@@ -40,7 +40,7 @@ void boreprop_end(Run *run) { run_end(run); }
 Count boreprop_follow(
     Run *run, Count count, const double *lengths, const Inputs *inputs, const int *rows, double *table, Problem *problem
 ) {
-    Count width = output_count(run->drilling.system.structure);
+    Count width = run->drilling.values;
     for (Count k = 0; k < count; k++) {
         if (run_advance(run, lengths[k], inputs[k], problem) != DONE) return k;
         if (rows[k] >= 0) drilling_outputs(&run->drilling, table + rows[k] * width);

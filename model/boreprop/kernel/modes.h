@@ -18,7 +18,7 @@ typedef struct {
     unsigned char watched, point[MAX_WATCHED]; /* how many points; which support each is, less n */
 } Contact;
 
-static inline int same_contact(Contact a, Contact b) { return !memcmp(&a, &b, sizeof a); }
+static inline int same_contact(const Contact *a, const Contact *b) { return !memcmp(a, b, sizeof *a); }
 
 /* How many places there are, n of them of stabilizers. */
 static inline int place_count(Contact contact, int n) { return n + contact.watched; }
@@ -189,13 +189,13 @@ static inline void make_mode(Mode *mode, const Beam *beam, const double *y_star,
 
 enum { MODES = 4 }; /* that are kept: a few take turns where a hole ripples */
 
-/* The modes of one beam that were asked for last. */
+/* The modes of one beam that were asked for last, the very last one among them. */
 typedef struct {
     Beam beam;
     Axial axial; /* under which it is */
     double y_star[MAX_SUPPORTS];
     Mode made[MODES];
-    int count, next;
+    int count, next, last;
 } Modes;
 
 /* What acts on the beam of a mode under `loads`. */
@@ -214,14 +214,15 @@ static inline void load_beam(Modes *modes, const Scaled *scaled, Axial axial) {
     modes->count = modes->next = 0;
 }
 
-static inline const Mode *mode_of(Modes *modes, Contact contact) {
-    for (int k = 0; k < modes->count; k++)
-        if (same_contact(modes->made[k].contact, contact)) return &modes->made[k];
-    Mode *mode = &modes->made[modes->next];
-    make_mode(mode, &modes->beam, modes->y_star, contact);
+static inline const Mode *mode_of(Modes *modes, const Contact *contact) {
+    if (modes->count && same_contact(&modes->made[modes->last].contact, contact)) return &modes->made[modes->last];
+    for (modes->last = 0; modes->last < modes->count; modes->last++)
+        if (same_contact(&modes->made[modes->last].contact, contact)) return &modes->made[modes->last];
+    modes->last = modes->next;
+    make_mode(&modes->made[modes->last], &modes->beam, modes->y_star, *contact);
     modes->next = (modes->next + 1) % MODES;
     if (modes->count < MODES) modes->count++;
-    return mode;
+    return &modes->made[modes->last];
 }
 
 /* 1 if `value` is above its bounds by more than `slack`, −1 if below, else 0. */
@@ -256,20 +257,21 @@ static inline const Row *contact_bounds(const Modes *modes, const Mode *mode, in
 #define MOST_PIVOTS 243 /* contacts at five stabilizers: a search that takes more pivots goes in circles */
 #define LOOSER 8.0      /* factor on the slack for the next search: about a digit */
 
-/* The mode that satisfies (7) under `loads`, starting the search from `contact`.
+/* The mode that satisfies (7) under `loads`, starting the search from some contacts.
 
    Least-index pivoting: switch the first stabilizer that is beyond its bounds, until none is. K is positive definite, so
    no set of contacts comes back and the search ends (Murty 1974; Júdice & Pires 1992 for two walls). Where one does
    come back, by rounding under huge loads or of stabilizers close together, stabilizers may lie beyond their bounds by
    more and more until a mode is within them: at last by any amount. */
-static inline const Mode *settle(Modes *modes, const Loads *loads, Contact contact) {
+static inline const Mode *settle(Modes *modes, const Loads *loads, const Contact *start) {
+    Contact contact = *start;
     int n = modes->beam.n;
     double slack = ROUNDING;
     for (int i = 0; i < n - 1; i++)
         if (modes->y_star[i] == 0.0) contact.of[i] = 1;
     for (int pivots = 1;; pivots++) {
         int side = 0;
-        const Mode *mode = mode_of(modes, contact);
+        const Mode *mode = mode_of(modes, &contact);
         for (int i = 0; i < loads->count && !side; i++) {
             double lower, upper;
             if (i == n - 1) continue;

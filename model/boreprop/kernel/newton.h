@@ -24,7 +24,8 @@ static inline View view_at(const Views *views, double t) {
 }
 
 enum { UNKNOWNS = S * COMPONENTS, MOST_ITERATIONS = 12 };
-#define REST 0.03      /* what may be neglected of the solution of a step, in tolerances: little beside its error */
+#define REST 0.03      /* what may be neglected of the solution of a step, in tolerances: little beside its error, … */
+#define FINEST 1e-11   /* … and in clearances in contact, but for those that are near rounding */
 #define TOO_HARD 100.0 /* the error, over the tolerance, of a step that is not solved: the next is a third as long */
 #define AIMED 0.03     /* of ψ*: the error of a saturated tilt in a step, at most, … */
 #define NO_WAY 1e-3    /* … or what adds so many tolerances to Y */
@@ -142,13 +143,14 @@ static inline int solve_step(
     const Law *law, const Options *options, double s_1, const double x[COMPONENTS], Solving *solving, Trial *trial
 ) {
     double before = INFINITY, size = INFINITY;
+    double rest = REST * smaller(options->relative_tolerance, larger(law->finest, FINEST));
     for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
         spread(x, solving, trial);
         if (!make_views(law, &trial->step.frame, (const double (*)[S + 1]) solving->c, &solving->views)) return 0;
         before = size;
         if (!correct(law, s_1, trial->step.h, solving, trial, &size)) return 0;
         double rate = isfinite(before) ? size / before : 1.0;
-        if (size == 0.0 || (rate < 1 && size * rate / (1 - rate) <= REST * options->relative_tolerance)) {
+        if (size == 0.0 || (rate < 1 && size * rate / (1 - rate) <= rest)) {
             spread(x, solving, trial);
             return make_views(law, &trial->step.frame, (const double (*)[S + 1]) solving->c, &solving->views);
         }
@@ -158,12 +160,12 @@ static inline int solve_step(
 
 /* (1 − hJ/γ)⁻¹ times the defect, as in the plane; into the defect. */
 static inline int damp(double h, const double J[COMPONENTS][COMPONENTS], double defect[COMPONENTS]) {
-    double matrix[MOST_TOUCHING][2 * MOST_TOUCHING + 1];
+    Equations matrix;
     for (int c = 0; c < COMPONENTS; c++) {
         for (int e = 0; e < COMPONENTS; e++) matrix[c][e] = (c == e) - h / GAMMA[0].re * J[c][e];
         matrix[c][COMPONENTS] = defect[c];
     }
-    if (!solve_touching(COMPONENTS, 1, matrix)) return 0;
+    if (!solve_equations(COMPONENTS, 1, matrix)) return 0;
     for (int c = 0; c < COMPONENTS; c++) defect[c] = matrix[c][COMPONENTS];
     return 1;
 }
@@ -181,9 +183,10 @@ static inline void guess_contacts(const Law *law, const double x[COMPONENTS], co
     Across across = across_the_bit(law, &inputs, x, &view, first, law->s_1);
     rows_here(law, x, &across, &solving->behind[0], &at);
     settle_discs(law->modes, at.q, v, law->contact);
+    const Touching *of = &law->touching;
     for (int point = 0; point < POINTS; point++)
-        for (int k = 0; k < law->touching.touching; k++)
-            memcpy(trial->at[point].v[k], v[law->touching.C[k]], sizeof v[0]);
+        for (int k = 0; k < of->touching; k++)
+            restate(v[of->C[k]], of->y[k], of->K_inv[k][k], of->k[k], trial->at[point].v[k]);
 }
 
 /* How far a saturated tilt is from the law's in a trial step with these defects of Y, over what is allowed. It turns with F_0,

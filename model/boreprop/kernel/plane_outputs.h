@@ -15,17 +15,15 @@ typedef struct {
     const Mode *mode;
 } Present;
 
-/* What the wall does to the body of the BHA. */
-static inline void find_body(Drilling *d, Present *at) {
-    Integrator *p = &d->integrator;
-    int n = p->scaled.n, points = p->scaled.points;
-    double gap[MAX_POINTS] = {0};
+/* What the wall does to the body of the BHA, with the bit in the state `x`. */
+static inline void find_body(Integrator *p, const double x[COMPONENTS], Present *at) {
+    Pull pull[DIRECTIONS];
     at->body_force = at->body_place = 0.0, at->wall_distance = INFINITY;
-    if (!points) return;
-    for (int i = n; i < at->loads.count; i++)
+    if (!p->scaled.points) return;
+    for (int i = p->scaled.n; i < at->loads.count; i++)
         if (fabs(at->F[i]) > fabs(at->body_force)) at->body_force = at->F[i], at->body_place = p->now.places.s[i];
-    find_gaps(p, gap);
-    for (int k = 0; k < points; k++) at->wall_distance = smaller(at->wall_distance, larger(gap[k], 0.0));
+    pull_under(p, at->mode, &at->loads, pull);
+    at->wall_distance = wall_distance(p, p->now.xi, x, pull);
 }
 
 static inline Present present(Drilling *d) {
@@ -37,8 +35,8 @@ static inline Present present(Drilling *d) {
     at.earlier = earlier_inclination(p, now->xi - 1.0);
     step_state(&now->step, now->xi, state);
     at.theta = state[ANGLE], at.Y = state[LATERAL];
-    at.loads = present_loads(p);
-    at.mode = settle(&p->modes, &at.loads, now->regime.contact);
+    find_present_loads(p, state, &at.loads);
+    at.mode = settle(&p->modes, &at.loads, &now->regime.contact);
     at.F_0 = row_value(&at.mode->F_0, &at.loads);
     contact_forces(at.mode, &at.loads, at.F);
     at.inputs = inputs_here(now);
@@ -46,7 +44,7 @@ static inline Present present(Drilling *d) {
     at.Theta = at.theta - at.psi;
     position(now, path);
     at.x = path[0], at.z = path[1];
-    find_body(d, &at);
+    find_body(p, state, &at);
     if (!p->scaled.sensors) return at;
     Bending bending = bending_of(at.mode, &at.loads, p->scaled.n);
     find_sensed(p, state, &bending, at.sensed, at.told);

@@ -2,7 +2,7 @@
    `python -m boreprop.kernel.generate`.
 
    {name}, {value}, {before}, {limit} and {place} stand for members of a Problem, {count} for its value as a
-   whole number. */
+   whole number, {unit} for that of the limit of an angle. */
 #ifndef BOREPROP_PROBLEMS_H
 #define BOREPROP_PROBLEMS_H
 
@@ -19,6 +19,7 @@ typedef enum {
     WRONG_COUNT,
     OUT_OF_REACH,
     BUCKLES,
+    BUCKLES_IN_SPACE,
     NO_STATION,
     NO_START,
     NO_STATE,
@@ -161,14 +162,15 @@ typedef enum {
 static const char *const SENTENCE[CODE_COUNT] = {
     "",
     "{name}: must be a finite number, got {value}",
-    "{name}: must be > {limit}, got {value}",
-    "{name}: must be >= {limit}, got {value}",
-    "{name}: must be <= {limit}, got {value}",
+    "{name}: must be > {limit}{unit}, got {value}",
+    "{name}: must be >= {limit}{unit}, got {value}",
+    "{name}: must be <= {limit}{unit}, got {value}",
     "{name}: must increase, got ({before}, {value})",
     "{name}: must be at least {limit} m from each other and from the bit, got ({before}, {value})",
     "{name}: must hold 1 to {limit} values, got {count}",
     "{name}: must reach the last stabilizer, {limit} m from the bit, together, got {value}",
     "{name}: must be < {limit}, where the BHA buckles between its stabilizers, got {value}",
+    "{name}: must be < {limit} in space, where no wall holds the BHA sideways between bit and last stabilizer, so that it buckles; put the last stabilizer nearer to the bit, or take stiffer sections, got {value}",
     "{name}: must hold at least one station, got ()",
     "{name}: must give a finite state where the run starts, got {value}",
     "{name}: must be a valid saved state of this system, got {count} numbers that are not",
@@ -301,6 +303,8 @@ static const char *const NAME[NAME_COUNT] = {
     "current_time + step_size",
     "step_size * rate_of_penetration",
 };
+
+static const int IS_ANGLE[NAME_COUNT] = {[Q_BIT_TILT_LIMIT] = 1, [Q_BIT_WALK_ANGLE] = 1, [Q_RSS_TOOLFACE] = 1, [Q_BIT_INCLINATION] = 1, [Q_BOREHOLE_INCLINATION] = 1, [Q_BIT_TILT] = 1, [Q_AVERAGE_INCLINATION] = 1, [Q_BIT_AZIMUTH] = 1, [Q_BOREHOLE_AZIMUTH] = 1, [Q_BIT_TILT_HIGH] = 1, [Q_BIT_TILT_RIGHT] = 1, [Q_SENSOR_INCLINATION] = 1, [Q_SENSOR_AZIMUTH] = 1, [Q_SENSOR_BIAS] = 1, [Q_SENSOR_NOISE] = 1, [Q_INCLINATION] = 1, [Q_AZIMUTH] = 1};
 
 /* clang-format on */
 

@@ -8,7 +8,7 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "7bcd987e19f66ef5" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "0e33059ac23bfe86" /* of this file, but for this line, and of problems.h */
 #define MOST_DRILLED 100000.0 /* m in a communication step */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: forces between closer ones are rounding errors */
 #define POINTS_ALONG_BHA 36 /* at which its distance from the hole is looked at */
@@ -95,8 +95,8 @@ static const Quantity PARAMETER_TABLE[PARAMETER_COUNT] = {
     {Q_END_DEFLECTION, IF_STEPPED, offsetof(System, end_deflection), 0, -INFINITY, -INFINITY, INFINITY},
     {Q_SENSOR_POSITION, EACH_SENSOR, offsetof(System, sensor_position), 0, -INFINITY, 0.0, INFINITY},
     {Q_SENSOR_INTERVAL, EACH_SENSOR, offsetof(System, sensor_interval), 0, -INFINITY, 0.0, INFINITY},
-    {Q_SENSOR_BIAS, EACH_SENSOR, offsetof(System, sensor_bias), 0, -INFINITY, -INFINITY, INFINITY},
-    {Q_SENSOR_NOISE, EACH_SENSOR, offsetof(System, sensor_noise), 0, -INFINITY, 0.0, INFINITY},
+    {Q_SENSOR_BIAS, EACH_SENSOR, offsetof(System, sensor_bias), 0, -INFINITY, -3.141592653589793, 3.141592653589793},
+    {Q_SENSOR_NOISE, EACH_SENSOR, offsetof(System, sensor_noise), 0, -INFINITY, 0.0, 3.141592653589793},
     {Q_SENSOR_SEED, EACH_SENSOR, offsetof(System, sensor_seed), 1, -INFINITY, 0.0, 2147483647.0},
     {Q_SENSOR_BODY_CLEARANCE, EACH_SENSOR, offsetof(System, sensor_body_clearance), 0, -INFINITY, 0.0, INFINITY},
     {Q_RELATIVE_TOLERANCE, ONE, offsetof(System, relative_tolerance), 0, -INFINITY, 1e-12, 0.01},
@@ -112,7 +112,7 @@ static const Quantity INPUT_TABLE[INPUT_COUNT] = {
     {Q_BIT_TILT_LIMIT, ONE, 0, 0, 0.0, -INFINITY, 1.5707963267948966},
     {Q_WEIGHT_ON_BIT, IF_AXIAL, 0, 0, -INFINITY, 0.0, INFINITY},
     {Q_BIT_WALK_ANGLE, IF_SPACE, 0, 0, -INFINITY, -1.5533430342749532, 1.5533430342749532},
-    {Q_RSS_TOOLFACE, IF_SPACE, 0, 0, -INFINITY, -INFINITY, INFINITY},
+    {Q_RSS_TOOLFACE, IF_SPACE, 0, 0, -INFINITY, -6.283185307179586, 6.283185307179586},
     {Q_TOOLFACE_REFERENCE, IF_SPACE, 0, 1, -INFINITY, 0.0, 2.0},
 };
 

@@ -5,37 +5,38 @@
 #include "bit.h"
 
 /* What bends the beam where the bit is. */
-static inline Loads present_loads(const Integrator *p) {
-    double x[COMPONENTS];
-    step_state(&p->now.step, p->now.xi, x);
-    return loads_at(p, p->now.xi, x, inputs_here(&p->now).F_rss);
+static inline void find_present_loads(const Integrator *p, const double x[COMPONENTS], Loads *loads) {
+    find_loads(p, p->now.xi, x, force_at(&p->now, p->now.xi), loads);
 }
 
 /* Θ under given loads, eq. (16): algebraic, so it jumps with the inputs. */
 static inline double inclination_under(Integrator *p, double theta, const Loads *loads, ScaledInputs inputs) {
-    const Mode *mode = settle(&p->modes, loads, p->now.regime.contact);
+    const Mode *mode = settle(&p->modes, loads, &p->now.regime.contact);
     return theta - bit_tilt(row_value(&mode->F_0, loads), inputs.eta_pi, inputs.psi_star);
 }
 
 /* How the BHA is bent with the bit at `xi` in the state `x`. */
 static inline void bend(Integrator *p, double xi, const double x[COMPONENTS], Bending bending[DIRECTIONS]) {
-    Loads loads = loads_at(p, xi, x, force_at(&p->now, xi));
-    bending[0] = bending_of(settle(&p->modes, &loads, p->now.regime.contact), &loads, p->scaled.n);
+    Loads loads;
+    find_loads(p, xi, x, force_at(&p->now, xi), &loads);
+    bending[0] = bending_of(settle(&p->modes, &loads, &p->now.regime.contact), &loads, p->scaled.n);
 }
 
-/* What bends it in the present regime with the bit at `xi` in the state `x`, in a step. */
-static inline void pull_under(Integrator *p, const Loads *loads, Pull pull[DIRECTIONS]) {
-    contact_forces(mode_of(&p->modes, p->now.regime.contact), loads, pull->F);
+/* What bends it under loads in a mode. */
+static inline void pull_under(const Integrator *p, const Mode *mode, const Loads *loads, Pull pull[DIRECTIONS]) {
+    contact_forces(mode, loads, pull->F);
     pull->count = loads->count, pull->F_rss = loads->F_rss, pull->g = loads->g;
     pull->end = loads->e[p->scaled.n - 1] - p->modes.beam.end;
 }
 
+/* The same in the present regime with the bit at `xi` in the state `x`, in a step. */
 static inline void pull_at(
     Integrator *p, const Step *step, double xi, const double x[COMPONENTS], Pull pull[DIRECTIONS]
 ) {
-    Loads loads = loads_at(p, xi, x, force_at(&p->now, xi));
+    Loads loads;
+    find_loads(p, xi, x, force_at(&p->now, xi), &loads);
     (void)step;
-    pull_under(p, &loads, pull);
+    pull_under(p, mode_of(&p->modes, &p->now.regime.contact), &loads, pull);
 }
 
 /* The same where a step ends that is being tried, in the state `x`. */
@@ -51,7 +52,7 @@ static inline void pull_after(Integrator *p, const Trial *trial, const double x[
     for (int i = 0; i < places->count; i++)
         loads.e[i] = x[LATERAL] - trial->delayed[i][0][POINTS - 1] - places->s[i] * x[ANGLE];
     loads.g = sin(p->scaled.axial ? x[ANGLE] : x[LATERAL] - trial->delayed[0][0][POINTS - 1]);
-    pull_under(p, &loads, pull);
+    pull_under(p, mode_of(&p->modes, &p->now.regime.contact), &loads, pull);
 }
 
 /* The regime in the state `x`, the direction of the hole there, and what acts on the bit. */
@@ -72,8 +73,9 @@ static inline Response respond_in(ScaledInputs inputs, double theta, Contact con
 }
 
 static inline Response respond(Integrator *p, const double x[COMPONENTS], ScaledInputs inputs) {
-    Loads loads = loads_at(p, p->now.xi, x, inputs.F_rss);
-    const Mode *mode = settle(&p->modes, &loads, p->now.regime.contact);
+    Loads loads;
+    find_loads(p, p->now.xi, x, inputs.F_rss, &loads);
+    const Mode *mode = settle(&p->modes, &loads, &p->now.regime.contact);
     return respond_in(inputs, x[ANGLE], mode->contact, row_value(&mode->F_0, &loads), row_value(&mode->M, &loads));
 }
 
@@ -99,7 +101,7 @@ static inline double curvature_jump(
         bent += present_law(p)->Theta.theta * answer->M / inputs.eta_pi * (1 / epsilon(&inputs) - 1 / epsilon(&before));
     if ((bend != 0 || turn != 0) && !saturation) { /* (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ */
         double psi = answer->F_0[0] / inputs.eta_pi;
-        bent -= (bend * mode_of(&p->modes, p->now.regime.contact)->F_0.rss - turn * psi) / inputs.eta_pi;
+        bent -= (bend * mode_of(&p->modes, &p->now.regime.contact)->F_0.rss - turn * psi) / inputs.eta_pi;
     }
     return fabs(bent);
 }
@@ -115,7 +117,8 @@ static inline double earlier_inclination(Integrator *p, double xi) {
     double ahead = larger(xi - at->start, 0.0), x[COMPONENTS];
     for (int c = 0; c < COMPONENTS; c++) x[c] = polynomial(at->x[c], ahead * at->rate);
     ScaledInputs inputs = inputs_ahead(&at->inputs, ahead);
-    Loads loads = loads_at(p, at->start + ahead, x, inputs.F_rss);
+    Loads loads;
+    find_loads(p, at->start + ahead, x, inputs.F_rss, &loads);
     bear(p, inputs.W);
     double Theta = inclination_under(p, x[ANGLE], &loads, inputs);
     bear(p, p->now.inputs.W);

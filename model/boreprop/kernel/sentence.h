@@ -13,6 +13,7 @@ static inline const char *field_text(const Problem *problem, const char *field, 
     if (!strncmp(field, "{before}", 8)) return represent(problem->before, text);
     if (!strncmp(field, "{count}", 7)) return decimal(problem->value, 6, text);
     if (!strncmp(field, "{limit}", 7)) return decimal(problem->limit, 6, text);
+    if (!strncmp(field, "{unit}", 6)) return IS_ANGLE[problem->quantity] ? " rad" : "";
     if (!strncmp(field, "{place}", 7)) return decimal(problem->place, 9, text);
     snprintf(text, FIELD, problem->index ? "%s[%d]" : "%s", name, problem->index);
     return text;

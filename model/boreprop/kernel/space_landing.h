@@ -30,17 +30,12 @@ static inline int watch_deepest(Integrator *p, double xi, const double gap[MAX_P
    is unique, so that it is found by taking in, again and again, points that are in the wall without one. */
 static inline Status touch_down(Integrator *p, double xi, const double x[COMPONENTS], Problem *problem) {
     for (int round = 0; round <= p->scaled.points; round++) {
-        const Piece *nearer = NULL;
-        double body[DIRECTIONS][MAX_POINTS], gap[MAX_POINTS], Y[DIRECTIONS];
+        double gap[MAX_POINTS];
         Pull pull[DIRECTIONS];
         Response is = respond_at(p, &p->now.step, xi, x, inputs_at(&p->now, xi));
         change_regime(p, is.regime);
         pull_under(p, &is, pull);
-        find_body_under(p, x, pull, body);
-        for (int k = 0; k < p->scaled.points; k++) {
-            hole_at_point(p, &p->now.step, xi, k, &nearer, Y);
-            gap[k] = gap_of(p, k, body, Y);
-        }
+        find_gaps(p, xi, x, pull, gap);
         int found = watch_deepest(p, xi, gap);
         if (!found) return DONE;
         if (found < 0) break;

@@ -28,15 +28,15 @@ static inline void high_side(const Frame *frame, double high[DIRECTIONS]) {
 
 /* What the wall does to the body of the BHA. */
 static inline void find_body(Integrator *p, Present *at) {
-    double gap[MAX_POINTS] = {0};
+    Pull pull[DIRECTIONS];
     at->body_force[0] = at->body_force[1] = at->body_place = 0.0, at->wall_distance = INFINITY;
     if (!p->scaled.points) return;
     for (int i = p->scaled.n; i < p->now.places.count; i++) {
         if (length_of(at->is.at.F[i]) <= length_of(at->body_force)) continue;
         memcpy(at->body_force, at->is.at.F[i], sizeof at->body_force), at->body_place = p->now.places.s[i];
     }
-    find_gaps(p, gap);
-    for (int k = 0; k < p->scaled.points; k++) at->wall_distance = smaller(at->wall_distance, larger(gap[k], 0.0));
+    pull_under(p, &at->is, pull);
+    at->wall_distance = wall_distance(p, p->now.xi, at->x, pull);
 }
 
 static inline Present present(Drilling *d) {

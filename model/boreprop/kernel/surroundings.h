@@ -8,17 +8,17 @@
 #include "response.h"
 #endif
 
-/* Where the hole is at a point of the body with the bit at `xi`. The hole ends where the step begins that is being tried;
-   `nearer` is the piece at a point nearer to the bit, if one has been asked for. */
-static inline void hole_at_point(
-    const Integrator *p, const Step *step, double xi, int k, const Piece **nearer, double Y[DIRECTIONS]
-) {
+/* Where the hole is at a point of the body with the bit at `xi`. The hole ends where the step begins that is being tried. */
+static inline void hole_at_point(Integrator *p, const Step *step, double xi, int k, double Y[DIRECTIONS]) {
     const Hole *hole = &p->now.hole;
     double at = xi - p->scaled.s[p->scaled.n + k];
-    int tried = at >= step->xi;
-    if (!tried && (!*nearer || (*nearer)->start > at)) *nearer = piece(hole, find(hole, at));
-    double t = tried ? (at - step->xi) * (1 / step->h) : (at - (*nearer)->start) * (*nearer)->rate;
-    for (int d = 0; d < DIRECTIONS; d++) Y[d] = polynomial((tried ? step->x : (*nearer)->x)[LATERAL + d], t);
+    if (at >= step->xi) {
+        double t = (at - step->xi) * (1 / step->h);
+        for (int d = 0; d < DIRECTIONS; d++) Y[d] = polynomial(step->x[LATERAL + d], t);
+        return;
+    }
+    p->seen.cursor[k] = find_near(hole, p->seen.cursor[k], at);
+    piece_at(piece(hole, p->seen.cursor[k]), at, Y);
 }
 
 /* How far a point of the body, which is at `body`, is from the wall, the hole being at Y. */
@@ -62,15 +62,35 @@ static inline void find_body_at(Integrator *p, const Step *step, double xi, doub
     find_body_under(p, x, pull, body);
 }
 
-/* How far every point of the body is from the wall with the bit where it is. */
-static inline void find_gaps(Integrator *p, double gap[MAX_POINTS]) {
-    const Piece *nearer = NULL;
-    double body[DIRECTIONS][MAX_POINTS] = {{0}}, Y[DIRECTIONS];
-    find_body_at(p, &p->now.step, p->now.xi, body);
+/* Where the hole is at every point of the body with the bit at `xi`, not beyond its end. */
+static inline void hole_at_points(const Integrator *p, double xi, double Y[MAX_POINTS][DIRECTIONS]) {
+    const Hole *hole = &p->now.hole;
+    Count near = hole->end - 1;
     for (int k = 0; k < p->scaled.points; k++) {
-        hole_at_point(p, &p->now.step, p->now.xi, k, &nearer, Y);
-        gap[k] = gap_of(p, k, body, Y);
+        double at = xi - p->scaled.s[p->scaled.n + k];
+        near = find_back(hole, near, at);
+        piece_at(piece(hole, near), at, Y[k]);
     }
+}
+
+/* How far every point of the body is from the wall with the bit there, in the state `x`, and the BHA bent like this. */
+static inline void find_gaps(
+    const Integrator *p, double xi, const double x[COMPONENTS], const Pull pull[DIRECTIONS], double gap[MAX_POINTS]
+) {
+    double body[DIRECTIONS][MAX_POINTS], Y[MAX_POINTS][DIRECTIONS];
+    find_body_under(p, x, pull, body);
+    hole_at_points(p, xi, Y);
+    for (int k = 0; k < p->scaled.points; k++) gap[k] = gap_of(p, k, body, Y[k]);
+}
+
+/* How near the body is to the wall there. */
+static inline double wall_distance(
+    const Integrator *p, double xi, const double x[COMPONENTS], const Pull pull[DIRECTIONS]
+) {
+    double gap[MAX_POINTS], least = INFINITY;
+    find_gaps(p, xi, x, pull, gap);
+    for (int k = 0; k < p->scaled.points; k++) least = smaller(least, gap[k]);
+    return larger(least, 0.0);
 }
 
 /* Widen a range of inclinations by those of a piece of hole, the slopes of its polynomial up to t: they lie between the
@@ -176,22 +196,19 @@ static inline void find_margins(
 
 /* Look at the hole at a point of the body, which is at `body` at the end of a step: how far it is from the wall and how much
    that has changed along the step, unless it is far from it. Returns whether it may have been at the wall within the step. */
-static inline int look_at(
-    Integrator *p, const Step *step, const Ahead *ahead, int k, double body[][MAX_POINTS], const Piece **nearer
-) {
+static inline int look_at(Integrator *p, const Step *step, const Ahead *ahead, int k, double body[][MAX_POINTS]) {
     Seen *seen = &p->seen;
     Surroundings *around = &p->around;
     double h = ahead->end - ahead->start, Y[DIRECTIONS], before[DIRECTIONS], moved[DIRECTIONS], then = seen->at[k];
-    hole_at_point(p, step, step->end, k, nearer, Y);
+    hole_at_point(p, step, step->end, k, Y);
     for (int d = 0; d < DIRECTIONS; d++) {
         moved[d] = body[d][k] - around->body[d][k] - ahead->middle[d] * h;
         before[d] = seen->Y[d][k], seen->Y[d][k] = Y[d];
     }
     double gap = gap_of(p, k, body, Y), most = length_of(moved) + ahead->half * h;
-    const Piece *none = NULL;
     seen->at[k] = step->end;
     if (gap >= TURNING * most) return 0;
-    if (then != step->xi) hole_at_point(p, step, step->xi, k, &none, before);
+    if (then != step->xi) hole_at_point(p, step, step->xi, k, before);
     double start = gap_of(p, k, around->body, before);
     around->gap[k] = gap, around->change[k] = fabs(gap - start);
     around->near |= gap < NEARBY * around->change[k];
@@ -221,7 +238,7 @@ static inline double least_gap(const Integrator *p, const Step *step, int k, con
     const Hole *hole = &p->now.hole;
     double s = p->scaled.s[p->scaled.n + k], y_star = p->scaled.y_star[p->scaled.n + k], length = step->end - step->xi;
     double at = step->xi - s, end = step->end - s, lowest = INFINITY;
-    Count own = find(hole, at);
+    Count own = find_near(hole, p->seen.cursor[k], at);
     Arc gap = {0.0, 0.0, 0.0};
     for (int first = 1; at < end; first = 0, own++) {
         double next = own + 1 < hole->end ? smaller(piece(hole, own + 1)->start, end) : end;
@@ -264,14 +281,13 @@ static inline void look_between(
 /* See which points of the body are near the wall where a step ends that is being tried, with the points at `body`. */
 static inline void look_around(Integrator *p, const Step *step, double body[][MAX_POINTS]) {
     const Contact *contact = &p->now.regime.contact;
-    const Piece *nearer = NULL;
     double margin[MAX_POINTS];
     int count = 0, turning[MAX_POINTS];
     Ahead ahead = ahead_of(&p->now.inclinations, step);
     if (p->around.known) clear_around(p);
     find_margins(p, &ahead, body, margin);
     for (int k = 0; k < p->scaled.points; k++) {
-        if (margin[k] >= 0 || !look_at(p, step, &ahead, k, body, &nearer)) continue;
+        if (margin[k] >= 0 || !look_at(p, step, &ahead, k, body)) continue;
         if (place_of(contact, p->scaled.n, k) < 0) turning[count++] = k;
     }
     if (count) look_between(p, step, count, turning, body);

@@ -37,7 +37,8 @@ typedef struct {
     double section_beta[MAX_SECTIONS]; /* its EI over that at the bit */
     double section_w[MAX_SECTIONS];    /* its w̃ */
     double end_deflection;             /* δ_n */
-    int stepped, axial;                /* whether the beam has sections or bears an axial load; whether it bears one */
+    int uniform, axial; /* whether the beam has no sections and bears no axial load; whether it bears one */
+    int stepped;        /* whether it is solved stretch by stretch: not uniform, or its body may touch */
     int sensors;
     Sensor sensor[MAX_SENSORS];
 } Scaled;
@@ -289,7 +290,8 @@ static inline void scale_sections(const System *system, Scaled *scaled) {
     }
     scaled->end_deflection = system->end_deflection / l1;
     scaled->axial = system->structure.axial, scaled->points = system->structure.points;
-    scaled->stepped = system->structure.sections > 0 || scaled->axial || scaled->points;
+    scaled->uniform = !system->structure.sections && !scaled->axial;
+    scaled->stepped = !scaled->uniform || scaled->points;
     for (int k = 0; k < scaled->points; k++) {
         scaled->s[scaled->n + k] = system->body_point_position[k] / l1;
         scaled->y_star[scaled->n + k] = system->body_point_clearance[k] / l1;

@@ -55,11 +55,12 @@ class Course:
         values = self.values[:, self.names.index(name)]
         return bool((values != values[0]).any())
 
-    def at(self, length: Floats, piece: NDArray[np.intc]) -> Floats:
-        """The inputs at drilled lengths, m, each on the piece of that number; shape (lengths, inputs)."""
-        values: Floats = np.take(self.values, piece, axis=0)
-        if self.slopes.any():
-            values += self.slopes[piece] * (length - self.starts[piece])[:, None]
+    def column(self, name: str, length: Floats, piece: NDArray[np.intc]) -> Floats:
+        """An input at drilled lengths, m, each on the piece of that number; shape (lengths,)."""
+        i = self.names.index(name)
+        values: Floats = self.values[piece, i]
+        if self.slopes[:, i].any():
+            values += self.slopes[piece, i] * (length - self.starts[piece])
         return values
 
 
@@ -77,9 +78,7 @@ def acting(course: Course, length: Floats, piece: NDArray[np.intc]) -> Floats:
             if f"{name}_slope" in ACTING:
                 on_pieces[:, ACTING.index(f"{name}_slope")] = course.slopes[:, i]
     inputs: Floats = np.take(on_pieces, piece, axis=0)
-    if course.slopes.any():
-        values = course.at(length, piece)
-        for i, name in enumerate(course.names):
-            if name in ACTING:
-                inputs[:, ACTING.index(name)] = values[:, i]
+    for name, slopes in zip(course.names, course.slopes.T, strict=True):
+        if name in ACTING and slopes.any():
+            inputs[:, ACTING.index(name)] = course.column(name, length, piece)
     return inputs

@@ -1,6 +1,7 @@
 """The engines that drill a case, behind one protocol: the model in Python, and the same as compiled code."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, Protocol, Unpack
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 from ..arrays import Floats
 from ..case.case import Case
 from ..core.drilling import Drilling
-from ..core.errors import ParameterError
+from ..core.errors import CannotContinue, ParameterError
 from ..core.ground import Ground
 from ..core.inputs import Slopes
 from ..core.options import Options, Statistics
@@ -17,6 +18,7 @@ from ..core.quantities import ACTING, TOOLFACE_REFERENCES, values_of
 from ..core.system import BitRock
 from ..kernel.binding import NativeDrilling, available, why_not
 from ..kernel.space import SpaceDrilling
+from .trajectory import Stopped
 
 
 class Engine(Protocol):
@@ -102,6 +104,16 @@ def chosen(choice: str, *, in_space: bool = False) -> str:
     return engine() if choice == "auto" and not in_space else "native" if in_space else choice
 
 
+@contextmanager
+def starting() -> Iterator[None]:
+    """Turn an obstacle where a run starts into `Stopped`, as are those on its way."""
+    try:
+        yield
+    except CannotContinue as error:
+        raise Stopped(f"after 0 m: {error}") from error
+
+
+@starting()
 def start(case: Case, choice: str, options: Options, ground: Ground | None = None) -> Engine:
     """A case before its first step in the plane, under its first force, in some ground; errors as in `simulate`.
 
@@ -121,6 +133,7 @@ def start(case: Case, choice: str, options: Options, ground: Ground | None = Non
     )
 
 
+@starting()
 def start_in_space(case: Case, options: Options) -> Engine:
     """A case before its first step in space, in its own ground; errors as in `simulate`."""
     sides = {name: profile.values[0] for name, profile in case.schedule.sides().items()}

@@ -51,8 +51,7 @@ def on_rows(case: Case, run: Mapping[str, Floats], name: str) -> Floats:
     if name not in course.names:
         return np.full(len(length), (values_of("bha", case.bha) | values_of("bit", case.bit))[name])
     piece = (np.searchsorted(course.starts, length + CLOSE, side="right") - 1).astype(np.intc)
-    values: Floats = course.at(length, piece)[:, course.names.index(name)]
-    return values
+    return course.column(name, length, piece)
 
 
 def blunt_weight(case: Case, length: Floats) -> Floats:

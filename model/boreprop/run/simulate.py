@@ -1,16 +1,15 @@
 """Simulates a case: drills it under its inputs and gives the trajectory."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Floats
-from ..case.case import Case
+from ..case.case import Case, in_dimensions
 from ..core.checks import check_number
-from ..core.errors import CannotContinue, ParameterError
+from ..core.errors import CannotContinue
 from ..core.options import RELATIVE_TOLERANCE, Options
 from ..core.quantities import CLEARANCES, OUTPUTS, ROCK, scalar_names
 from .course import Course, acting, course_of
@@ -71,7 +70,8 @@ def simulate(
     ParameterError
         If a value is out of range.
     Stopped
-        If the integrator cannot go on; its `trajectory` holds the rows up to there, its cause is the `CannotContinue`.
+        If the integrator cannot go on; its `trajectory` holds the rows up to there, None if it cannot even start. Its
+        cause is the `CannotContinue`.
     KernelError
         If the native engine is asked for and is not installed.
 
@@ -107,12 +107,9 @@ def simulate(
     drilled = np.count_nonzero(~np.isnan(table[:, 0]))
     outputs = np.ascontiguousarray(table[:drilled].T)  # a run is read column by column
     on_rows = rows >= 0
-    given = course.at(lengths[on_rows], pieces[on_rows])[:drilled].T.copy()
-    columns = {
-        name: values
-        for name, values in zip(course.names, given, strict=True)
-        if name not in CONSTANT or course.changes(name)
-    }
+    at, piece = lengths[on_rows][:drilled], pieces[on_rows][:drilled]
+    told = [name for name in course.names if name not in CONSTANT or course.changes(name)]
+    columns = {name: course.column(name, at, piece) for name in told}
     if case.in_layers:
         columns |= rock_in_layers(case, outputs[names.index("formation")])
     stopped = f"after {drilling.drilled_length:g} m of {length:g} m: {failure}" if failure else None
@@ -120,21 +117,6 @@ def simulate(
     if stopped:
         raise Stopped(stopped, trajectory) from failure
     return trajectory
-
-
-def in_dimensions(case: Case, dimensions: int) -> Case:
-    """The case as it is drilled in so many dimensions.
-
-    Raises
-    ------
-    ParameterError
-        If they are neither 2 nor 3, or the case leaves the plane.
-    """
-    made = replace(case, dimensions=dimensions)
-    if dimensions == 2 and made.in_space:
-        constraint = "must be 3 for a case with an azimuth, a walk angle or a toolface other than 0 or 180"
-        raise ParameterError("dimensions", constraint, dimensions)
-    return made
 
 
 def _parts(legs: int, reported: bool, cuts: Indices) -> Iterator[slice]:

@@ -99,7 +99,7 @@ class Stopped(BorepropError):
     message
         The message, one line.
     trajectory
-        The rows up to there; its `stopped` is the message. None where the rows are not kept.
+        The rows up to there; its `stopped` is the message. None where there are none, or they are not kept.
     """
 
     exit_status = 3

@@ -26,6 +26,8 @@ AHEAD = 2  # chunks submitted for each of our processes: one at work and one wai
 SUBMITTED = 1000  # chunks submitted to an executor of the caller's, whose number of workers is not known
 CLOCK = 1e-6  # s, for a chunk that took no measurable time
 LIVES = 2  # an item is given up once this many workers have died while working on it alone
+THREADS = {"OMP_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"}
+"""Variables that set how many threads numpy computes on: in a worker one, since each core has a worker."""
 
 
 class WorkerLost(BorepropError):
@@ -182,7 +184,15 @@ def _cores() -> int:
 
 def _processes(workers: int) -> ProcessPoolExecutor:
     """A pool of processes, spawned rather than forked, so that they start in the same way on every system."""
-    return ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_prepare)
+    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_prepare)
+    free = THREADS - os.environ.keys()  # what a user has set stays
+    os.environ.update(dict.fromkeys(free, "1"))
+    try:
+        pool.submit(int)  # with the first call all processes start, in the environment of now
+    finally:
+        for name in free:
+            del os.environ[name]
+    return pool
 
 
 def _prepare() -> None:

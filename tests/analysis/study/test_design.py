@@ -1,5 +1,6 @@
 """What a study is made of: parameters that vary, grids, samples."""
 
+from dataclasses import replace
 from math import radians
 from typing import Any
 
@@ -11,7 +12,7 @@ from boreprop.analysis.study.design import grid, sample, vary
 from boreprop.case.paper import paper_case
 from boreprop.case.parameters import parameters
 from boreprop.core.system import eta_pi
-from boreprop.errors import InputError
+from boreprop.errors import InputError, ParameterError
 from studies import UNCERTAIN
 
 
@@ -29,8 +30,17 @@ def test_eta_pi_is_reached_by_the_weight_with_the_other_values_in_place() -> Non
     assert case.bit.lateral_steering_resistance == 20.0
 
 
-def test_the_tilt_limit_can_be_given_in_degrees() -> None:
+def test_angles_can_be_given_in_degrees() -> None:
     assert vary(paper_case(), {"bit_tilt_limit_deg": 1.5}).bit.tilt_limit == radians(1.5)
+    sensed = replace(paper_case(), bha=replace(paper_case().bha, sensor_positions=(1.0, 2.0)))
+    assert vary(sensed, {"sensor_bias[2]_deg": 0.5}).bha.sensor_biases == (0.0, radians(0.5))
+
+
+def test_a_toolface_reference_is_one_of_those_there_are() -> None:
+    in_space = replace(paper_case(), dimensions=3)
+    assert vary(in_space, {"toolface_reference": 1}).schedule.toolface_reference == ("north",)
+    with pytest.raises(ParameterError, match="toolface_reference: must be <= 2, got 3"):
+        vary(in_space, {"toolface_reference": 3})
 
 
 @pytest.mark.parametrize(
@@ -46,9 +56,9 @@ def test_names_that_cannot_be_varied_are_refused_before_anything_is_computed(nam
         grid(paper_case(), {name: [1.0] for name in names})
 
 
-@pytest.mark.parametrize("axis", [[], [[1.0]], 1.0])
-def test_an_axis_must_be_a_list(axis: Any) -> None:
-    with pytest.raises(InputError, match="eta_pi: must be a list"):
+@pytest.mark.parametrize("axis", [[], [[1.0]], 1.0, "0.1"])
+def test_an_axis_must_be_a_list_of_numbers(axis: Any) -> None:
+    with pytest.raises(ParameterError, match=r"eta_pi(: must be a list|\[1\]: must be a number)"):
         grid(paper_case(), {"eta_pi": axis})
 
 

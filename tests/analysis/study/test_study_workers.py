@@ -152,3 +152,12 @@ def test_closing_cancels_what_has_not_begun() -> None:
         next(results)
         results.close()
     assert len(begun) < 20
+
+
+def test_a_worker_computes_on_one_thread_unless_told_otherwise(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("OMP_NUM_THREADS", raising=False)
+    monkeypatch.setenv("VECLIB_MAXIMUM_THREADS", "3")
+    names = dict(enumerate(("OMP_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")))
+    told = dict(result for results in work(os.getenv, names, workers=1) for result in results)
+    assert told == {0: "1", 1: "3"}
+    assert "OMP_NUM_THREADS" not in os.environ

@@ -8,8 +8,7 @@ from numpy.typing import ArrayLike
 
 from ...arrays import Floats
 from ...case.case import Case
-from ...core.checks import check_increasing, check_quantity
-from ...core.errors import ParameterError
+from ...core.checks import check_increasing, check_quantity, some_numbers
 from .closed_form import Search, solving
 
 
@@ -66,17 +65,15 @@ def walk_chart(case: Case, walk_angle: ArrayLike, progress: Callable[[float], No
     >>> walk_chart(paper_case(), [radians(-10.0), radians(10.0)]).critical_eta_pi.round(3)
     array([0.118, 0.18 ])
     """
-    angles = np.asarray(walk_angle, float)
-    if angles.ndim != 1 or not angles.size:
-        raise ParameterError("walk_angle", "must be a list of at least one value", walk_angle)
-    check_increasing("bit_walk_angle", tuple(angles.tolist()))
-    check_quantity("bit_walk_angle", tuple(angles.tolist()))
+    angles = some_numbers("walk_angle", walk_angle)
+    check_increasing("bit_walk_angle", angles)
+    check_quantity("bit_walk_angle", angles)
     limits, ends = [], []
-    for angle in angles.tolist():
+    for angle in angles:
         with solving(case):
             search = Search(case, angle)
             limit = search.critical()
             limits.append(limit.eta_pi if limit else np.nan)
             ends.append(search.largest_eta_pi())
         progress(len(ends) / len(angles))
-    return WalkChart(angles, np.array(limits), np.array(ends))
+    return WalkChart(np.array(angles, float), np.array(limits), np.array(ends))

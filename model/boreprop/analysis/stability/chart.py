@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...arrays import Floats
 from ...case.case import Case
-from ...core.checks import check_increasing, check_number
+from ...core.checks import check_increasing, check_number, check_quantity, some_numbers
 from ...core.errors import ParameterError
 from ...core.system import BottomHoleAssembly
 from ..lying import pressing_weight
@@ -120,12 +120,10 @@ def lambda_2(bha: BottomHoleAssembly) -> float:
 
 def _axis(name: str, values: ArrayLike, smallest: float) -> Floats:
     """The values along an axis of the chart, which increase from the smallest on."""
-    axis = np.asarray(values, dtype=float)
-    if axis.ndim != 1 or not axis.size:
-        raise ParameterError(name, "must be a list of at least one value", values)
-    check_increasing(name, tuple(axis.tolist()))
-    check_number(name, float(axis[0]), at_least=smallest)
-    return axis
+    axis = some_numbers(name, values)
+    check_increasing(name, axis)
+    check_number(name, axis[0], at_least=smallest)
+    return np.array(axis, dtype=float)
 
 
 def stability_chart(
@@ -178,7 +176,7 @@ def stability_chart(
         inclination = case.survey.inclination[-1]
     lambda_2(bha)
     eta_pi, lambda2 = _axis("eta_pi", eta_pi, SMALLEST_ETA_PI), _axis("lambda2", lambda2, SMALLEST_LAMBDA2)
-    check_number("inclination", inclination)
+    check_quantity("inclination", inclination)
     weight = pressing_weight(case)
     modes = [
         (numbers, saturated)

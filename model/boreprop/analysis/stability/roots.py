@@ -14,7 +14,7 @@ import numpy as np
 
 from ...arrays import Complexes, Floats
 from ...case.case import Case
-from ...core.checks import check_number
+from ...core.checks import check_number, check_quantity
 from ...core.errors import ParameterError
 from ...core.system import BitRock, BottomHoleAssembly
 from ...errors import InputError, RootsNotFound
@@ -142,7 +142,7 @@ def find_roots(
     if inclination is None:
         inclination = case.survey.inclination[-1]
     check_number("eta_pi", eta_pi, at_least=SMALLEST_ETA_PI)
-    check_number("inclination", inclination)
+    check_quantity("inclination", inclination)
     check_number("abscissa", abscissa or 0.0, at_most=0.0)
     touching = touching_stabilizers(case.bha, contact)
     weight = pressing_weight(case)
@@ -191,6 +191,7 @@ def critical_eta_pi(
     """
     if inclination is None:
         inclination = case.survey.inclination[-1]
+    check_quantity("inclination", inclination)
     return critical_of(case.bha, case.bit, contact, saturated, inclination, pressing_weight(case))
 
 
@@ -203,7 +204,7 @@ def critical_of(
     weight_on_bit: float = 0.0,
 ) -> CriticalEtaPi | None:
     """`critical_eta_pi` of a drilling system, with the weight on bit that loads it along its axis."""
-    check_number("inclination", inclination)
+    check_quantity("inclination", inclination)
     touching = touching_stabilizers(bha, range(1, len(bha.stabilizer_positions)) if contact is None else contact)
     characteristic = characteristic_of(bha, bit, touching, saturated, inclination, weight_on_bit)
     for smallest in (0.1, 0.01, 0.001, SMALLEST_ETA_PI):  # from above, since there are ever more crossings below
@@ -225,7 +226,7 @@ def touching_stabilizers(bha: BottomHoleAssembly, numbers: Iterable[int]) -> tup
     """
     wanted, last = set(numbers), len(bha.stabilizer_clearances)
     for number in wanted:
-        if not 1 <= number <= last:
+        if number not in range(1, last + 1):
             raise ParameterError("contact", f"must be the number of a non-ideal stabilizer; there are {last}", number)
     return tuple(int(i in wanted or not clearance) for i, clearance in enumerate(bha.stabilizer_clearances, 1))
 

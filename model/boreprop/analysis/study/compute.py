@@ -88,7 +88,8 @@ def study(
         A variable for each result, and ``error``. The dimensions are the axes of a grid. Otherwise there is one
         dimension, ``case``, and the varied parameters are coordinates along it. A case has nan for results and the
         message in ``error`` if its parameters are out of range, if the function raises an ArithmeticError,
-        RuntimeError, ValueError or Stopped, or if every worker that tried it died.
+        RuntimeError or ValueError, if it finds that a run cannot go on or no roots or spiral, or if every worker that
+        tried it died.
 
     Raises
     ------

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...case.case import Case
 from ...case.parameters import diameters, parameters, with_parameters
+from ...core.checks import checked_float, some_numbers
 from ...core.quantities import BY_NAME, quantity_of
 from ...errors import InputError, shown
 
@@ -59,6 +60,7 @@ def vary(case: Case, values: Mapping[str, float]) -> Case:
 
 def with_varied(case: Case, values: Mapping[str, float]) -> Case:
     """`vary` a case by names that `check_names` has accepted."""
+    values = {name: checked_float(name, value) for name, value in values.items()}
     wanted = {
         parameter_of(name): radians(value) if name.endswith("_deg") else value
         for name, value in values.items()
@@ -76,8 +78,9 @@ def parameter_of(name: str) -> str:
     """The parameter for which a name stands: active weight on bit for "eta_pi", the angle for an angle in degrees."""
     if name == "eta_pi":
         return "active_weight_on_bit"
-    angle = BY_NAME.get(name.removesuffix("_deg"))
-    return angle.name if angle and angle.unit == "rad" else name
+    angle = name.removesuffix("_deg")
+    quantity = BY_NAME.get(angle.partition("[")[0])
+    return angle if quantity and quantity.unit == "rad" else name
 
 
 def check_names(case: Case, names: tuple[str, ...]) -> None:
@@ -142,7 +145,7 @@ def grid(case: Case, axes: Mapping[str, ArrayLike]) -> Study:
 
     Raises
     ------
-    InputError
+    InputError, ParameterError
         If there is no axis, a name cannot be varied, or an axis has no values.
 
     Examples
@@ -154,10 +157,7 @@ def grid(case: Case, axes: Mapping[str, ArrayLike]) -> Study:
     """
     if not axes:
         raise InputError("axes: a grid must have at least one axis, got none")
-    values = {name: np.asarray(axis, dtype=np.float64) for name, axis in axes.items()}
-    for name, axis in values.items():
-        if axis.ndim != 1 or not axis.size:
-            raise InputError(f"{name}: must be a list of at least one value, got {shown(axes[name])}")
+    values = {name: np.array(some_numbers(name, axis), dtype=float) for name, axis in axes.items()}
     combinations = np.stack(np.meshgrid(*values.values(), indexing="ij"), axis=-1).reshape(-1, len(values))
     return Study(case, tuple(values), combinations, values)
 
@@ -187,7 +187,8 @@ def sample(case: Case, uncertain: Mapping[str, Distribution], n: int, seed: int)
     Raises
     ------
     InputError
-        If a name cannot be varied, a draw is not a finite number, or n or the seed is out of range.
+        If a name cannot be varied, a distribution is none or draws what is not a finite number, or n or the seed is out
+        of range.
 
     Examples
     --------
@@ -202,6 +203,8 @@ def sample(case: Case, uncertain: Mapping[str, Distribution], n: int, seed: int)
             raise InputError(f"{name}: must be >= {least}, got {number}")
     values = np.empty((n, len(uncertain)))
     for column, (name, distribution) in zip(values.T, uncertain.items(), strict=True):
+        if not hasattr(distribution, "ppf"):
+            raise InputError(f"{name}: must be a frozen distribution of scipy.stats, got {shown(distribution)}")
         column[:] = distribution.ppf(np.random.default_rng([seed, *name.encode()]).random(n))
         if not np.isfinite(column).all():
             raise InputError(f"{name}: must be drawn from a distribution of finite numbers, got {column[0]}")

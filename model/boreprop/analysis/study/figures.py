@@ -6,6 +6,7 @@ from math import nan
 from ...case.case import Case
 from ...core.options import RELATIVE_TOLERANCE
 from ...core.quantities import BY_NAME
+from ...errors import CannotContinue, RootsNotFound, SpiralNotFound
 from ...run.simulate import simulate
 from ...run.trajectory import Stopped
 from ...units import BUILD_LENGTH
@@ -26,6 +27,8 @@ FIGURES = {  # name → unit and meaning
     "end_azimuth": (ANGLE, "azimuth at the end"),
     "build_rate": (CURVATURE, "build rate, mean"),
     "largest_build_rate": (CURVATURE, f"build rate, largest over {BUILD_LENGTH:g} m"),
+    "dogleg_severity": (CURVATURE, "dogleg severity, mean"),
+    "largest_dogleg_severity": (CURVATURE, f"dogleg severity, largest over {BUILD_LENGTH:g} m"),
     "largest_contact_force": (FORCE, "largest contact force"),
     "contact_share": ("", "share in contact"),
     "saturation_share": ("", "share with saturated bit tilt"),
@@ -35,6 +38,9 @@ FIGURES = {  # name → unit and meaning
     "growth": (f"1/{LENGTH}", "ripple: change of the logarithm of the amplitude"),
     "state": ("", "ripple: " + ", ".join(f"{number} {state}" for number, state in enumerate(State))),
 }
+
+IN_SPACE = ("end_azimuth", "dogleg_severity", "largest_dogleg_severity")
+"""Figures of runs in space only."""
 
 
 def key_figures(case: Case, relative_tolerance: float = RELATIVE_TOLERANCE) -> dict[str, float]:
@@ -53,7 +59,7 @@ def key_figures(case: Case, relative_tolerance: float = RELATIVE_TOLERANCE) -> d
     run = simulate(case, relative_tolerance=relative_tolerance)
     summary = sum_up(run, last_wave(run))
     wave = summary.rippling
-    in_space = {} if summary.end_azimuth is None else {"end_azimuth": summary.end_azimuth}
+    in_space = {name: getattr(summary, name) for name in IN_SPACE} if case.in_space else {}
     stabilizers = list(enumerate(zip(summary.largest_contact_force, summary.contact_share, strict=True), 1))
     return {
         "end_inclination": summary.end_inclination,
@@ -81,5 +87,5 @@ def outcome(
     try:
         results = function(with_varied(case, dict(zip(names, values, strict=True))))
         return {name: float(result) for name, result in results.items()}
-    except (ArithmeticError, RuntimeError, ValueError, Stopped) as error:
+    except (ArithmeticError, RuntimeError, ValueError, Stopped, CannotContinue, RootsNotFound, SpiralNotFound) as error:
         return str(error) or type(error).__name__

@@ -23,7 +23,7 @@ def headings(stations: Stations) -> tuple[str, ...]:
         named[2:4] = [("azim.", "rad"), ("TVD", "m"), ("north", "m"), ("east", "m")]
     if stations.deviation is not None and stations.azimuth is not None:
         named[4:6] = []
-        named += [("off", "rad"), ("off", "rad"), ("high", "m"), ("right", "m")]
+        named += [("off\nincl.", "rad"), ("off\nazim.", "rad"), ("high", "m"), ("right", "m")]
     elif stations.deviation is not None:
         named += [("planned", "rad"), ("off plan", "rad"), ("off plan", "m")]
     return tuple(f"{name}\n({UNITS[unit].shown})" for name, unit in named)
@@ -84,10 +84,14 @@ def plan_lines(run: Trajectory, off: Deviation | DeviationInSpace) -> list[tuple
     where = (
         "at the end" if last == len(measured_depth) - 1 else f"where it ends, {UNITS['m'].text(measured_depth[last])}"
     )
-    angles = [off.inclination] if isinstance(off, Deviation) else [off.inclination, off.azimuth]
-    turned = [UNITS["rad"].text(angle[last], SIGNED) for angle in angles if not isnan(angle[last])]
+    angles = {"inclination": off.inclination}
+    if isinstance(off, DeviationInSpace):
+        angles["azimuth"] = off.azimuth
+    turned = [
+        f"{name} {UNITS['rad'].text(angle[last], SIGNED)}" for name, angle in angles.items() if not isnan(angle[last])
+    ]
     return [
-        (f"off the plan {where}", ", ".join([_away(off, int(last)), " and ".join(turned)])),
+        (f"off the plan {where}", ", ".join([_away(off, int(last)), *turned])),
         ("off the plan at most", f"{_away(off, int(most))} at {UNITS['m'].text(measured_depth[most])}"),
     ]
 

@@ -37,6 +37,7 @@ def lines(summary: Summary) -> list[tuple[str, str]]:
             f"build rate, largest over {length_text(BUILD_LENGTH, '.3g')}",
             UNITS["rad/m"].text(summary.largest_build_rate),
         ),
+        *_dogleg_lines(summary),
         *(
             line
             for i, (force, share) in stabilizers
@@ -52,6 +53,19 @@ def lines(summary: Summary) -> list[tuple[str, str]]:
         ("warning", outside_the_hole(summary.sag) if summary.sag else ""),
     ]
     return [(what, amount) for what, amount in table if amount]
+
+
+def _dogleg_lines(summary: Summary) -> list[tuple[str, str]]:
+    if summary.dogleg_severity is None or summary.largest_dogleg_severity is None:
+        return []
+    mean, largest = (
+        UNITS["rad/m"].text(severity, ".2f") for severity in (summary.dogleg_severity, summary.largest_dogleg_severity)
+    )
+    turn = UNITS["rad"].text(summary.dogleg_severity * summary.drilled_length, ".1f")
+    return [
+        ("dogleg severity, mean", f"{mean}, {turn} in all"),
+        (f"dogleg severity, largest over {length_text(BUILD_LENGTH, '.3g')}", largest),
+    ]
 
 
 def _body_lines(body: BodyContact | None) -> list[tuple[str, str]]:
