@@ -32,7 +32,8 @@ from boreprop.core.quantities import CLEARANCES, TOOLFACE_REFERENCES, fields_of,
 from boreprop.core.survey import Survey
 from boreprop.core.system import BitRock
 from boreprop.run.course import Course, acting, course_of
-from boreprop.run.engines import start_in_space
+from boreprop.run.engines import Engine, start_in_space
+from boreprop.run.trajectory import Stopped
 from fuzz_along import varied
 from fuzz_engines import EXPLAINED, any_tolerance, as_built, near_bit, wide
 from space_runs import Outputs, Vector, direction, pair, place
@@ -111,6 +112,14 @@ def in_space(random: Random, case: Case) -> tuple[Case, float]:
     return case, tolerance
 
 
+def begin(case: Case, options: Options) -> Engine:
+    """A case before its first step; what is in the way of that is raised as it is farther on."""
+    try:
+        return start_in_space(case, options)
+    except Stopped as stopped:
+        raise (stopped.__cause__ or stopped) from None
+
+
 def drill(case: Case, tolerance: float, stops: int = 1, saves: bool = False) -> Iterator[tuple[Outputs, Case]]:
     """Outputs along a case, and the case as it is there; the bit stops so many times from row to row.
 
@@ -118,7 +127,7 @@ def drill(case: Case, tolerance: float, stops: int = 1, saves: bool = False) -> 
     """
     steps = int(STEPS * (1 + case.length / case.length_scale))
     course, options = course_of(case), Options(relative_tolerance=tolerance, most_steps=steps)
-    run = start_in_space(case, options)
+    run = begin(case, options)
     for piece, (start, end) in enumerate(pairwise([*course.starts, np.inf])):
         if start >= case.length:
             return
@@ -130,7 +139,7 @@ def drill(case: Case, tolerance: float, stops: int = 1, saves: bool = False) -> 
                 inputs = acting(course, np.array([before]), np.array([piece], dtype=np.intc))
                 run.follow(np.array([length]), inputs, np.array([-1], dtype=np.intc), np.empty((0, len(run.outputs()))))
             if saves:
-                state, run = run.save(), start_in_space(case, options)
+                state, run = run.save(), begin(case, options)
                 run.restore(state)
             row = run.outputs()
             yield row, as_on(case, course, row_end, piece, int(row.get("formation", 0)))

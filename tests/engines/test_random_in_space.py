@@ -4,7 +4,9 @@ from dataclasses import replace
 
 import pytest
 
+from boreprop.core.options import Options
 from boreprop.kernel.binding import available
+from boreprop.run.engines import start_in_space
 from fuzz_space import draw, ending, examine_all, plain
 
 pytestmark = pytest.mark.skipif(not available(), reason="the kernel is not built")
@@ -19,6 +21,23 @@ def test_each_random_case_that_could_not_be_drilled_is_drilled(number: tuple[int
 def test_contacts_are_searched_for_where_those_that_follow_an_event_have_no_answer() -> None:
     case, tolerance = draw(9004, 103)
     assert ending(replace(case, length=24.0), tolerance) == ("drilled", None)
+
+
+def test_a_hole_does_not_wind_by_noise_where_clearances_are_far_smaller_than_the_tolerance() -> None:
+    case, _ = plain(2002, 6595)  # clearances of 2e-9 ℓ₁
+    inclinations = []
+    for tolerance in (1e-7, 1e-9):
+        run = start_in_space(case, Options(relative_tolerance=tolerance))
+        run.advance(0.03 * case.length_scale, case.schedule.rss_force[0], case.active_weight_on_bit)
+        inclinations.append(run.outputs()["borehole_inclination"])
+    assert inclinations[0] == pytest.approx(inclinations[1], abs=1e-6)
+
+
+def test_hardly_a_step_is_tried_in_vain_with_a_body_on_the_wall_at_many_points() -> None:
+    case, tolerance = draw(3001, 13368)
+    run = start_in_space(case, Options(relative_tolerance=tolerance))
+    run.advance(2.9, case.schedule.rss_force[0], case.active_weight_on_bit, weight_on_bit=case.weight_on_bit)
+    assert run.statistics.rejected < run.statistics.accepted / 2
 
 
 def test_random_cases_in_space_do_not_fail() -> None:

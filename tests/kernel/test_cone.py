@@ -32,6 +32,22 @@ void forces_of(int n, const double *s, const double *y_star, double q[6][2], dou
     }
 }
 
+void approached(int m, const double *K_inv, const double *y_star, double q[][2], double F[][2]) {
+    double v[MAX_PLACES][2], slope[2][2];
+    Touching of = {.touching = m};
+    for (int a = 0; a < m; a++) {
+        of.y[a] = y_star[a], of.k[a] = K_inv[a * m + a];
+        memcpy(of.K_inv[a], &K_inv[a * m], (size_t)m * sizeof *K_inv);
+    }
+    approach(&of, q, v);
+    for (int a = 0; a < m; a++) {
+        F[a][0] = F[a][1] = 0.0;
+        if (!is_beyond(v[a], y_star[a])) continue;
+        beyond_disc(v[a], y_star[a], F[a], slope);
+        for (int d = 0; d < 2; d++) F[a][d] /= -of.k[a];
+    }
+}
+
 void turned_frame(const double theta[2][S + 1], double t, double rows[3][3]) {
     Frame start = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     start = turned_along(&start, theta, t);
@@ -84,6 +100,26 @@ def test_contacts_of_stabilizers_close_together_keep_to_their_discs(rooms: ctype
         F, delta = F[: n - 1], K_inv @ F[: n - 1] + q[: n - 1]
         size = np.hypot(*F.T)
         rounding = 1e-10 * (abs(K_inv) @ size).max() + 1e-16
+        assert (np.hypot(*delta.T) <= y_star + rounding).all()
+        assert (abs(np.sum(delta * F, axis=1) + y_star * size) <= 2 * rounding * size + 1e-20).all()
+
+
+def test_contacts_of_many_supports_are_approached_from_any_start(rooms: ctypes.CDLL) -> None:
+    """Some without clearance, under loads of any size: the forces keep to what the contact problem asks for."""
+    random = np.random.default_rng(6)
+    for _ in range(150):
+        n = int(random.integers(3, 32))
+        spans = 10.0 ** np.where(random.random(n) < 0.3, random.uniform(-2.0, -1.0, n), 0.0)
+        s, y_star = np.cumsum(spans), 10.0 ** random.uniform(-8.0, -2.0, n) * (random.random(n) < 0.8)
+        q = (
+            np.outer(s**2, random.normal(size=2)) * 10.0 ** random.uniform(-6.0, -1.0)
+            + random.normal(size=(n, 2)) * 1e-6
+        )
+        K_inv = np.minimum.outer(s, s) ** 2 * (3 * np.maximum.outer(s, s) - np.minimum.outer(s, s))  # of a cantilever
+        F = np.zeros((n, 2))
+        rooms.approached(n, pointer(K_inv), pointer(y_star), pointer(q), pointer(F))
+        delta, size = K_inv @ F + q, np.hypot(*F.T)
+        rounding = 1e-10 * (K_inv @ size).max() + 1e-16
         assert (np.hypot(*delta.T) <= y_star + rounding).all()
         assert (abs(np.sum(delta * F, axis=1) + y_star * size) <= 2 * rounding * size + 1e-20).all()
 

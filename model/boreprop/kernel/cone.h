@@ -86,6 +86,14 @@ static inline void find_walls(const Touching *of, double v[MAX_PLACES][2], Walls
     for (int a = 0; a < of->touching; a++) beyond_disc(v[a], of->y[a], walls->beyond[a], walls->slope[a]);
 }
 
+/* The same where walls do not pull. */
+static inline void push_only(const Touching *of, double v[MAX_PLACES][2], Walls *walls) {
+    for (int a = 0; a < of->touching; a++) {
+        if (is_beyond(v[a], of->y[a])) continue;
+        memset(walls->beyond[a], 0, sizeof walls->beyond[a]), memset(walls->slope[a], 0, sizeof walls->slope[a]);
+    }
+}
+
 /* By how much v of one support changes with what the wall takes of another's, or its own. */
 static inline double taken(const Touching *of, int a, int b) {
     return (a == b ? of->K_inv[a][a] - of->k[a] : of->K_inv[a][b]) / of->k[b];
@@ -153,9 +161,7 @@ static inline int solve_contacts(
         find_walls(of, v, &walls);
         if (!correct_contacts(of, q, v, &walls)) {
             memcpy(v, near, (size_t)m * sizeof near[0]);
-            find_walls(of, v, &walls);
-            for (int a = 0; a < m; a++)
-                if (!is_beyond(v[a], of->y[a])) memset(walls.beyond[a], 0, sizeof walls.beyond[a]), memset(walls.slope[a], 0, sizeof walls.slope[a]);
+            find_walls(of, v, &walls), push_only(of, v, &walls);
         }
     }
     for (int a = 0; a < m; a++)
@@ -259,7 +265,7 @@ static inline double improve(const Touching *all, double q[MAX_PLACES][2], doubl
 /* Bring v to the solution over all supports, from a guess if that leads there. */
 static inline void settle_all(const Touching *all, double q[MAX_PLACES][2], double v[MAX_PLACES][2]) {
     double near[MAX_PLACES][2], off = improve(all, q, v);
-    if (!(off > ROUNDING)) return;
+    if (off <= ROUNDING) return;
     approach(all, q, near);
     if (improve(all, q, near) < off) memcpy(v, near, (size_t)all->touching * sizeof near[0]);
 }
@@ -280,11 +286,11 @@ static inline void guess_under(
         for (int a = 0; a < held.touching && i != n - 1; a++)
             for (int d = 0; d < 2; d++)
                 v[i][d] += compliance(&modes->beam, support_at(contact, n, i), held.support[a]) * F[a][d];
-    for (int a = 0; a < held.touching; a++)
-        restate(v_C[a], held.y[a], held.k[a], held.K_inv[a][a], v[held.C[a]]);
+    for (int a = 0; a < held.touching; a++) restate(v_C[a], held.y[a], held.k[a], held.K_inv[a][a], v[held.C[a]]);
 }
 
-/* The contacts that hold under q̃ among the supports that have places, with their v where k_i = K⁻¹_ii, sought from those in `contact`. */
+/* The contacts that hold under q̃ among the supports that have places, with their v where k_i = K⁻¹_ii, sought from those in
+   `contact`. */
 static inline Contact settle_discs(
     const Modes *modes, double q[MAX_PLACES][2], double v[MAX_PLACES][2], Contact contact
 ) {

@@ -59,15 +59,15 @@ typedef struct {
 static inline void find_gains(Law *law, const Mode *mode, const Places *places) {
     double eta_pi = law->inputs.eta_pi, rate = 1 / law->inputs.chi_pi;
     Linear M = linear_of(&mode->M, places), F_0 = linear_of(&mode->F_0, places);
+    double k_i[MAX_PLACES] = {0};
+    for (int k = 0; k < law->touching.touching; k++) k_i[law->touching.C[k]] = law->touching.k[k];
     law->relaxation = 1 / fabs(rate * M.theta - (law->saturated ? 0.0 : F_0.Y / eta_pi));
     for (int i = 0; i < law->count; i++) {
         law->gains[i] = fabs(M.delayed[i] / M.theta) + fabs(F_0.delayed[i]) / eta_pi;
         for (int k = 0; k < law->count; k++) {
             if (k == law->n - 1) continue;
             Linear delta = linear_of(&mode->delta[k], places), F = linear_of(&mode->F[k], places);
-            int support = support_at(&law->contact, law->n, k);
-            double k_i = compliance(&law->modes->beam, support, support);
-            law->gains[i] = larger(law->gains[i], larger(fabs(delta.delayed[i]), k_i * fabs(F.delayed[i])));
+            law->gains[i] = larger(law->gains[i], larger(fabs(delta.delayed[i]), k_i[k] * fabs(F.delayed[i])));
         }
     }
     if (!law->axial) law->gains[0] += fabs(M.g / M.theta) + fabs(F_0.g) / eta_pi;
@@ -222,8 +222,7 @@ static inline int law_here(
         at->rate[LATERAL + d] = x[ANGLE + d] - at->psi[d];
     }
     if (!slopes) return 1;
-    for (int d = 0; d < 2; d++)
-        row_slopes(&law->M, d, &across, M_by[d]), row_slopes(&law->F_0, d, &across, F_0_by[d]);
+    for (int d = 0; d < 2; d++) row_slopes(&law->M, d, &across, M_by[d]), row_slopes(&law->F_0, d, &across, F_0_by[d]);
     for (int k = 0; k < m; k++)
         for (int d = 0; d < 2; d++)
             for (int c = 0; c < COMPONENTS; c++) {

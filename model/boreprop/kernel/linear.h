@@ -2,7 +2,7 @@
 #ifndef BOREPROP_LINEAR_H
 #define BOREPROP_LINEAR_H
 
-#include <math.h>
+#include "numbers.h"
 
 enum { SIZE = 64 }; /* of the largest matrix: that of all supports which may touch a wall at once */
 
@@ -36,6 +36,38 @@ static inline void inverse(int size, const double matrix[SIZE][SIZE], double res
     }
     for (int i = 0; i < size; i++)
         for (int j = 0; j < size; j++) result[i][j] = rows[i][size + j];
+}
+
+/* A symmetric matrix, of which the upper half is there, or what is left of it when it has been eliminated. */
+typedef struct {
+    int size;
+    double row[SIZE][SIZE];
+} Symmetric;
+
+/* Eliminate a positive matrix. By rounding it may be none where supports are close together. */
+static inline void eliminate_symmetric(Symmetric *matrix) {
+    double least[SIZE];
+    for (int i = 0; i < matrix->size; i++) least[i] = 1e-16 * matrix->row[i][i];
+    for (int column = 0; column < matrix->size; column++) {
+        const double *top = matrix->row[column];
+        matrix->row[column][column] = larger(top[column], least[column]);
+        for (int i = column + 1; i < matrix->size; i++) {
+            double factor = top[i] / top[column];
+            for (int j = i; j < matrix->size; j++) matrix->row[i][j] -= factor * top[j];
+        }
+    }
+}
+
+/* Solve its equations: the right side becomes the solution. */
+static inline void solve_symmetric(const Symmetric *eliminated, double x[SIZE]) {
+    int size = eliminated->size;
+    for (int column = 0; column < size; column++) {
+        const double *top = eliminated->row[column];
+        double factor = x[column] / top[column];
+        for (int j = column + 1; j < size; j++) x[j] -= factor * top[j];
+    }
+    for (int i = size - 1; i >= 0; i--)
+        x[i] = (x[i] - dot(size - 1 - i, &eliminated->row[i][i + 1], &x[i + 1])) / eliminated->row[i][i];
 }
 
 #endif
