@@ -364,6 +364,7 @@ static inline void displacement(const Step *step, double xi, double *x, double *
 /* The same as coordinates of a place: sideways and down. */
 static inline void move_along(const Step *step, double xi, double path[AXES]) {
     double x, z;
+    if (xi == step->xi) return;
     displacement(step, xi, &x, &z);
     path[0] += x, path[1] += z;
 }

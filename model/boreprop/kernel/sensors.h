@@ -90,10 +90,10 @@ static inline void show_axis(
 static inline void read_sensor(Integrator *p, int i, double xi) {
     const Sensor *sensor = &p->scaled.sensor[i];
     Reading *reading = &p->now.reading[i];
-    double number = floor(smaller(xi / sensor->interval + EARLY, MOST_READINGS)), x[COMPONENTS];
-    double axis[DIRECTIONS], noise[2];
+    double due = smaller(xi / sensor->interval + EARLY, MOST_READINGS), x[COMPONENTS], axis[DIRECTIONS], noise[2];
     Bending bending[DIRECTIONS];
-    if (number < reading->count) return;
+    if (due < reading->count) return;
+    double number = floor(due);
     double at = smaller(number * sensor->interval, xi);
     step_state(&p->now.step, at, x);
     bend(p, at, x, bending);
