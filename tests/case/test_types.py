@@ -1,16 +1,19 @@
 """Parts of a case made in Python: lists and arrays become tuples, other types are refused in one line."""
 
+from collections.abc import Callable
 from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from boreprop import BitRock, Case, Formation, InputSchedule, Schedule, Survey, Wear, paper_case
+import boreprop
+from boreprop import BitRock, Formation, InputSchedule, Schedule, Wear, paper_case
 from boreprop.core.errors import ParameterError
 from boreprop.core.quantities import QUANTITIES
 
-NEW: Any = replace  # for values that types forbid
+API: Any = boreprop  # for values that types forbid
+NEW: Any = replace
 CASE = paper_case()
 PARTS = (
     CASE,
@@ -53,18 +56,18 @@ def test_lists_and_arrays_become_tuples(make: Any) -> None:
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda make: make(Schedule)(toolface_reference="north"), r"toolface_reference: must be a list, such as \['no"),
-        (lambda make: make(Survey)((0.0, 9.0), (0.1, 0.2), 0.7), r"azimuth: must be a list, such as \[0.7\], got 0.7$"),
-        (lambda make: make(Survey)((0.0, 9.0), (0.1, "2°")), r"inclination\[2\]: must be a number, got '2°'$"),
-        (lambda make: make(replace)(CASE, survey=((0.0,), (0.0,))), r"survey: must be of the type Survey, got \(\(0.0,\), \("),
-        (lambda make: make(replace)(CASE.bha, axial_load="no"), r"axial_load: must be True or False, got 'no'$"),
-        (lambda make: make(Schedule.by_depth)(0.0, (1e3,), 0.0), r"measured_depth: must be a list, such as \[0.0\]"),
-        (lambda make: make(Case)(*[None] * 6), r"bha: must be of the type BottomHoleAssembly, got None$"),
+        (lambda: API.Schedule(toolface_reference="north"), r"toolface_reference: must be a list, such as \['north'\]"),
+        (lambda: API.Survey((0.0, 9.0), (0.1, 0.2), 0.7), r"azimuth: must be a list, such as \[0.7\], got 0.7$"),
+        (lambda: API.Survey((0.0, 9.0), (0.1, "2°")), r"inclination\[2\]: must be a number, got '2°'$"),
+        (
+            lambda: NEW(CASE, survey=((0.0,), (0.0,))),
+            r"survey: must be of the type Survey, got \(\(0.0,\), \(0.0,\)\)$",
+        ),
+        (lambda: NEW(CASE.bha, axial_load="no"), r"axial_load: must be True or False, got 'no'$"),
+        (lambda: API.Schedule.by_depth(0.0, (1e3,), 0.0), r"measured_depth: must be a list, such as \[0.0\], got 0.0"),
+        (lambda: API.Case(*[None] * 6), r"bha: must be of the type BottomHoleAssembly, got None$"),
     ],
 )
-def test_what_is_wrong_is_told_with_what_would_be_right(call: Any, message: str) -> None:
-    def anything(kind: Any) -> Any:
-        return kind
-
+def test_what_is_wrong_is_told_with_what_would_be_right(call: Callable[[], object], message: str) -> None:
     with pytest.raises(ParameterError, match=message):
-        call(anything)
+        call()

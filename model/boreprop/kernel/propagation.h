@@ -5,11 +5,11 @@
 
 #include "integrator.h"
 
-/* Take over inputs where the bit is, in the state `x`: find the regime under them, unless what it answers is known, and mark
-   the jump of the direction of the hole, which was Θ so far. */
+/* Take over inputs where the bit is, in the state `x`: find the regime under them, by the answer if that is known, which else
+   is found, and mark the jump of the direction of the hole, which was Θ so far. */
 static inline Status restart(
-    Integrator *p, ScaledInputs inputs, const double x[COMPONENTS], const double Theta[DIRECTIONS],
-    const Response *answer, Problem *problem
+    Integrator *p, ScaledInputs inputs, const double x[COMPONENTS], const double Theta[DIRECTIONS], int known,
+    Response *answer, Problem *problem
 ) {
     State *now = &p->now;
     double jump = 0.0;
@@ -18,12 +18,12 @@ static inline Status restart(
     p->exit_known = 0;
     bear(p, inputs.W);
     if (lands(p) && touch_down(p, now->xi, x, problem) != DONE) return FAILED;
-    const Response at = answer ? *answer : respond(p, x, inputs);
+    if (!known) *answer = respond(p, x, inputs);
     for (int d = 0; d < DIRECTIONS; d++) {
-        if (!isfinite(at.Theta[d]) || !isfinite(at.F_0[d])) return failed(p, NOT_FINITE, now->xi, problem);
-        jump = larger(jump, fabs(at.Theta[d] - Theta[d]));
+        if (!isfinite(answer->Theta[d]) || !isfinite(answer->F_0[d])) return failed(p, NOT_FINITE, now->xi, problem);
+        jump = larger(jump, fabs(answer->Theta[d] - Theta[d]));
     }
-    change_regime(p, at.regime);
+    change_regime(p, answer->regime);
     add_kink(&now->kinks, p->scaled.n, now->xi, 1, jump);
     if (p->scaled.points) {
         clear_around(p);
@@ -43,9 +43,9 @@ static inline Status steer(Integrator *p, ScaledInputs inputs, Problem *problem)
     Response so_far = respond(p, x, before), answer;
     int known = answer_is_known(p, x, inputs, before, &so_far, &answer);
     move_path(now, now->xi);
-    Status status = restart(p, inputs, x, so_far.Theta, known ? &answer : NULL, problem);
+    Status status = restart(p, inputs, x, so_far.Theta, known, &answer, problem);
     if (status != DONE) return status;
-    double bent = curvature_jump(p, x, before, inputs);
+    double bent = curvature_jump(p, x, before, inputs, &answer);
     if (!isfinite(bent)) return failed(p, NOT_FINITE, now->xi, problem);
     if (bent != 0) add_kink(&now->kinks, p->scaled.n, now->xi, 2, bent);
     return DONE;
@@ -86,12 +86,12 @@ static inline Status change_clearances(Integrator *p, const double *y_star, Prob
     if (!set_out(p) || !has_room(p)) return FULL;
     ScaledInputs inputs = inputs_here(now);
     step_state(&now->step, now->xi, x);
-    Response so_far = respond(p, x, inputs);
+    Response so_far = respond(p, x, inputs), answer;
     move_path(now, now->xi);
     memcpy(now->y_star, y_star, (size_t)(p->scaled.n - 1) * sizeof *y_star);
     now->cleared = now->xi;
     clear(p);
-    Status status = restart(p, inputs, x, so_far.Theta, NULL, problem);
+    Status status = restart(p, inputs, x, so_far.Theta, 0, &answer, problem);
     if (status != DONE) go_back(p);
     p->under_way = 0;
     return status;
@@ -159,6 +159,7 @@ static inline void prepare(
 static inline Status begin(Integrator *p, const Survey *survey, ScaledInputs inputs, Problem *problem) {
     State *now = &p->now;
     double reach = LOOK_BACK + p->scaled.s[p->scaled.n - 1], x[COMPONENTS] = {0};
+    Response answer;
     Heading heading = take_survey(&now->hole, survey, p->length_scale, reach);
     take_kinks(&now->hole, &now->kinks);
     memcpy(x, heading.angle, sizeof heading.angle);
@@ -167,7 +168,7 @@ static inline Status begin(Integrator *p, const Survey *survey, ScaledInputs inp
         if (!check_finite(Q_STATION_RATE, 0, piece(&now->hole, k)->rate, problem)) return FAILED;
     find_places(now, &p->scaled, now->xi);
     if (p->scaled.points) start_noting(now);
-    if (restart(p, inputs, x, heading.angle, NULL, problem) != DONE) {
+    if (restart(p, inputs, x, heading.angle, 0, &answer, problem) != DONE) {
         if (problem->code == NOT_FINITE) wrong(problem, NO_START, Q_PARAMETERS, 0, NAN, NAN);
         return FAILED;
     }

@@ -55,18 +55,19 @@ static inline void pull_after(Integrator *p, const Trial *trial, const double x[
     pull_under(p, mode_of(&p->modes, &p->now.regime.contact), &loads, pull);
 }
 
-/* The regime in the state `x`, and the direction of the hole there. */
+/* The regime in the state `x`, the direction of the hole there, and what acts on the bit. */
 typedef struct {
     Regime regime;
-    double Theta[DIRECTIONS], F_0[DIRECTIONS];
+    double Theta[DIRECTIONS], F_0[DIRECTIONS], M;
 } Response;
 
-/* What it answers in given rock where F_0 and the contacts are these. */
-static inline Response respond_in(ScaledInputs inputs, double theta, double F_0, Contact contact) {
+/* What it answers in given rock where contacts and what acts on the bit are these. */
+static inline Response respond_in(ScaledInputs inputs, double theta, Contact contact, double F_0, double M) {
     Response response = {
         {contact, side_beyond(F_0 / inputs.eta_pi, -inputs.psi_star, inputs.psi_star, ROUNDING)},
         {theta - bit_tilt(F_0, inputs.eta_pi, inputs.psi_star)},
-        {F_0}
+        {F_0},
+        M
     };
     return response;
 }
@@ -75,37 +76,32 @@ static inline Response respond(Integrator *p, const double x[COMPONENTS], Scaled
     Loads loads;
     find_loads(p, p->now.xi, x, inputs.F_rss, &loads);
     const Mode *mode = settle(&p->modes, &loads, &p->now.regime.contact);
-    return respond_in(inputs, x[ANGLE], row_value(&mode->F_0, &loads), mode->contact);
+    return respond_in(inputs, x[ANGLE], mode->contact, row_value(&mode->F_0, &loads), row_value(&mode->M, &loads));
 }
 
 /* Whether it is known what it answers under other inputs than those `before`, where it did so far, and what: unless forces
-   change, F_0 does not. */
+   change, what acts on the bit does not. */
 static inline int answer_is_known(
     const Integrator *p, const double x[COMPONENTS], ScaledInputs inputs, ScaledInputs before, const Response *so_far,
     Response *answer
 ) {
-    *answer = respond_in(inputs, x[ANGLE], so_far->F_0[0], so_far->regime.contact);
+    *answer = respond_in(inputs, x[ANGLE], so_far->regime.contact, so_far->F_0[0], so_far->M);
     return inputs.F_rss == before.F_rss && inputs.W == before.W && !p->scaled.points;
 }
 
-/* The jump of Θ' where ε, or the slope of an input, changes in the present regime. */
+/* The jump of Θ' where ε, or the slope of an input, changes in the present regime, which answers so. */
 static inline double curvature_jump(
-    Integrator *p, const double x[COMPONENTS], ScaledInputs before, ScaledInputs inputs
+    Integrator *p, const double x[COMPONENTS], ScaledInputs before, ScaledInputs inputs, const Response *answer
 ) {
     double bend = inputs.F_rss_slope - before.F_rss_slope, turn = inputs.eta_pi_slope - before.eta_pi_slope;
-    int saturation = p->now.regime.saturation, on_ramp = bend != 0 || turn != 0, turns = turns_anew(&inputs, &before);
+    int saturation = p->now.regime.saturation;
     double bent = -saturation * (inputs.psi_star_slope - before.psi_star_slope); /* jump of Θ' = θ' − ψ' */
-    if ((saturation || !on_ramp) && !turns) return fabs(bent);
-    Loads loads;
-    find_loads(p, p->now.xi, x, inputs.F_rss, &loads);
-    const Mode *mode = mode_of(&p->modes, &p->now.regime.contact);
-    if (turns) { /* θ' = M/(εηΠ) */
-        double moment = row_value(&mode->M, &loads);
-        bent += present_law(p)->Theta.theta * moment / inputs.eta_pi * (1 / epsilon(&inputs) - 1 / epsilon(&before));
-    }
-    if (on_ramp && !saturation) { /* (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ */
-        double psi = row_value(&mode->F_0, &loads) / inputs.eta_pi;
-        bent -= (bend * mode->F_0.rss - turn * psi) / inputs.eta_pi;
+    (void)x;
+    if (turns_anew(&inputs, &before)) /* θ' = M/(εηΠ) */
+        bent += present_law(p)->Theta.theta * answer->M / inputs.eta_pi * (1 / epsilon(&inputs) - 1 / epsilon(&before));
+    if ((bend != 0 || turn != 0) && !saturation) { /* (F_0/ηΠ)' = (F_0' − ψ ηΠ')/ηΠ */
+        double psi = answer->F_0[0] / inputs.eta_pi;
+        bent -= (bend * mode_of(&p->modes, &p->now.regime.contact)->F_0.rss - turn * psi) / inputs.eta_pi;
     }
     return fabs(bent);
 }

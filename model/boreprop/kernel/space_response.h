@@ -150,16 +150,15 @@ static inline void slope_of_hole(
     law_here(&law, x, ahead, &view, &behind, delayed[0], law.s_1, 1, at);
 }
 
-/* The jump of Θ⃗' where ε, or the slope of an input, changes in the present regime. */
+/* The jump of Θ⃗' where ε, or the slope of an input, changes in the present regime, which answers so. */
 static inline double curvature_jump(
-    Integrator *p, const double x[COMPONENTS], ScaledInputs before, ScaledInputs inputs
+    Integrator *p, const double x[COMPONENTS], ScaledInputs before, ScaledInputs inputs, const Response *answer
 ) {
     int on_ramp = inputs.F_rss_slope != before.F_rss_slope || inputs.eta_pi_slope != before.eta_pi_slope ||
                   inputs.psi_star_slope != before.psi_star_slope;
     double bent = 0.0, turn = turns_anew(&inputs, &before) ? 1 - epsilon(&inputs) / epsilon(&before) : 0.0;
     if (!on_ramp && turn == 0.0) return 0.0;
-    Response here = respond(p, x, inputs);
-    Reply now = here.at, soon = here.at, would = here.at;
+    Reply now = answer->at, soon = answer->at, would = answer->at;
     ScaledInputs other = inputs;
     other.F_rss_slope = before.F_rss_slope, other.eta_pi_slope = before.eta_pi_slope;
     other.psi_star_slope = before.psi_star_slope;
