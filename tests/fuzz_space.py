@@ -50,6 +50,7 @@ HAIR, GROWS = 1e-12, 1e4  # relative; how much more than this a rounding may gro
 SAME = 100.0  # tolerances
 TURN = 2.0  # of the whole world, rad
 ROUNDING = 1e-9  # of the largest number in a condition of the discs
+NOTHING = 1e-18  # m: rounding of the hole where nothing bends the BHA
 BATCH = 20  # cases that a process gets at once
 
 
@@ -164,7 +165,7 @@ def fault_of(row: Outputs, case: Case) -> str | None:
     largest = max((float(np.hypot(*force)) for force in forces), default=0.0)
     for i, (force, clearance) in enumerate(zip(forces, case.bha.stabilizer_clearances, strict=True), 1):
         delta, size = pair(row, "stabilizer_deflection", i), float(np.hypot(*force))
-        room = ROUNDING * (clearance + largest * case.bha.stabilizer_positions[-1] / case.bha.force_scale)
+        room = NOTHING + ROUNDING * (clearance + largest * case.bha.stabilizer_positions[-1] / case.bha.force_scale)
         if np.hypot(*delta) > clearance + room:
             return f"stabilizer {i} is {np.hypot(*delta) - clearance:g} m beyond the wall"
         if abs(force @ delta + clearance * size) > room * (size + ROUNDING * largest):
