@@ -15,7 +15,7 @@
 /* A row of the beam without contacts on the state, in either direction:
    theta θ + Y Y + Σ_i delayed[i] Y(ξ−s_i) + g G + rss F_RSS + end times the high side. */
 typedef struct {
-    double theta, Y, delayed[MAX_PLACES], g, rss, end;
+    double theta, Y, g, rss, end, delayed[MAX_PLACES];
 } Linear;
 
 static inline Linear linear_of(const Row *row, const Places *places) {

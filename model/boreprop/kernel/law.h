@@ -18,7 +18,7 @@
 /* A `Row` under given inputs, on the state:
    theta θ + Y Y + Σ_i delayed[i] Y(ξ−s_i) + g times the sine + constant + slope (ξ − ξ of the inputs). */
 typedef struct {
-    double theta, Y, delayed[MAX_PLACES], g, constant, slope;
+    double theta, Y, g, constant, slope, delayed[MAX_PLACES];
 } Linear;
 
 /* `scale` times `row`, with e_i = Y − Y(ξ−s_i) − s_i θ put in. */

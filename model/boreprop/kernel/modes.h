@@ -32,12 +32,12 @@ static inline int support_at(const Contact *contact, int n, int place) {
    that goes with the weight. */
 typedef struct {
     int count;
-    double e[MAX_PLACES], F_rss, g;
+    double F_rss, g, e[MAX_PLACES];
 } Loads;
 
 /* A linear function of the loads: e · e_i + rss · F_RSS + g times the sine + constant. */
 typedef struct {
-    double e[MAX_PLACES], rss, g, constant;
+    double rss, g, constant, e[MAX_PLACES];
 } Row;
 
 /* Value under `loads`. */
@@ -71,7 +71,7 @@ typedef struct {
 
 /* q̃ at support i, which has this place: its deflection without contacts. */
 static inline Row free_deflection(const Beam *beam, int i, int place) {
-    Row q = {{0}, beam->delta_rss[i], beam->delta_g[i], -beam->delta_e[i] * beam->end};
+    Row q = {beam->delta_rss[i], beam->delta_g[i], -beam->delta_e[i] * beam->end, {0}};
     q.e[place] = 1.0, q.e[beam->n - 1] = beam->delta_e[i];
     return q;
 }
@@ -114,7 +114,7 @@ static inline void make_chained_mode(Mode *mode, const Beam *beam, const double 
     int n = beam->n, places = place_count(contact, n), supports = n, at[MAX_SUPPORTS], ends[MAX_PLACES + 1];
     signed char holds[MAX_SUPPORTS] = {0};
     Acting nothing = {0.0, 0.0}, weight = {1.0, 0.0}, pads = {0.0, 1.0};
-    Row zero = {{0}, 0, 0, 0};
+    Row zero = {0, 0, 0, {0}};
     Chain chain;
     mode->contact = contact, mode->M = mode->F_0 = zero;
     for (int i = 0; i < places; i++) {
@@ -147,7 +147,7 @@ static inline void make_chained_mode(Mode *mode, const Beam *beam, const double 
 static inline void make_mode(Mode *mode, const Beam *beam, const double *y_star, Contact contact) {
     int n = beam->n, places = place_count(contact, n), C[MAX_PLACES], support[MAX_PLACES], touching = 0;
     double K_inv_CC[SIZE][SIZE], K_C[SIZE][SIZE], factors[MAX_PLACES];
-    Row to_wall[MAX_PLACES], zero = {{0}, 0, 0, 0};
+    Row to_wall[MAX_PLACES], zero = {0, 0, 0, {0}};
     const Row *rows[MAX_PLACES], *F[MAX_PLACES];
     if (beam->stepped) {
         make_chained_mode(mode, beam, y_star, contact);
