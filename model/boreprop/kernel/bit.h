@@ -26,7 +26,6 @@ typedef struct {
     ScaledInputs inputs;
     double inputs_xi; /* where they were taken over */
     Regime regime;
-    Places places;                  /* of the regime */
     double y_star[MAX_STABILIZERS]; /* clearances of the stabilizers, and … */
     double cleared;                 /* … where they got them */
     int layer;                      /* of the ground, in which the bit is, and … */
@@ -35,12 +34,22 @@ typedef struct {
     double origin[DIRECTIONS];      /* of the lateral coordinates */
     double cosine; /* of the inclination at which the weight acts along the beam; 0 if the axial load does not count */
     Step step;
-    Hole hole;
-    Kinks kinks;
     Inclinations inclinations;
     double accepted, rejected, events; /* counts of steps, of rejected trials and of bounds met */
     Reading reading[MAX_SENSORS];
+    Places places; /* of the regime; from here on, each ends in a list of as many numbers as there are places */
+    Hole hole;
+    Kinks kinks;
 } State;
+
+/* Copy a state, of each list no more than is in use: there is a copy for each step. */
+static inline void copy_state(State *to, const State *from) {
+    size_t used = (size_t)from->places.count;
+    memcpy(to, from, offsetof(State, places));
+    memcpy(&to->places, &from->places, offsetof(Places, s) + used * sizeof *from->places.s);
+    memcpy(&to->hole, &from->hole, offsetof(Hole, cursor) + used * sizeof *from->hole.cursor);
+    memcpy(&to->kinks, &from->kinks, offsetof(Kinks, ahead) + used * sizeof *from->kinks.ahead);
+}
 
 /* The points of the body at the end of the last step: where they are, from the origin of the lateral coordinates, how far
    from the wall, and how much that changed along the step. Of points that are far from it, the last two are the

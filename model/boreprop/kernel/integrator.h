@@ -277,7 +277,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
 /* Go back to where a call has set out that has not arrived. */
 static inline void go_back(Integrator *p) {
     if (!p->under_way) return;
-    p->now = p->before;
+    copy_state(&p->now, &p->before);
     copy_around(&p->around, &p->around_before, p->scaled.points);
     *kink(&p->now.kinks, p->now.kinks.end - 1) = p->last_kink;
     p->law_known = p->exit_known = p->under_way = 0;
@@ -290,7 +290,7 @@ static inline void go_back(Integrator *p) {
 static inline int set_out(Integrator *p) {
     if (p->under_way) return 1;
     if (!has_room(p)) return 0;
-    p->before = p->now;
+    copy_state(&p->before, &p->now);
     copy_around(&p->around_before, &p->around, p->scaled.points);
     p->last_kink = *kink(&p->now.kinks, p->now.kinks.end - 1);
     p->under_way = 1;

@@ -80,8 +80,7 @@ static inline void find_harm(double h, double theta_weight, int many, Harm *harm
     for (int m = 1; m <= SMOOTHEST_KINK; m++) {
         twice *= 2 * h;
         harm->by[m] = twice / factorial[m + 1];
-        double errs = power * larger(PASSED_Y[m] * h, theta_weight * PASSED_THETA[m]);
-        if (many) harm->by[m] = smaller(harm->by[m], errs);
+        if (many) harm->by[m] = smaller(harm->by[m], power * larger(PASSED_Y[m] * h, theta_weight * PASSED_THETA[m]));
         power *= h;
     }
 }

@@ -15,7 +15,7 @@ enum { MAX_PLACES = SIZE / DIRECTIONS, MAX_WATCHED = MAX_PLACES - MAX_STABILIZER
 /* The places behind the bit where the hole has a say: how many, how far behind, and the least of these distances. */
 typedef struct {
     int count;
-    double s[MAX_PLACES], nearest;
+    double nearest, s[MAX_PLACES];
 } Places;
 
 /* Where a sensor is, how it reads the inclination, and the clearance of a centred body there. */
