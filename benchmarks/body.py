@@ -4,19 +4,15 @@ python benchmarks/body.py
 """
 
 from dataclasses import replace
-from pathlib import Path
-from statistics import median
-from time import process_time
 
 import numpy as np
+from ground import EXAMPLES, compare
 
 from boreprop.case.case import Case
 from boreprop.case.file import load_case
-from boreprop.run.simulate import SAMPLE_INTERVAL, simulate
+from boreprop.run.simulate import simulate
 
-EXAMPLES = Path(__file__).parents[1] / "examples"
-LENGTH, POINTS, ROUNDS = 1500.0, 20, 15  # m
-INTERVALS = (1.0, SAMPLE_INTERVAL)  # m
+LENGTH, POINTS = 1500.0, 20  # m
 CLEARANCE, NEAR = 0.1, 0.01  # m: of points far from the wall; how near others come to it
 
 
@@ -38,35 +34,21 @@ def distance(case: Case) -> float:
     return float(run["wall_distance"].min())
 
 
-def seconds(case: Case, interval: float) -> float:
-    """CPU time of a run with rows at an interval, m, in s."""
-    begin = process_time()
-    simulate(case, sample_interval=interval, engine="native")
-    return process_time() - begin
-
-
-def compare(case: Case, title: str) -> None:
+def beside(title: str, case: Case) -> None:
     """Print what points cost a case."""
     far = with_body(case, CLEARANCE)
     near = with_body(case, CLEARANCE - distance(far) + NEAR)
-    cases = {f"{1e3 * distance(each):.0f} mm": each for each in (far, near)}
-    for interval in INTERVALS:
-        ratios: dict[str, list[float]] = {label: [] for label in cases}
-        for _ in range(ROUNDS):
-            alone = seconds(case, interval)
-            for label, each in cases.items():
-                ratios[label].append(seconds(each, interval) / alone)
-        print(f"{title}, rows of {interval:g} m, {case.length:g} m, {1e3 * alone:.1f} ms of CPU without a body")
-        for label, some in ratios.items():
-            print(f"    {POINTS} points that come to {label} from the wall: {median(some):.2f} times that")
+    compare(
+        title, case, {f"{POINTS} points to {1e3 * distance(each):.0f} mm from the wall": each for each in (far, near)}
+    )
 
 
 def main() -> None:
     """Print the ratios."""
     for name in ("paper_case", "build_section"):
         case = replace(load_case(EXAMPLES / f"{name}.toml"), length=LENGTH)
-        compare(case, name)
-        compare(replace(case, dimensions=3), f"{name} in space")
+        beside(name, case)
+        beside(f"{name} in space", replace(case, dimensions=3))
 
 
 if __name__ == "__main__":

@@ -50,6 +50,21 @@ def seconds(case: Case, interval: float) -> float:
     return process_time() - begin
 
 
+def compare(title: str, case: Case, others: dict[str, Case]) -> None:
+    """Print how many times the CPU time of a case others take, medians by label, with rows at each interval."""
+    for interval in INTERVALS:
+        ratios: dict[str, list[float]] = {label: [] for label in others}
+        for _ in range(ROUNDS):
+            alone = seconds(case, interval)
+            for label, other in others.items():
+                ratios[label].append(seconds(other, interval) / alone)
+        print(
+            f"{title}, rows of {interval:g} m, {case.length:g} m, {1e3 * alone:.1f} ms of CPU without anything of this"
+        )
+        for label, some in ratios.items():
+            print(f"    {label}: {median(some):.2f} times that")
+
+
 def main() -> None:
     """Print the ratios."""
     changed: dict[str, Callable[[Case], Case]] = {
@@ -59,16 +74,7 @@ def main() -> None:
     }
     for name in ("paper_case", "build_section"):
         case = replace(load_case(EXAMPLES / f"{name}.toml"), length=LENGTH)
-        cases = {label: change(case) for label, change in changed.items()}
-        for interval in INTERVALS:
-            ratios: dict[str, list[float]] = {label: [] for label in cases}
-            for _ in range(ROUNDS):
-                alone = seconds(case, interval)
-                for label, each in cases.items():
-                    ratios[label].append(seconds(each, interval) / alone)
-            print(f"{name}, rows of {interval:g} m, {LENGTH:g} m, {1e3 * alone:.1f} ms of CPU without anything of this")
-            for label, some in ratios.items():
-                print(f"    {label}: {median(some):.2f} times that")
+        compare(name, case, {label: change(case) for label, change in changed.items()})
 
 
 if __name__ == "__main__":
