@@ -34,7 +34,8 @@ static inline void present_shape(const Drilling *d, const Present *at, const dou
    axis of the bit. */
 static inline Sag present_sag(Drilling *d) {
     const State *now = &d->integrator.now;
-    Present at = present(d);
+    Present at;
+    find_present(d, &at);
     double s[POINTS_ALONG_BHA], v[POINTS_ALONG_BHA], largest = 0.0,
                                                      reach = d->integrator.scaled.s[d->integrator.scaled.n - 1];
     int found = 0;
