@@ -233,7 +233,7 @@ static inline Status drilling_advance(Drilling *d, double drilled_length, Inputs
     double xi = drilled_length / length_scale(&d->system);
     ScaledInputs scaled; /* of no use where layers stand in */
     if (!(same && drilled_length >= d->drilled_length && go_straight_on(d, xi))) {
-        if (!(there ? scale_checked(d, inputs, &scaled, problem) : let_act(d, inputs, problem))) return FAILED;
+        if (!(there ? same || scale_checked(d, inputs, &scaled, problem) : let_act(d, inputs, problem))) return FAILED;
         if (!check_number(Q_DRILLED_LENGTH, 0, drilled_length, -INFINITY, d->drilled_length, INFINITY, problem))
             return FAILED;
         Status status = there ? drill_through(d, xi, inputs, problem) : drill(&d->integrator, xi, d->scaled, problem);
