@@ -201,13 +201,14 @@ typedef struct {
     int count, next, last;
 } Modes;
 
-/* What acts on the beam of a mode under `loads`. */
-static inline Bending bending_of(const Mode *mode, const Loads *loads, int n) {
-    Bending bending = {.F_rss = loads->F_rss, .g = loads->g};
-    bending.M = row_value(&mode->M, loads), bending.F_0 = row_value(&mode->F_0, loads);
+/* Find what acts on the beam of a mode under `loads`. */
+static inline void find_bending(const Mode *mode, const Loads *loads, const Scaled *scaled, Bending *bending) {
+    int n = scaled->n;
+    memset(bending->F, 0, (size_t)(n + scaled->points) * sizeof *bending->F);
+    bending->F_rss = loads->F_rss, bending->g = loads->g;
+    bending->M = row_value(&mode->M, loads), bending->F_0 = row_value(&mode->F_0, loads);
     for (int i = 0; i < loads->count; i++)
-        if (mode->contact.of[i]) bending.F[support_at(&mode->contact, n, i)] = row_value(&mode->F[i], loads);
-    return bending;
+        if (mode->contact.of[i]) bending->F[support_at(&mode->contact, n, i)] = row_value(&mode->F[i], loads);
 }
 
 /* Make the beam as it is under an axial load; no mode is known then. */

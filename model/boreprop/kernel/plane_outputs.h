@@ -46,7 +46,8 @@ static inline void find_present(Drilling *d, Present *at) {
     at->x = path[0], at->z = path[1];
     find_body(p, state, at);
     if (!p->scaled.sensors) return;
-    Bending bending = bending_of(at->mode, &at->loads, p->scaled.n);
+    Bending bending;
+    find_bending(at->mode, &at->loads, &p->scaled, &bending);
     find_sensed(p, state, &bending, at->sensed, at->told);
 }
 

@@ -19,7 +19,7 @@ static inline double inclination_under(Integrator *p, double theta, const Loads 
 static inline void bend(Integrator *p, double xi, const double x[COMPONENTS], Bending bending[DIRECTIONS]) {
     Loads loads;
     find_loads(p, xi, x, force_at(&p->now, xi), &loads);
-    bending[0] = bending_of(settle(&p->modes, &loads, &p->now.regime.contact), &loads, p->scaled.n);
+    find_bending(settle(&p->modes, &loads, &p->now.regime.contact), &loads, &p->scaled, bending);
 }
 
 /* What bends it under loads in a mode. */

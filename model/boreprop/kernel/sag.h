@@ -18,7 +18,8 @@ static inline void present_shape(const Drilling *d, const Present *at, const dou
     int n = p->scaled.n;
     double e_n = at->loads.e[n - 1], lambda_ = p->scaled.s[n - 1];
     if (beam->stepped) {
-        Bending bending = bending_of(at->mode, &at->loads, n);
+        Bending bending;
+        find_bending(at->mode, &at->loads, &p->scaled, &bending);
         beam_shape(beam, &bending, n + p->scaled.points, 1.0, POINTS_ALONG_BHA, s, v);
         return;
     }
