@@ -15,6 +15,7 @@ from boreprop.analysis.space import direction_of
 from boreprop.analysis.summary import summarize
 from boreprop.arrays import Floats
 from boreprop.case.case import Case
+from boreprop.errors import MissingColumn
 from boreprop.kernel.binding import available
 from boreprop.report.tables.summary import lines
 from boreprop.run.simulate import simulate
@@ -46,6 +47,7 @@ class Made:
     seed: int = 1
     turns: int = 0  # after so many waves the sense changes, again and again; 0: never
     waves: float = 20.0
+    uneven: bool = False  # each row is anywhere in its share of the length
 
     def run(self) -> Trajectory:
         """The rows of the hole, as if of a run."""
@@ -61,9 +63,11 @@ class Made:
         T = (T / np.linalg.norm(T, axis=1)[:, None]).T
         position = np.concatenate((np.zeros((3, 1)), np.cumsum((T[:, 1:] + T[:, :-1]) / 2, axis=1)), axis=1) * x[1]
         rng = np.random.default_rng(self.seed)
-        x, T, position = x[::fine], T[:, ::fine], position[:, ::fine]
+        rows = np.arange(0, len(x) - fine, fine)
+        rows += rng.integers(0, fine, len(rows)) if self.uneven else 0
+        steps, x, T, position = np.gradient(x[rows]), x[rows], T[:, rows], position[:, rows]
         error = rng.normal(scale=radians(self.noise), size=T.shape)
-        T, position = T + error, position + np.cumsum(error, axis=1) * x[1]
+        T, position = T + error, position + np.cumsum(error * steps, axis=1)
         return Trajectory(
             {
                 "drilled_length": x,
@@ -90,6 +94,7 @@ def made(draw: st.DrawFn) -> Made:
         build=draw(st.floats(-1.0, 1.0)),
         walk=draw(st.floats(-2.0, 2.0)),
         rows=draw(st.floats(10.0, 60.0)),
+        uneven=draw(st.booleans()),
         noise=draw(st.floats(0.0, 0.1)) * major,
         seed=draw(st.integers(0, 10**6)),
     )
@@ -140,6 +145,25 @@ def test_no_noise_makes_a_plane_wind_or_turns_a_spiral_round(
 def test_drift_and_noise_alone_are_no_wave_in_space(hole: Made) -> None:
     straight = replace(hole, major=0.0, noise=max(hole.noise, 0.01))
     assert find_rippling(straight.run()).state is State.NONE
+
+
+def test_a_spiral_of_some_microns_is_measured_in_a_hole_that_turns() -> None:
+    """Where the axis is metres off the chord of a wave: that of the trend must not be seen in the ellipse."""
+    hole = Made(pitch=9.0, major=2e-3, inclination=30.0, build=3.0, walk=3.0, rows=19.3)
+    found = find_rippling(hole.run())
+    assert found.ellipse is not None
+    assert found.ellipse.shape is Shape.RIGHT
+    axes = [found.ellipse.major, found.ellipse.minor]
+    assert axes == pytest.approx([radians(hole.major) * hole.pitch / 2 / pi] * 2, rel=0.1)
+
+
+@pytest.mark.parametrize("missing", [("north",), ("north", "east"), ("north", "east", "borehole_azimuth")])
+def test_a_run_in_space_is_not_taken_for_a_planar_one_where_columns_are_missing(missing: tuple[str, ...]) -> None:
+    run = Made().run()
+    case = replace(paper_spiral(), dimensions=3)
+    left = Trajectory({name: column for name, column in run.columns.items() if name not in missing}, case)
+    with pytest.raises(MissingColumn, match=f"'{missing[-1] if len(missing) == 3 else missing[0]}'"):
+        find_rippling(left)
 
 
 def test_where_a_spiral_begins_is_told() -> None:

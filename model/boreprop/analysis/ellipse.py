@@ -16,7 +16,7 @@ from ..arrays import Complexes, Floats
 from .hole_in_space import NEARLY_VERTICAL, inclination_of, sides
 from .search import AT_THE_END
 from .space import untwisted
-from .waves import mean_over, slope
+from .waves import even_rows, mean_over, slope
 
 NARROW = 0.1  # minor over major axis: a narrower ellipse counts as a line
 WIDE = 0.2  # the same: where all of the last waves are wider, and wind to one side, that is certain
@@ -85,28 +85,32 @@ def sideways(length: Floats, position: Floats, wavelength: float) -> Sideways | 
 
     The length increases, m, shape (rows,); the position is to north, east and down, m, shape (rows, 3).
     """
-    means = [mean_over(length, coordinate, wavelength) for coordinate in position.T]
+    even = even_rows(length)
+    position = np.column_stack([np.interp(even, length, coordinate) for coordinate in position.T])
+    means = [mean_over(even, coordinate, wavelength) for coordinate in position.T]
     inside, trend = means[0][0], np.column_stack([mean for _, mean in means])
     if len(trend) < 2:
         return None
     forward = np.gradient(trend, axis=0)
     forward /= np.linalg.norm(forward, axis=1)[:, None]
     frame = untwisted(forward)
-    return Sideways(length[inside], np.sum((position[inside] - trend) * frame, axis=1), frame, forward)
+    away = np.sum((position[inside] - trend) * frame, axis=1)
+    return Sideways(even[inside], away, frame, forward)
 
 
 def ellipse_of(hole: Sideways, wavelength: float) -> Ellipse | None:
     """The ellipse of the last waves of a hole, which are so long, m; None if there are too few."""
     spacing = (hole.length[-1] - hole.length[0]) / (len(hole.length) - 1)
-    within = mean_over(hole.length, hole.length, wavelength)[0]
+    within, offset = mean_over(hole.length, hole.away, wavelength)
     x = hole.length[within]
     if not len(x):
         return None
+    away = hole.away - np.interp(hole.length, x, offset)  # where the hole turns, its trend is off the chord of a wave
     right, left, line = np.zeros(len(x)), np.zeros(len(x)), np.zeros(len(x), complex)
     circles: list[tuple[Complexes, Complexes]] = []
     for k in range(1, min(HARMONICS, int(wavelength / spacing / 2)) + 1):
         turn = np.exp(2j * pi * k / wavelength * hole.length)
-        clockwise, other = (mean_over(hole.length, hole.away * way, wavelength)[1] for way in (turn.conj(), turn))
+        clockwise, other = (mean_over(hole.length, away * way, wavelength)[1] for way in (turn.conj(), turn))
         circles.append((clockwise, other))
         right, left, line = right + abs(clockwise) ** 2, left + abs(other) ** 2, line + clockwise * other
     waves = x[-1] - wavelength * np.arange(FOLLOWED)[::-1]

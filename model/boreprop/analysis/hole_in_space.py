@@ -16,12 +16,13 @@ from .hole import POINTS_BEHIND, Hole, HoleAxis
 
 STRAIGHT = 1e-9  # rad: a piece that turns by less is straight, since rounding decides to which side it turns
 NEARLY_VERTICAL = np.radians(3.0)  # up to here the high side says little, and directions count from north
+OF_SPACE = ("north", "east", "borehole_azimuth")  # columns of runs in space only
 UPRIGHT = 1e-9  # a direction whose horizontal part is less has no azimuth
 
 
 def is_in_space(run: Trajectory) -> bool:
-    """Whether a run says where the bit is in space."""
-    return "north" in run and "east" in run
+    """Whether a run goes through space: its case does, or it has columns that others lack."""
+    return (run.case is not None and run.case.in_space) or any(name in run for name in OF_SPACE)
 
 
 def directions(inclination: Floats, azimuth: Floats) -> Floats:

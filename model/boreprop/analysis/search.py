@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 
 from ..arrays import Floats
 from .waves import (
+    ALMOST,
     FEWEST_ROWS,
     FEWEST_WAVES,
     LastWaves,
+    even_rows,
     likeness,
     wavelength_in_rows,
     without_even_trend,
@@ -52,6 +54,13 @@ class _Rows(NamedTuple):
     def where(self, kept: NDArray[np.bool_] | slice) -> "_Rows":
         """The rows that a mask or a slice selects."""
         return _Rows(self.length[kept], self.direction[kept], None if self.modes is None else self.modes[kept])
+
+    def even(self) -> "_Rows":
+        """As many rows, evenly spaced, as `even_rows` gives; the modes are those of the last row before."""
+        length = even_rows(self.length)
+        last = np.searchsorted(self.length, length + ALMOST * (length[1] - length[0]), side="right") - 1
+        modes = None if self.modes is None else self.modes[last]
+        return _Rows(length, np.interp(length, self.length, self.direction), modes)
 
 
 class Found(NamedTuple):
@@ -109,7 +118,8 @@ def _search_rows(rows: _Rows, longest: float) -> Found:
     found, fewest = [NOTHING], int(FEWEST_WAVES * FEWEST_ROWS)
     if len(rows.length) < fewest:
         return NOTHING
-    spacing = (rows.length[-1] - rows.length[0]) / (len(rows.length) - 1)
+    rows = rows.even()
+    spacing = float(rows.length[1] - rows.length[0])
     count = int(min(len(rows.length), FEWEST_WAVES * longest / spacing + 1))
     followed = MOST_OF_LONGEST * count * spacing / FEWEST_WAVES
     while count >= fewest:
@@ -127,8 +137,7 @@ def _weight(found: Found) -> tuple[bool, bool, float]:
 def _wave(rows: _Rows, spacing: float, count: int, followed: float) -> Found:
     """The wave in the last `count` rows, followed back over `followed` m, or over ten waves if that is more."""
     length, direction = rows.length, rows.direction
-    grid = length[-1] - spacing * np.arange(count)[::-1]
-    signal = without_even_trend(np.interp(grid, length, direction))
+    signal = without_even_trend(direction[-count:])
     if np.abs(signal).max() < SMALLEST_AMPLITUDE:
         return NOTHING
     period, alike = wavelength_in_rows(signal)

@@ -21,6 +21,7 @@ AS_HIGH = 0.8  # of the highest peak: the first peak as high as this is at the w
 FLANK = 0.15  # of a lag: noise may split the top of a peak into several within this distance
 DRIFT = 0.1  # of a wavelength: a peak is searched for this far to both sides of a multiple of the wavelength
 ALMOST = 0.02  # of a wave that may be missing from the last one, since its ends need not fall on rows
+MOST_PLACES = 4.0  # for each row, where uneven rows are made even: most of them may be close together in one place
 LAST_LAG = 0.6  # of the rows: at larger lags too few rows overlap
 LEAST_SIZE = 1e-6  # of the largest wave: a smaller one counts as this, so that its logarithm is finite
 KEPT = 64  # bases of polynomials kept, one for each number of rows: the cases of a study share a few of them
@@ -58,6 +59,17 @@ def _polynomials(x: Floats) -> Floats:
 @lru_cache(KEPT)
 def _even_polynomials(rows: int) -> Floats:
     return _polynomials(np.linspace(-1.0, 1.0, rows))
+
+
+def even_rows(x: Floats) -> Floats:
+    """Evenly spaced places from the first of increasing rows on, as far apart as most of these are.
+
+    Rows that are even themselves stay what they are, whatever the last one, which need not be a step from the others.
+    """
+    span = x[-1] - x[0]
+    spacing = max(float(np.median(np.diff(x))), span / (MOST_PLACES * len(x)))
+    places: Floats = x[0] + spacing * np.arange(int(span / spacing + ALMOST) + 1)
+    return places
 
 
 def slope(x: Floats, y: Floats) -> float:
