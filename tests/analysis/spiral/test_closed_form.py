@@ -272,3 +272,15 @@ def test_random_systems_have_spirals_that_obey_the_laws(seed: int) -> None:
     np.testing.assert_allclose((delta.conj() * touched.F).real, -allowed * abs(touched.F), atol=1e-10)
     assert x[MU] >= 0
     assert abs(own.turning.residual(x).value).max() < 1e-11
+
+
+@pytest.mark.parametrize(("around", "there"), [(0.97, False), (1.03, True)])
+def test_a_curve_that_turns_back_sharply_is_followed_to_its_edge(around: float, there: bool) -> None:
+    """Just where a stabilizer comes off the wall; between two points of the curve its direction says nothing."""
+    bha = BottomHoleAssembly((1.184, 5.383, 8.874), (8.148e-3, 3.152e-3), 0.596, 460.0, 2.394e7)
+    bit = BitRock(34.7, 0.2103, 0.06975 * around, radians(10.0))
+    case = replace(paper_spiral(), bha=bha, bit=bit, active_weight_on_bit=7000.0)
+    found = search(case).at(case.eta_pi)
+    assert (found.own is not None, found.edge is not None) == (there, there)
+    if found.edge is not None:
+        assert found.edge[MU] == pytest.approx(0.0, abs=1e-12)

@@ -7,6 +7,7 @@ curve may turn back on its way, so it is followed by its arc length (Keller 1977
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from itertools import islice, pairwise
 from math import log, pi
 
 import numpy as np
@@ -26,7 +27,8 @@ FIRST, LONGEST, SHORTEST = 0.02, 0.2, 1e-5  # steps along a curve, in the scales
 ASIDE = 0.5  # of a step: how far beside its tangent a curve may be, so that no other curve is taken for it
 STRAIGHT = 0.9  # cosine of the angle by which a curve may turn in a step, unless it is shorter than …
 KINK = 1e-3  # … this: it has a kink where a stabilizer comes off the wall
-MOST_HALVINGS = 30  # of a step in which a curve meets a condition, until Newton's method finds where
+FINER = 4.0  # parts of a step in which a curve meets a condition, where Newton's method does not find it at once
+MOST_PARTS = 40  # of such a step: a curve that turns back in it is longer
 MOST_STEPS = 500  # along a curve; usual ones take fewer than a hundred
 BARELY = 1.1  # times the gap at which stabilizers just do not touch: with it they do not
 BLOCK = 8 * pi  # 1/s_n: the frequencies that are looked through first; then twice as many, and so on
@@ -105,11 +107,16 @@ def _beginnings(
                 yield x
 
 
-def follow(turning: Turning, x: Floats, condition: Condition, index: int, side: float) -> Iterator[Floats]:
-    """The points of a curve from x on, x the first: to larger values of an unknown (side 1) or smaller ones (−1)."""
+def follow(
+    turning: Turning, x: Floats, condition: Condition, index: int, side: float, longest: float = LONGEST
+) -> Iterator[Floats]:
+    """The points of a curve from x on, x the first: to larger values of an unknown (side 1) or smaller ones (−1).
+
+    `longest` is the longest step, in the scales.
+    """
     tangent = _tangent(turning, x, condition)
     tangent *= side * np.sign(tangent[index])
-    length = FIRST
+    length = min(FIRST, longest)
     yield x
     for _ in range(MOST_STEPS):
         ahead = x + length * SCALES * tangent
@@ -121,7 +128,7 @@ def follow(turning: Turning, x: Floats, condition: Condition, index: int, side: 
             y, turned = x, np.zeros(6)
         near = abs((y - ahead) / SCALES).max() < ASIDE * length
         if near and (turned @ tangent > STRAIGHT or length < KINK):
-            x, tangent, length = y, turned, min(1.5 * length, LONGEST)
+            x, tangent, length = y, turned, min(1.5 * length, longest)
             yield x
         elif length > SHORTEST:
             length /= 2
@@ -131,22 +138,19 @@ def follow(turning: Turning, x: Floats, condition: Condition, index: int, side: 
 
 def meet(turning: Turning, before: Floats, after: Floats, fixed: Condition, condition: Condition) -> Floats:
     """The point of a curve, between two of its points, at which the residual of a further condition changes sign."""
-    tangent = _tangent(turning, before, fixed)
-    start, low, high = before, 0.0, float(tangent @ ((after - before) / SCALES))
-    for _ in range(MOST_HALVINGS):
-        (first, _), (last, _), way = condition(before), condition(after), after - before
-        with suppress(ArithmeticError):
-            near = before + first / (first - last) * way
-            found = solve(turning, near, fixed, condition)
-            if abs((found - near) / SCALES).max() < ASIDE * abs(way / SCALES).max():
-                return found
-        half = (low + high) / 2
-        ahead = start + half * SCALES * tangent
-        middle = solve(turning, ahead, fixed, _across(tangent, ahead))
-        if condition(middle)[0] * first > 0:
-            before, low = middle, half
-        else:
-            after, high = middle, half
+    (first, _), (last, _), way = condition(before), condition(after), after - before
+    with suppress(ArithmeticError):
+        near = before + first / (first - last) * way
+        found = solve(turning, near, fixed, condition)
+        if abs((found - near) / SCALES).max() < ASIDE * abs(way / SCALES).max():
+            return found
+    length, index = float(np.linalg.norm(way / SCALES)), int(abs(way / SCALES).argmax())
+    if length > SHORTEST:
+        for start, side in ((before, 1.0), (after, -1.0)):  # in between there may be a corner, where both ways end
+            points = follow(turning, start, fixed, index, side * float(np.sign(way[index])), length / FINER)
+            for low, high in pairwise(islice(points, MOST_PARTS)):
+                if condition(low)[0] * condition(high)[0] <= 0:
+                    return meet(turning, low, high, fixed, condition)
     raise ArithmeticError("the end of a curve of spirals is not found")
 
 
