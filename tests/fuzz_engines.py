@@ -6,9 +6,10 @@ The near-bit space is that of BHAs with a stabilizer 0.8 to 2 m behind the bit u
 then over 8 km; the wide one is of all that the model takes, over 10 ℓ₁; the as-built one is of BHAs in sections whose
 body may lie on the wall, most of them under an axial load up to nearly what they bear, over 60 m. All have force steps
 and tolerances between 1e-9 and 1e-5; half of them have besides what fuzz_along.py lets change along the way. The native
-engine runs every case; Python the first K, and each in which the native one stops, if the beam is the paper's. A bit
-that turns over is no failure, nor is a BHA that snaps from wall to wall or lies on the wall at more points than there
-is room for. What goes wrong is told with the case file that shows it, and ends in exit status 1.
+engine runs every case, some of them saved and restored on the way, too; Python the first K, and each in which the
+native one stops, if the beam is the paper's. A bit that turns over is no failure, nor is a BHA that snaps from wall to
+wall or lies on the wall at more points than there is room for. What goes wrong is told with the case file that shows
+it, and ends in exit status 1.
 
 Some runs depend on their last digits: where the engines differ, the native one runs once more with a BHA that is
 stiffer and longer by 1e-12. Then rows count up to the first in which that moves a column by a tenth of what the engines
@@ -30,22 +31,24 @@ from time import monotonic
 import numpy as np
 from numpy.typing import NDArray
 
+from beams_as_built import bearable
 from boreprop.case.case import Case
 from boreprop.case.file import dump_case
 from boreprop.case.inputs import Schedule
-from boreprop.core.errors import CannotContinue, ParameterError
+from boreprop.core.errors import CannotContinue
 from boreprop.core.options import RELATIVE_TOLERANCE
 from boreprop.core.survey import Survey
 from boreprop.core.system import LEAST_SPAN, BitRock, BottomHoleAssembly
-from boreprop.kernel.binding import lie
 from boreprop.run.simulate import simulate
 from boreprop.run.trajectory import Stopped, Trajectory
 from fuzz_along import varied
+from fuzz_legs import goes_on_as_it_was
 
 COMPARED = 50.0  # m at the start of a run, over which both engines are compared
 AGREEMENT = 1e-6  # of the largest value of a column
 HAIR = 1e-12  # relative
 EXPLAINED = ("turns over", "snaps", "too crowded")  # codes of stops that are no failure
+SAVED = 10  # every so many-th case is also drilled by runs that take over from each other
 BATCH = 20  # cases that a process gets at once
 FOLDER = Path("out/fuzz")
 
@@ -150,16 +153,6 @@ def as_built(random: Random) -> tuple[Case, float]:
     return case, any_tolerance(random)
 
 
-def bearable(bha: BottomHoleAssembly, inclination: float) -> float:
-    """The weight on bit under which a BHA buckles, N."""
-    supports = len(bha.stabilizer_positions) + len(bha.body_point_positions)
-    try:
-        lie(bha, np.zeros((1, supports)), np.zeros(1), np.zeros(1), weight_on_bit=1e15, inclination=inclination)
-    except ParameterError as error:
-        return error.problem.limit if error.problem else 0.0
-    raise AssertionError("nothing bears so much")
-
-
 def any_tolerance(random: Random) -> float:
     """The usual one, or any."""
     return RELATIVE_TOLERANCE if random.random() < 0.5 else 10 ** random.uniform(-9.0, -5.0)
@@ -182,6 +175,7 @@ class Finding:
 def examine(space: str, seed: int, number: int, compared: bool) -> Finding:
     """Run one case natively; compare it with Python if asked, or if it stops."""
     case, tolerance = draw(space, seed, number)
+    short = replace(case, length=min(COMPARED, case.length))
     try:
         run, failure = drilled(case, tolerance, "native", case.length / 10)
         found = Finding(number, failure.code if failure else None)
@@ -190,7 +184,9 @@ def examine(space: str, seed: int, number: int, compared: bool) -> Finding:
         elif not all(np.isfinite(column).all() for column in run.columns.values()):
             found.fault = "a column is not finite"
         if (compared or failure) and case.bha.structure.is_of_the_paper and not found.fault:
-            compare(case if failure else replace(case, length=min(COMPARED, case.length)), tolerance, found)
+            compare(case if failure else short, tolerance, found)
+        if number % SAVED == 0 and not found.fault and not goes_on_as_it_was(short, tolerance):
+            found.fault = "a saved run goes on to elsewhere"
     except Stopped as error:  # where the run starts
         code = getattr(error.__cause__, "code", None)
         return Finding(number, code, None if code in EXPLAINED else str(error))

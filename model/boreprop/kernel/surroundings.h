@@ -273,8 +273,8 @@ static inline void look_between(
         Arc arc[DIRECTIONS];
         for (int d = 0; d < DIRECTIONS; d++)
             arc[d].start = around->body[d][k], arc[d].middle = middle[d][k], arc[d].end = body[d][k];
-        around->gap[k] = smaller(around->gap[k], least_gap(p, step, k, arc));
-        around->near |= around->gap[k] < 0;
+        double lowest = least_gap(p, step, k, arc);
+        if (lowest < 0) around->gap[k] = lowest, around->near = 1; /* it is watched, and the step tried again */
     }
 }
 
