@@ -94,7 +94,7 @@ static inline void lay_chain(const Chain *chain, const Path *path, const Bent *b
     }
     hold(chain, acting, &held);
     for (int i = 0; i < path->supports; i++)
-        if (i != path->n - 1 && !path->of[i]) lain->of[i] = bent->e[i] + place_between(chain, &held, acting, i);
+        if (i != path->n - 1) lain->of[i] = path->of[i] ? 0.0 : bent->e[i] + place_between(chain, &held, acting, i);
     for (int k = 0; k < chain->spans - 1; k++) lain->of[chain->held[k]] = held.F[k];
     lain->M = held.M, lain->F_0 = held.F_0;
 }
@@ -128,17 +128,97 @@ static inline int switch_contact(Path *path, int i) {
 
 enum { MOST_SWITCHES = 1000 }; /* of a path: it takes three as a rule, and under a hundred where nearly all touch */
 
-/* Follow the contacts from t = 0 to 1, one switch after the other. A support that comes free, so that the beam buckles, goes
-   to the other wall. Returns what is in the way: TOO_CROWDED if more touch than there is room for, BUCKLES if the beam does
-   between those that touch first, NO_MODE if there is no end; else NO_PROBLEM. */
+/* Loads and clearances at t. */
+static inline Bent bent_at(const Path *path, double t) {
+    Bent bent = path->bent;
+    const Bent *bending = &path->bending;
+    bent.F_rss += t * bending->F_rss, bent.g += t * bending->g, bent.end += t * bending->end;
+    for (int i = 0; i < path->supports; i++) bent.e[i] += t * bending->e[i], bent.y[i] += t * bending->y[i];
+    return bent;
+}
+
+/* Find where a beam goes that does not lie still: to its equilibrium between its contacts or, if it does not stand between
+   these, on with the support that has come loose from `wall`. Returns the most of that way; 0 if there is none. */
+static inline double way_of_fall(const Beam *beam, Path *fall, int loose, signed char wall) {
+    Chain chain;
+    Lain to;
+    Bent inwards;
+    if (make_chain(&chain, beam, fall->supports, fall->of)) {
+        lay_chain(&chain, fall, &fall->bent, &to);
+        for (int i = 0; i < fall->supports; i++) {
+            if (fall->of[i]) fall->start.of[i] = to.of[i], fall->rate.of[i] = 0.0;
+            else fall->rate.of[i] = to.of[i] - fall->start.of[i];
+        }
+        return 1.0;
+    }
+    memset(&inwards, 0, sizeof inwards);
+    fall->of[loose] = wall, inwards.y[loose] = -1.0;
+    if (!make_chain(&chain, beam, fall->supports, fall->of)) return 0.0;
+    lay_chain(&chain, fall, &inwards, &fall->rate);
+    for (int i = 0; i < fall->supports; i++)
+        if (fall->of[i]) fall->rate.of[i] = 0.0;
+    fall->of[loose] = 0, fall->rate.of[loose] = wall;
+    return INFINITY;
+}
+
+/* The support that its wall pulls most, which a wall cannot; −1 if there is none. */
+static inline int pulled_most(const Path *path) {
+    int found = -1;
+    double most = 0.0;
+    for (int i = 0; i < path->supports; i++)
+        if (path->bent.y[i] > 0 && path->of[i] * path->start.of[i] < most)
+            most = path->of[i] * path->start.of[i], found = i;
+    return found;
+}
+
+/* Let the beam fall to where it lies under the loads at t, from where it was when the support that came loose there left
+   `wall`, without which it does not stand. It takes a way on which its energy falls: supports that meet a wall stay there
+   while others move, and come loose one after the other where the wall would have to pull. Returns what is in the way, as
+   `follow`. */
+static inline Code fall(const Beam *beam, Path *path, int loose, signed char wall, double t) {
+    Path fall = *path;
+    fall.bent = bent_at(path, t);
+    for (int i = 0; i < path->supports; i++)
+        fall.start.of[i] = i == loose ? -wall * fall.bent.y[i] : path->start.of[i] + t * path->rate.of[i];
+    memset(&fall.bending, 0, sizeof fall.bending);
+    for (int moves = 0; moves < MOST_SWITCHES; moves++) {
+        int first = -1;
+        double way = way_of_fall(beam, &fall, loose, wall);
+        if (way == 0.0) break;
+        for (int i = 0; i < fall.supports; i++) {
+            double at = leaves_at(&fall, i, 0.0);
+            if (at < way) way = at, first = i;
+        }
+        for (int i = 0; i < fall.supports; i++)
+            if (!fall.of[i]) fall.start.of[i] += way * fall.rate.of[i];
+        if (first >= 0) {
+            if (!switch_contact(&fall, first)) return TOO_CROWDED;
+            continue;
+        }
+        loose = pulled_most(&fall);
+        if (loose < 0) {
+            memcpy(path->of, fall.of, sizeof path->of), path->touching = fall.touching;
+            return NO_PROBLEM;
+        }
+        wall = fall.of[loose], fall.start.of[loose] = -wall * fall.bent.y[loose];
+        fall.of[loose] = 0, fall.touching--;
+    }
+    return NO_MODE;
+}
+
+/* Follow the contacts from t = 0 to 1, one switch after the other. Where a support comes free, so that the beam buckles, it
+   falls to where it lies then. Returns what is in the way: TOO_CROWDED if more touch than there is room for, BUCKLES if the
+   beam does between those that touch first, NO_MODE if there is no end; else NO_PROBLEM. */
 static inline Code follow(const Beam *beam, Path *path) {
     double t = 0.0;
-    int first = -1, wall = 0;
+    int first = -1;
+    signed char wall = 0;
     for (int switches = 0; switches < MOST_SWITCHES; switches++) {
         double next = 1.0;
         if (!look_ahead(beam, path)) {
-            if (!wall) return BUCKLES;
-            path->of[first] = (signed char)-wall, path->touching++, wall = 0;
+            Code problem = wall ? fall(beam, path, first, wall, t) : BUCKLES;
+            if (problem) return problem;
+            wall = 0;
             continue;
         }
         first = -1;
