@@ -46,7 +46,7 @@ HAIR, GROWS = 1e-12, 1e4  # relative; how much more than this a rounding may gro
 SAME = 100.0  # tolerances
 TURN = 2.0  # of the whole world, rad
 ROUNDING = 1e-9  # of the largest number in a condition of the discs
-EPSILON = 2.0**-52  # of places beside the line along which a run starts: rounding where nothing bends the BHA
+SETTLED = 1e-13  # of the largest clearance: so near to their solution contacts are found, in kernel/cone.h
 BATCH = 20  # cases that a process gets at once
 
 
@@ -115,10 +115,10 @@ def fault_of(row: Outputs, case: Case) -> str | None:
         return f"not finite: {', '.join(name for name, value in row.items() if not isfinite(value))}"
     forces = [pair(row, "stabilizer_force", i) for i in range(1, len(case.bha.stabilizer_clearances) + 1)]
     largest = max((float(np.hypot(*force)) for force in forces), default=0.0)
-    rounding = EPSILON * beside(row, case)
+    settled = SETTLED * max((*case.bha.stabilizer_clearances, *case.bha.body_point_clearances), default=0.0)
     for i, (force, clearance) in enumerate(zip(forces, case.bha.stabilizer_clearances, strict=True), 1):
         delta, size = pair(row, "stabilizer_deflection", i), float(np.hypot(*force))
-        room = rounding + ROUNDING * (clearance + largest * case.bha.stabilizer_positions[-1] / case.bha.force_scale)
+        room = settled + ROUNDING * (clearance + largest * case.bha.stabilizer_positions[-1] / case.bha.force_scale)
         if np.hypot(*delta) > clearance + room:
             return f"stabilizer {i} is {np.hypot(*delta) - clearance:g} m beyond the wall"
         if abs(force @ delta + clearance * size) > room * (size + ROUNDING * largest):
@@ -126,15 +126,6 @@ def fault_of(row: Outputs, case: Case) -> str | None:
     if row["bit_tilt"] > case.bit.tilt_limit * (1 + ROUNDING):
         return "the tilt is beyond its limit"
     return None
-
-
-def beside(row: Outputs, case: Case) -> float:
-    """How far bit and BHA are at most from the line along which the run starts, from which lateral places count, m."""
-    angles = zip(case.survey.inclination, case.survey.azimuth, strict=True)
-    existing = [direction({"bit_inclination": angle, "bit_azimuth": azimuth}, "bit") for angle, azimuth in angles]
-    start, here = existing[-1], place(row)
-    turned = max(float(np.linalg.norm(ahead - start)) for ahead in [*existing, direction(row, "bit")])
-    return float(np.linalg.norm(here - (here @ start) * start)) + turned * case.bha.stabilizer_positions[-1]
 
 
 def way(case: Case, tolerance: float, stops: int = 1) -> Vector:
