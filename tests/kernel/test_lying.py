@@ -119,18 +119,22 @@ def test_contacts_satisfy_the_complementarity_problem(
 
 
 @pytest.mark.parametrize(
-    ("stabilizers", "clearances", "weight", "bow"),
-    [((18.0, 32.0, 45.0), (5e-3, 3e-3), 528e3, -5e-4), ((17.0, 35.0, 40.0), (3e-3, 5e-3), 582e3, -5e-4)],
+    ("stabilizers", "clearances", "weight", "inclination", "bow"),
+    [
+        ((18.0, 32.0, 45.0), (5e-3, 3e-3), 528e3, 0.5, -5e-4),
+        ((17.0, 35.0, 40.0), (3e-3, 5e-3), 582e3, 0.5, -5e-4),
+        ((18.0, 34.0, 39.0, 56.0), (1e-3, 5e-3, 1e-2), 596e3, 0.0, 0.0),
+    ],
 )
 def test_a_beam_that_snaps_off_a_wall_comes_to_lie_on_others(
-    stabilizers: tuple[float, ...], clearances: tuple[float, ...], weight: float, bow: float
+    stabilizers: tuple[float, ...], clearances: tuple[float, ...], weight: float, inclination: float, bow: float
 ) -> None:
-    """It does not stand without the stabilizer that comes free as the load grows."""
+    """It does not stand without a stabilizer that comes free as the load grows, or as the clearances open."""
     points = (stabilizers[-1] * (np.arange(6) + 0.4) / 6).tolist()
     uniform = BottomHoleAssembly(stabilizers, clearances, 0.5, 1000.0, 1e7)
     bha = replace(with_points(uniform, points, 0.02), axial_load=True)
-    load = {"weight_on_bit": weight, "inclination": 0.5}
-    assert misses(bha, -bow * supports(bha) ** 2, 0.0, sin(0.5), **load) <= 1e-9
+    load = {"weight_on_bit": weight, "inclination": inclination}
+    assert misses(bha, -bow * supports(bha) ** 2, 0.0, sin(inclination), **load) <= 1e-9
 
 
 def test_a_point_of_the_body_where_a_stabilizer_is_changes_nothing() -> None:

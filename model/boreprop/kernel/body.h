@@ -126,7 +126,9 @@ static inline int switch_contact(Path *path, int i) {
     return 1;
 }
 
-enum { MOST_SWITCHES = 1000 }; /* of a path: it takes three as a rule, and under a hundred where nearly all touch */
+enum { MOST_SWITCHES = 10000 }; /* of a path: three as a rule, over a thousand in holes that no bit drills */
+
+#define AJAR 1e-6 /* of clearances that open: from there on there is room to fall */
 
 /* Loads and clearances at t. */
 static inline Bent bent_at(const Path *path, double t) {
@@ -216,6 +218,7 @@ static inline Code follow(const Beam *beam, Path *path) {
     for (int switches = 0; switches < MOST_SWITCHES; switches++) {
         double next = 1.0;
         if (!look_ahead(beam, path)) {
+            t = larger(t, AJAR);
             Code problem = wall ? fall(beam, path, first, wall, t) : BUCKLES;
             if (problem) return problem;
             wall = 0;
