@@ -241,7 +241,8 @@ static inline double least_gap(const Integrator *p, const Step *step, int k, con
     Count own = find_near(hole, p->seen.cursor[k], at);
     Arc gap = {0.0, 0.0, 0.0};
     for (int first = 1; at < end; first = 0, own++) {
-        double next = own + 1 < hole->end ? smaller(piece(hole, own + 1)->start, end) : end;
+        double next = own + 1 < hole->end ? piece(hole, own + 1)->start : step->xi; /* where the hole ends */
+        next = at < next ? smaller(next, end) : end;
         double middle = (at + next) / 2, places[] = {at, middle, next}, gaps[3], off[DIRECTIONS];
         for (int i = 0; i < 3; i++) {
             if (i == 0 && !first) continue;
