@@ -173,39 +173,43 @@ static inline int pulled_most(const Path *path) {
     return found;
 }
 
-/* Let the beam fall to where it lies under the loads at t, from where it was when the support that came loose there left
-   `wall`, without which it does not stand. It takes a way on which its energy falls: supports that meet a wall stay there
-   while others move, and come loose one after the other where the wall would have to pull. Returns what is in the way, as
-   `follow`. */
-static inline Code fall(const Beam *beam, Path *path, int loose, signed char wall, double t) {
-    Path fall = *path;
-    fall.bent = bent_at(path, t);
-    for (int i = 0; i < path->supports; i++)
-        fall.start.of[i] = i == loose ? -wall * fall.bent.y[i] : path->start.of[i] + t * path->rate.of[i];
-    memset(&fall.bending, 0, sizeof fall.bending);
+/* Let the beam fall to where it lies under the loads of the path, from where its supports are: held, or at `start`. The loose
+   one has left `wall`, if there is one without which it does not stand. It takes a way on which its energy falls: supports
+   that meet a wall stay there while others move, and come loose one after the other where the wall would have to pull.
+   Returns what is in the way, as `follow`. */
+static inline Code fall(const Beam *beam, Path *path, int loose, signed char wall) {
     for (int moves = 0; moves < MOST_SWITCHES; moves++) {
         int first = -1;
-        double way = way_of_fall(beam, &fall, loose, wall);
+        double way = way_of_fall(beam, path, loose, wall);
         if (way == 0.0) break;
-        for (int i = 0; i < fall.supports; i++) {
-            double at = leaves_at(&fall, i, 0.0);
+        for (int i = 0; i < path->supports; i++) {
+            double at = leaves_at(path, i, 0.0);
             if (at < way) way = at, first = i;
         }
-        for (int i = 0; i < fall.supports; i++)
-            if (!fall.of[i]) fall.start.of[i] += way * fall.rate.of[i];
+        for (int i = 0; i < path->supports; i++)
+            if (!path->of[i]) path->start.of[i] += way * path->rate.of[i];
         if (first >= 0) {
-            if (!switch_contact(&fall, first)) return TOO_CROWDED;
+            if (!switch_contact(path, first)) return TOO_CROWDED;
             continue;
         }
-        loose = pulled_most(&fall);
-        if (loose < 0) {
-            memcpy(path->of, fall.of, sizeof path->of), path->touching = fall.touching;
-            return NO_PROBLEM;
-        }
-        wall = fall.of[loose], fall.start.of[loose] = -wall * fall.bent.y[loose];
-        fall.of[loose] = 0, fall.touching--;
+        loose = pulled_most(path);
+        if (loose < 0) return NO_PROBLEM;
+        wall = path->of[loose], path->start.of[loose] = -wall * path->bent.y[loose];
+        path->of[loose] = 0, path->touching--;
     }
     return NO_MODE;
+}
+
+/* The same from a place on a path, where the support that is loose has left `wall`. */
+static inline Code fall_at(const Beam *beam, Path *path, int loose, signed char wall, double t) {
+    Path fallen = *path;
+    fallen.bent = bent_at(path, t);
+    for (int i = 0; i < path->supports; i++)
+        fallen.start.of[i] = i == loose ? -wall * fallen.bent.y[i] : path->start.of[i] + t * path->rate.of[i];
+    memset(&fallen.bending, 0, sizeof fallen.bending);
+    Code problem = fall(beam, &fallen, loose, wall);
+    memcpy(path->of, fallen.of, sizeof path->of), path->touching = fallen.touching;
+    return problem;
 }
 
 /* Follow the contacts from t = 0 to 1, one switch after the other. Where a support comes free, so that the beam buckles, it
@@ -219,7 +223,7 @@ static inline Code follow(const Beam *beam, Path *path) {
         double next = 1.0;
         if (!look_ahead(beam, path)) {
             t = larger(t, AJAR);
-            Code problem = wall ? fall(beam, path, first, wall, t) : BUCKLES;
+            Code problem = wall ? fall_at(beam, path, first, wall, t) : BUCKLES;
             if (problem) return problem;
             wall = 0;
             continue;
@@ -260,11 +264,30 @@ static inline Code follow_load(const Modes *modes, const Bent *loads, int points
     return follow(&modes->beam, path);
 }
 
-/* The same, as the contacts of a regime. */
-static inline Code search(const Modes *modes, const Bent *loads, int points, Contact *found) {
+/* The contacts under loads to which a beam comes from those that it has; BUCKLES if it does not stand between these. */
+static inline Code lie_down(const Modes *modes, const Bent *loads, int points, const Contact *contact, Path *path) {
+    int n = modes->beam.n;
+    memset(path, 0, sizeof *path);
+    path->n = n, path->supports = n + points, path->bent = *loads;
+    memcpy(path->bent.y, modes->y_star, (size_t)path->supports * sizeof *modes->y_star);
+    for (int i = 0; i < place_count(*contact, n); i++) path->of[support_at(contact, n, i)] = contact->of[i];
+    for (int i = 0; i < n - 1; i++)
+        if (path->bent.y[i] == 0.0) path->of[i] = 1;
+    for (int i = 0; i < path->supports; i++) path->touching += path->of[i] != 0;
+    if (!look_ahead(&modes->beam, path)) return BUCKLES;
+    for (int i = 0; i < path->supports; i++) {
+        double y = path->bent.y[i];
+        if (!path->of[i]) path->start.of[i] = larger(-y, smaller(y, path->start.of[i]));
+    }
+    return fall(&modes->beam, path, -1, 0);
+}
+
+/* The contacts of all supports, as those of a regime: from those that there are if they are given and lead there. */
+static inline Code search(const Modes *modes, const Bent *loads, int points, const Contact *from, Contact *found) {
     int n = modes->beam.n;
     Path path;
-    Code problem = follow_load(modes, loads, points, &path);
+    Code problem = from ? lie_down(modes, loads, points, from, &path) : BUCKLES;
+    if (problem) problem = follow_load(modes, loads, points, &path);
     if (problem) return problem;
     memset(found, 0, sizeof *found);
     for (int i = 0; i < n - 1; i++) found->of[i] = path.of[i];
