@@ -24,11 +24,11 @@ static inline View view_at(const Views *views, double t) {
 }
 
 enum { UNKNOWNS = S * COMPONENTS, MOST_ITERATIONS = 12 };
-#define REST 0.03      /* what may be neglected of the solution of a step, in tolerances: little beside its error, … */
-#define FINEST 1e-11   /* … and in clearances in contact, but for those that are near rounding */
+#define REST 0.03      /* what may be left of the solution of a step, over what it may err: little beside its error */
+#define FINEST 1e-11   /* the least error in Y that is asked for: clearances in contact may be near rounding */
 #define TOO_HARD 100.0 /* the error, over the tolerance, of a step that is not solved: the next is a third as long */
 #define AIMED 0.03     /* of ψ*: the error of a saturated tilt in a step, at most, … */
-#define NO_WAY 1e-3    /* … or what adds so many tolerances to Y */
+#define NO_WAY 1e-12   /* … or what adds so little to Y that it is near rounding */
 #define FARTHEST 2.0   /* over the last step, up to which its polynomial is taken as a guess */
 
 /* One step of Newton's method on all stages. */
@@ -138,12 +138,24 @@ static inline int correct(const Law *law, double s_1, double h, Solving *solving
     return 1;
 }
 
+/* What a step may err in Y: a tolerance or, where that is smaller, the least clearance in contact. Steps that err more would
+   not tell whether a stabilizer stays on the wall. */
+static inline double may_err(const Law *law, const Options *options) {
+    return smaller(options->relative_tolerance, larger(law->finest, FINEST));
+}
+
+/* What it may err in Y by a saturated tilt, in its residual and in what is left of its solution. The tilt turns with F_0, and
+   fast where that is small: steps so short that no tilt makes an error in Y would not tell which regime follows. */
+static inline double may_stray(const Law *law, double h) {
+    return law->saturated ? AIMED * h * law->inputs.psi_star + NO_WAY : INFINITY;
+}
+
 /* Solve the step; returns 0 if no solution is found. */
 static inline int solve_step(
     const Law *law, const Options *options, double s_1, const double x[COMPONENTS], Solving *solving, Trial *trial
 ) {
     double before = INFINITY, size = INFINITY;
-    double rest = REST * smaller(options->relative_tolerance, larger(law->finest, FINEST));
+    double rest = REST * smaller(may_err(law, options), may_stray(law, trial->step.h));
     for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
         spread(x, solving, trial);
         if (!make_views(law, &trial->step.frame, (const double (*)[S + 1]) solving->c, &solving->views)) return 0;
@@ -189,13 +201,6 @@ static inline void guess_contacts(const Law *law, const double x[COMPONENTS], co
             restate(v[of->C[k]], of->y[k], of->K_inv[k][k], of->k[k], trial->at[point].v[k]);
 }
 
-/* How far a saturated tilt is from the law's in a trial step with these defects of Y, over what is allowed. It turns with F_0,
-   and fast where that is small: steps so short that no tilt makes an error in Y would not tell which regime follows. */
-static inline double astray(const Law *law, const Options *options, double h, const double defect[2]) {
-    double way = h * law->inputs.psi_star;
-    return hypot(defect[0], defect[1]) / (AIMED * way + NO_WAY * options->relative_tolerance);
-}
-
 /* Collocation from the state `x` over a trial step, whose place, length and delayed hole are given. */
 static inline void law_try(
     const Law *law, const Options *options, const Step *last, const double x[COMPONENTS], Trial *trial
@@ -214,7 +219,7 @@ static inline void law_try(
     const Reply *check = &trial->at[AT_CHECK];
     for (int c = 0; c < COMPONENTS && found; c++)
         defect[c] = polynomial_slope(solving.c[c], POINT[AT_CHECK]) - h * check->rate[c];
-    trial->error = law->saturated ? astray(law, options, h, &defect[LATERAL]) : 0.0;
+    trial->error = hypot(defect[LATERAL], defect[LATERAL + 1]) / may_stray(law, h);
     if (!found || !damp(h, check->by, defect)) {
         for (int c = 0; c < COMPONENTS; c++) memset(trial->step.x[c], 0, sizeof trial->step.x[c]);
         trial->error = TOO_HARD;
@@ -222,8 +227,8 @@ static inline void law_try(
     }
     memcpy(trial->step.x, solving.c, sizeof trial->step.x);
     for (int c = 0; c < COMPONENTS; c++) {
-        double weight = c < LATERAL ? options->theta_weight : 1.0;
-        trial->error = larger(trial->error, weight * fabs(defect[c]) / options->relative_tolerance);
+        double allowed = c < LATERAL ? options->relative_tolerance / options->theta_weight : may_err(law, options);
+        trial->error = larger(trial->error, fabs(defect[c]) / allowed);
     }
 }
 
