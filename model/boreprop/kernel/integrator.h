@@ -113,12 +113,11 @@ static inline void choose_length(const Integrator *p, const Law *law, double xi,
     plan->h = h;
 }
 
-/* A trial step of length `h` from the state `x` at `xi`, before events cut it. */
-static inline void try_step(
-    const Integrator *p, const Law *law, double xi, double h, const double x[COMPONENTS], Trial *trial
-) {
+/* A trial step of length `h` from the state `x`, before events cut it. */
+static inline void try_step(const Integrator *p, const Law *law, double h, const double x[COMPONENTS], Trial *trial) {
     const Step *last = &p->now.step;
-    trial->step = next_step(last, xi, h);
+    Step *step = &trial->step;
+    step->h = h, step->end = step->xi + h, step->event = NONE, step->side = 0;
     trial->follows = p->now.stay > 0 && last->end > last->xi;
     look_up(&p->now.hole, &p->now.places, trial);
     law_try(law, &p->options, last, x, trial);
@@ -195,7 +194,7 @@ static inline Status find_step(
             plan->planned = p->options.layers * present_law(p)->relaxation;
             continue;
         }
-        try_step(p, law, xi, plan->h, x, trial);
+        try_step(p, law, plan->h, x, trial);
         if (!is_finite(trial)) return failed(p, NOT_FINITE, xi, problem);
         if (trial->error > 1.0) {
             plan->planned = plan->resumed = plan->h * larger(growth(trial->error), SMALLEST_GROWTH);
@@ -258,6 +257,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     int kink = leave(p, &last, x);
     if (p->law.changes) p->law_known = 0;
     Plan plan = first_plan(&last, kink, present_law(p), p->options.layers);
+    trial.step = standstill(&last, last.end, x);
     Status status = find_step(p, last.end, x, &plan, &trial, problem);
     if (status == DONE && p->scaled.points) status = keep_clear(p, &last, kink, x, &plan, &trial, problem);
     if (status != DONE) return status;

@@ -3,69 +3,28 @@
 #define BOREPROP_NEWTON_H
 
 #include "disc_law.h"
+#include "stages.h"
 
-/* The rows of the frame that the law looks at, along a step whose θ is a polynomial; returns 0 if it turns too far. */
-typedef struct {
-    int north;
-    Series of_down, of_north;
-} Views;
-
-static inline int make_views(const Law *law, const Frame *frame, const double theta[][S + 1], Views *views) {
-    views->north = (int)law->inputs.reference == FROM_NORTH;
-    return make_series(theta, frame->row[DOWN], &views->of_down) &&
-           (!views->north || make_series(theta, frame->row[NORTH], &views->of_north));
+/* How the frame turns along a step from the bit whose θ is a polynomial, as far as the law looks at it. */
+static inline int look_at_turning(const Law *law, const Frame *start, const double theta[][S + 1], Turning *turning) {
+    return make_turning(start, theta, (int)law->inputs.reference == FROM_NORTH, turning);
 }
 
-static inline View view_at(const Views *views, double t) {
-    View view = {{0}, {0}};
-    series_at(&views->of_down, t, view.down);
-    if (views->north) series_at(&views->of_north, t, view.north);
-    return view;
-}
-
-enum { UNKNOWNS = S * COMPONENTS, MOST_ITERATIONS = 12 };
-#define REST 0.03      /* what may be neglected of the solution of a step, in tolerances: little beside its error, … */
-#define FINEST 1e-11   /* … and in clearances in contact, but for those that are near rounding */
-#define TOO_HARD 100.0 /* the error, over the tolerance, of a step that is not solved: the next is a third as long */
-#define AIMED 0.03     /* of ψ*: the error of a saturated tilt in a step, at most, … */
-#define NO_WAY 1e-3    /* … or what adds so many tolerances to Y */
-#define FARTHEST 2.0   /* over the last step, up to which its polynomial is taken as a guess */
-
-/* One step of Newton's method on all stages. */
-typedef struct {
-    double row[UNKNOWNS][UNKNOWNS + 1];
-} Correction;
-
-/* Solve, in place; returns 0 if the matrix is singular. */
-static inline int eliminate(Correction *correction) {
-    double (*row)[UNKNOWNS + 1] = correction->row;
-    for (int column = 0; column < UNKNOWNS; column++) {
-        int pivot = column;
-        for (int i = column + 1; i < UNKNOWNS; i++)
-            if (fabs(row[i][column]) > fabs(row[pivot][column])) pivot = i;
-        if (!(fabs(row[pivot][column]) > 0)) return 0;
-        for (int j = column; pivot != column && j <= UNKNOWNS; j++) {
-            double value = row[pivot][j];
-            row[pivot][j] = row[column][j], row[column][j] = value;
-        }
-        for (int i = column + 1; i < UNKNOWNS; i++) {
-            double factor = row[i][column] / row[column][column];
-            if (factor == 0.0) continue;
-            for (int j = column + 1; j <= UNKNOWNS; j++) row[i][j] -= factor * row[column][j];
-        }
-    }
-    for (int i = UNKNOWNS - 1; i >= 0; i--) {
-        for (int j = i + 1; j < UNKNOWNS; j++) row[i][UNKNOWNS] -= row[i][j] * row[j][UNKNOWNS];
-        row[i][UNKNOWNS] /= row[i][i];
-    }
-    return 1;
-}
+enum { MOST_ITERATIONS = 12 };
+#define REST 1e-3    /* what may be neglected of the solution of a step, in tolerances, which adds up over steps, … */
+#define FINEST 3e-10 /* … and in clearances in contact, but for those that are near rounding; … */
+#define LEAST_REST 3e-14 /* … at least this, above the rounding of Y */
+#define SLOW 0.1         /* a correction, over the last one, after which derivatives are taken anew */
+#define TOO_HARD 100.0   /* the error, over the tolerance, of a step that is not solved: the next is a third as long */
+#define AIMED 0.03       /* of ψ*: the error of a saturated tilt in a step, at most, … */
+#define NO_WAY 1e-3      /* … or what adds so many tolerances to Y */
+#define FARTHEST 2.0     /* over the last step, up to which its polynomial is taken as a guess */
 
 /* What a step is solved with: the change of the state up to each node, and what its points need. */
 typedef struct {
     double change[S][COMPONENTS], c[COMPONENTS][S + 1];
     Behind behind[POINTS];
-    Views views;
+    Turning turning;
 } Solving;
 
 static inline int point_of(int node) { return node < AT_CHECK ? node : node + 1; }
@@ -87,7 +46,7 @@ static inline void spread(const double x[COMPONENTS], Solving *solving, Trial *t
 /* Let the law speak at a point of the step. */
 static inline int speak(const Law *law, const Solving *solving, Trial *trial, int point, double s_1, int slopes) {
     double x[COMPONENTS], first[2] = {trial->delayed[0][0][point], trial->delayed[0][1][point]};
-    View view = view_at(&solving->views, POINT[point]);
+    View view = view_at(&solving->turning, POINT[point]);
     for (int c = 0; c < COMPONENTS; c++) x[c] = trial->x[c][point];
     return law_here(law, x, trial->ahead[point], &view, &solving->behind[point], first, s_1, slopes, &trial->at[point]);
 }
@@ -108,32 +67,38 @@ static inline void guess_changes(const Step *last, const double x[COMPONENTS], c
     }
 }
 
-/* One correction; gives its size. Returns 0 if there is none. */
-static inline int correct(const Law *law, double s_1, double h, Solving *solving, Trial *trial, double *size) {
-    Correction correction;
+/* The equations for the changes, from the derivatives by the state that the law has said at the nodes. */
+static inline void gather(double h, const Trial *trial, Stages *stages) {
+    for (int k = 0; k < S; k++)
+        for (int j = 0; j < S; j++)
+            for (int c = 0; c < COMPONENTS; c++)
+                for (int e = 0; e < COMPONENTS; e++)
+                    stages->block[k][j][c][e] =
+                        (c == e ? DIFFERENCE[k][j] : 0.0) - (k == j ? h * trial->at[point_of(k)].by[c][e] : 0.0);
+    eliminate(stages);
+}
+
+/* One correction, with the derivatives as they are now or, if that is not `anew`, as they were; gives its size. Returns 0
+   if there is none. */
+static inline int correct(
+    const Law *law, double s_1, double h, int anew, Stages *stages, Solving *solving, Trial *trial, double *size
+) {
+    double by[S][COMPONENTS];
     for (int k = 0; k < S; k++) {
-        int point = point_of(k);
-        if (!speak(law, solving, trial, point, s_1, 1)) return 0;
-        const Reply *at = &trial->at[point];
+        if (!speak(law, solving, trial, point_of(k), s_1, anew)) return 0;
         for (int c = 0; c < COMPONENTS; c++) {
-            double *row = correction.row[k * COMPONENTS + c], rest = h * at->rate[c];
-            memset(row, 0, sizeof correction.row[0]);
-            for (int j = 0; j < S; j++) {
-                row[j * COMPONENTS + c] = DIFFERENCE[k][j];
-                rest -= DIFFERENCE[k][j] * solving->change[j][c];
-            }
-            for (int e = 0; e < COMPONENTS; e++) row[k * COMPONENTS + e] -= h * at->by[c][e];
-            row[UNKNOWNS] = rest;
+            by[k][c] = h * trial->at[point_of(k)].rate[c];
+            for (int j = 0; j < S; j++) by[k][c] -= DIFFERENCE[k][j] * solving->change[j][c];
         }
     }
-    if (!eliminate(&correction)) return 0;
+    if (anew) gather(h, trial, stages);
+    solve_stages(stages, by);
     *size = 0.0;
     for (int k = 0; k < S; k++)
         for (int c = 0; c < COMPONENTS; c++) {
-            double by = correction.row[k * COMPONENTS + c][UNKNOWNS];
-            solving->change[k][c] += by;
-            if (!isfinite(by)) return 0;
-            *size = larger(*size, fabs(by));
+            solving->change[k][c] += by[k][c];
+            if (!isfinite(by[k][c])) return 0;
+            *size = larger(*size, fabs(by[k][c]));
         }
     return 1;
 }
@@ -142,17 +107,19 @@ static inline int correct(const Law *law, double s_1, double h, Solving *solving
 static inline int solve_step(
     const Law *law, const Options *options, double s_1, const double x[COMPONENTS], Solving *solving, Trial *trial
 ) {
-    double before = INFINITY, size = INFINITY;
-    double rest = REST * smaller(options->relative_tolerance, larger(law->finest, FINEST));
+    Stages stages;
+    double rate = INFINITY, size = 0.0;
+    double rest = larger(REST * smaller(options->relative_tolerance, larger(law->finest, FINEST)), LEAST_REST);
     for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
+        double before = size;
         spread(x, solving, trial);
-        if (!make_views(law, &trial->step.frame, (const double (*)[S + 1]) solving->c, &solving->views)) return 0;
-        before = size;
-        if (!correct(law, s_1, trial->step.h, solving, trial, &size)) return 0;
-        double rate = isfinite(before) ? size / before : 1.0;
-        if (size == 0.0 || (rate < 1 && size * rate / (1 - rate) <= rest)) {
+        if (!look_at_turning(law, &trial->step.frame, (const double (*)[S + 1]) solving->c, &solving->turning))
+            return 0;
+        if (!correct(law, s_1, trial->step.h, rate > SLOW, &stages, solving, trial, &size)) return 0;
+        rate = iteration ? size / before : 0.0;
+        if (size == 0.0 || (iteration && rate < 1 && size * rate / (1 - rate) <= rest)) {
             spread(x, solving, trial);
-            return make_views(law, &trial->step.frame, (const double (*)[S + 1]) solving->c, &solving->views);
+            return look_at_turning(law, &trial->step.frame, (const double (*)[S + 1]) solving->c, &solving->turning);
         }
     }
     return 0;

@@ -67,6 +67,13 @@ typedef struct {
     double down[3], north[3];
 } View;
 
+static inline View view_at(const Turning *turning, double t) {
+    View view = {{0}, {0}};
+    series_at(&turning->of_down, t, view.down);
+    if (turning->north) series_at(&turning->of_north, t, view.north);
+    return view;
+}
+
 /* A force of the pads with these parts along and across the side from which the toolface counts: the high side, north or e₂. */
 static inline Vector pad_force(double along, double across, int reference, const View *view) {
     Vector side = {{1.0, 0.0}, {{0}}, {{0}}}, force;

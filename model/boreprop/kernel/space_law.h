@@ -24,14 +24,14 @@ static inline double law_at(
     double delayed[][DIRECTIONS]
 ) {
     Behind behind;
-    Views views;
+    Turning turning;
     double t = (xi - trial->step.xi) / trial->step.h;
     int point = 0;
     while (point < POINTS - 1 && POINT[point] < t) point++;
     Reply at = trial->at[point];
     look_behind(law, &delayed[0][0], DIRECTIONS, 1, &behind);
-    make_views(law, &trial->step.frame, trial->step.x, &views);
-    View view = view_at(&views, t);
+    look_at_turning(law, &trial->step.frame, trial->step.x, &turning);
+    View view = view_at(&turning, t);
     if (!law_here(law, x, xi - law->inputs_xi, &view, &behind, delayed[0], law->s_1, 0, &at)) return (double)NAN;
     return bounded_value(law, bound, &at);
 }
@@ -45,16 +45,16 @@ static inline void law_along(const Law *law, const Bound *bound, const Trial *tr
 static inline void move_along(const Step *step, double xi, double path[AXES]) {
     double nodes[3] = {0.5 - sqrt(0.15), 0.5, 0.5 + sqrt(0.15)}, weights[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
     double length = xi - step->xi;
+    Turning turning;
     if (length == 0.0) return;
-    for (int axis = NORTH; axis <= DOWN; axis++) {
-        Series series;
-        make_series(step->x, step->frame.row[axis], &series);
-        for (int k = 0; k < 3; k++) {
-            double t = nodes[k] * length / step->h, row[3], turned[3], back[2];
-            series_at(&series, t, row);
-            for (int d = 0; d < 2; d++)
-                back[d] = polynomial_slope(step->x[LATERAL + d], t) / step->h - polynomial(step->x[ANGLE + d], t);
-            turned_row(row, back, turned);
+    make_turning(&step->frame, step->x, 1, &turning);
+    for (int k = 0; k < 3; k++) {
+        double t = nodes[k] * length / step->h, turned[3], back[2];
+        Frame frame = frame_at(&turning, t);
+        for (int d = 0; d < 2; d++)
+            back[d] = polynomial_slope(step->x[LATERAL + d], t) / step->h - polynomial(step->x[ANGLE + d], t);
+        for (int axis = NORTH; axis <= DOWN; axis++) {
+            turned_row(frame.row[axis], back, turned);
             path[axis] += weights[k] * length * turned[AHEAD];
         }
     }

@@ -55,22 +55,16 @@ static inline double polynomial_slope(const double c[S + 1], double t) {
     return c[1] + t * (2 * c[2] + t * (3 * c[3] + t * (4 * c[4] + t * 5 * c[5])));
 }
 
-/* A step that is to begin at `xi`, where the last one has led, and to be `h` long. */
-static inline Step next_step(const Step *last, double xi, double h) {
-    Step step = {.xi = xi, .h = h, .end = xi + h, .event = NONE, .next_h = INFINITY};
+/* A step of length zero at `xi`, where the last one has led to the state `x`: for a run to start or restart there, or to be
+   made longer. */
+static inline Step standstill(const Step *last, double xi, const double x[COMPONENTS]) {
+    Step step = {.xi = xi, .h = 1.0, .end = xi, .event = NONE, .next_h = INFINITY};
+    for (int c = 0; c < COMPONENTS; c++) step.x[c][0] = x[c];
 #ifdef SPACE
     step.frame = turned_along(&last->frame, last->x, (xi - last->xi) / last->h);
 #else
     (void)last;
 #endif
-    return step;
-}
-
-/* A step of length zero at `xi`, so that a run can start or restart there. */
-static inline Step standstill(const Step *last, double xi, const double x[COMPONENTS]) {
-    Step step = next_step(last, xi, 1.0);
-    step.end = xi;
-    for (int c = 0; c < COMPONENTS; c++) step.x[c][0] = x[c];
     return step;
 }
 
