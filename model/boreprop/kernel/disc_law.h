@@ -112,6 +112,11 @@ static inline void make_law(
     find_gains(law, mode_of(modes, &regime.contact), places);
 }
 
+/* How the frame turns along a step from the bit whose θ is a polynomial, as far as the law looks at it; 0 if too far. */
+static inline int look_along(const Law *law, const Frame *start, const double theta[][S + 1], Turning *turning) {
+    return make_turning(start, theta, (int)law->inputs.reference == FROM_NORTH, turning);
+}
+
 /* The bit tilt under F_0, and its derivative: |ψ| <= ψ*, and F_0 − ηΠ R₂(ϖ)ψ in the normal cone of that disc. */
 static inline void tilt_under(
     const Law *law, double eta_pi, double psi_star, const double F_0[2], double psi[2], double by[2][2]

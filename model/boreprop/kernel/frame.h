@@ -63,6 +63,16 @@ static inline void series_at(const Series *series, double t, double row[3]) {
     row[HIGH] = high, row[RIGHT] = right, row[AHEAD] = ahead;
 }
 
+/* The row at the points of a step. */
+static inline void series_at_points(const Series *series, double row[3][POINTS]) {
+    for (int d = 0; d < 3; d++) {
+        double sum[POINTS] = {0.0};
+        for (int m = series->count - 1; m >= 0; m--)
+            for (int k = 0; k < POINTS; k++) sum[k] = sum[k] * POINT[k] + series->term[m][d];
+        memcpy(row[d], sum, sizeof sum);
+    }
+}
+
 static inline double dot_3(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /* Make a frame orthonormal that has lost a few digits, from its rows north and down. */

@@ -5,11 +5,6 @@
 #include "disc_law.h"
 #include "stages.h"
 
-/* How the frame turns along a step from the bit whose θ is a polynomial, as far as the law looks at it. */
-static inline int look_at_turning(const Law *law, const Frame *start, const double theta[][S + 1], Turning *turning) {
-    return make_turning(start, theta, (int)law->inputs.reference == FROM_NORTH, turning);
-}
-
 enum { MOST_ITERATIONS = 12 };
 #define REST 1e-3    /* what may be neglected of the solution of a step, in tolerances, which adds up over steps, … */
 #define FINEST 3e-10 /* … and in clearances in contact, but for those that are near rounding; … */
@@ -24,13 +19,14 @@ enum { MOST_ITERATIONS = 12 };
 typedef struct {
     double change[S][COMPONENTS], c[COMPONENTS][S + 1];
     Behind behind[POINTS];
-    Turning turning;
+    View view[POINTS];
 } Solving;
 
 static inline int point_of(int node) { return node < AT_CHECK ? node : node + 1; }
 
-/* The polynomial of the step, and the state at its points. */
-static inline void spread(const double x[COMPONENTS], Solving *solving, Trial *trial) {
+/* The polynomial of the step, and state and frame at its points; returns 0 if it turns too far. */
+static inline int spread(const Law *law, const double x[COMPONENTS], Solving *solving, Trial *trial) {
+    Turning turning;
     for (int c = 0; c < COMPONENTS; c++) {
         double *coefficient = solving->c[c];
         coefficient[0] = x[c];
@@ -41,14 +37,19 @@ static inline void spread(const double x[COMPONENTS], Solving *solving, Trial *t
         for (int j = 0; j < S; j++) trial->x[c][point_of(j)] = x[c] + solving->change[j][c];
         trial->x[c][AT_CHECK] = polynomial(coefficient, POINT[AT_CHECK]);
     }
+    if (!look_along(law, &trial->step.frame, (const double (*)[S + 1]) solving->c, &turning)) return 0;
+    view_at_points(&turning, solving->view);
+    return 1;
 }
 
 /* Let the law speak at a point of the step. */
 static inline int speak(const Law *law, const Solving *solving, Trial *trial, int point, double s_1, int slopes) {
     double x[COMPONENTS], first[2] = {trial->delayed[0][0][point], trial->delayed[0][1][point]};
-    View view = view_at(&solving->turning, POINT[point]);
     for (int c = 0; c < COMPONENTS; c++) x[c] = trial->x[c][point];
-    return law_here(law, x, trial->ahead[point], &view, &solving->behind[point], first, s_1, slopes, &trial->at[point]);
+    return law_here(
+        law, x, trial->ahead[point], &solving->view[point], &solving->behind[point], first, s_1, slopes,
+        &trial->at[point]
+    );
 }
 
 /* A guess: the last step goes on or, where it is too short for that, the hole goes straight on. */
@@ -78,49 +79,51 @@ static inline void gather(double h, const Trial *trial, Stages *stages) {
     eliminate(stages);
 }
 
-/* One correction, with the derivatives as they are now or, if that is not `anew`, as they were; gives its size. Returns 0
-   if there is none. */
-static inline int correct(
-    const Law *law, double s_1, double h, int anew, Stages *stages, Solving *solving, Trial *trial, double *size
+/* Let the law speak at the nodes; returns 0 if it cannot. */
+static inline int speak_at_nodes(const Law *law, const Solving *solving, Trial *trial, double s_1, int slopes) {
+    int found = 1;
+    for (int k = 0; k < S && found; k++) found = speak(law, solving, trial, point_of(k), s_1, slopes);
+    return found;
+}
+
+/* The correction of the changes, by what the law has said; returns its size. */
+static inline double find_correction(
+    double h, const Stages *stages, const Solving *solving, const Trial *trial, double by[S][COMPONENTS]
 ) {
-    double by[S][COMPONENTS];
-    for (int k = 0; k < S; k++) {
-        if (!speak(law, solving, trial, point_of(k), s_1, anew)) return 0;
+    double size = 0.0;
+    for (int k = 0; k < S; k++)
         for (int c = 0; c < COMPONENTS; c++) {
             by[k][c] = h * trial->at[point_of(k)].rate[c];
             for (int j = 0; j < S; j++) by[k][c] -= DIFFERENCE[k][j] * solving->change[j][c];
         }
-    }
-    if (anew) gather(h, trial, stages);
     solve_stages(stages, by);
-    *size = 0.0;
     for (int k = 0; k < S; k++)
-        for (int c = 0; c < COMPONENTS; c++) {
-            solving->change[k][c] += by[k][c];
-            if (!isfinite(by[k][c])) return 0;
-            *size = larger(*size, fabs(by[k][c]));
-        }
-    return 1;
+        for (int c = 0; c < COMPONENTS; c++)
+            size = fabs(by[k][c]) <= size ? size : fabs(by[k][c]); /* or not a number */
+    return size;
 }
 
-/* Solve the step; returns 0 if no solution is found. */
+/* Solve the step, with the derivatives as they are at first, and anew where that is slow; returns 0 if no solution is
+   found. */
 static inline int solve_step(
     const Law *law, const Options *options, double s_1, const double x[COMPONENTS], Solving *solving, Trial *trial
 ) {
     Stages stages;
-    double rate = INFINITY, size = 0.0;
+    double h = trial->step.h, rate = INFINITY, size = 0.0, by[S][COMPONENTS];
     double rest = larger(REST * smaller(options->relative_tolerance, larger(law->finest, FINEST)), LEAST_REST);
     for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
         double before = size;
-        spread(x, solving, trial);
-        if (!look_at_turning(law, &trial->step.frame, (const double (*)[S + 1]) solving->c, &solving->turning))
-            return 0;
-        if (!correct(law, s_1, trial->step.h, rate > SLOW, &stages, solving, trial, &size)) return 0;
+        int anew = rate > SLOW;
+        if (!spread(law, x, solving, trial) || !speak_at_nodes(law, solving, trial, s_1, anew)) return 0;
+        if (anew) gather(h, trial, &stages);
+        size = find_correction(h, &stages, solving, trial, by);
+        if (size <= rest) return 1;
+        if (!isfinite(size)) return 0;
+        for (int k = 0; k < S; k++)
+            for (int c = 0; c < COMPONENTS; c++) solving->change[k][c] += by[k][c];
         rate = iteration ? size / before : 0.0;
-        if (size == 0.0 || (iteration && rate < 1 && size * rate / (1 - rate) <= rest)) {
-            spread(x, solving, trial);
-            return look_at_turning(law, &trial->step.frame, (const double (*)[S + 1]) solving->c, &solving->turning);
-        }
+        if (iteration && rate < 1 && size * rate / (1 - rate) <= rest)
+            return spread(law, x, solving, trial) && speak_at_nodes(law, solving, trial, s_1, 0);
     }
     return 0;
 }
@@ -176,8 +179,7 @@ static inline void law_try(
     }
     guess_changes(last, x, trial, &solving);
     guess_contacts(law, x, &solving, trial);
-    int found = solve_step(law, options, s_1, x, &solving, trial);
-    for (int k = 0; k < POINTS && found; k++) found = speak(law, &solving, trial, k, s_1, k == AT_CHECK);
+    int found = solve_step(law, options, s_1, x, &solving, trial) && speak(law, &solving, trial, AT_CHECK, s_1, 1);
     const Reply *check = &trial->at[AT_CHECK];
     for (int c = 0; c < COMPONENTS && found; c++)
         defect[c] = polynomial_slope(solving.c[c], POINT[AT_CHECK]) - h * check->rate[c];

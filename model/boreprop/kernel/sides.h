@@ -74,6 +74,15 @@ static inline View view_at(const Turning *turning, double t) {
     return view;
 }
 
+/* The same at the points of a step. */
+static inline void view_at_points(const Turning *turning, View view[POINTS]) {
+    double down[3][POINTS], north[3][POINTS] = {{0}};
+    series_at_points(&turning->of_down, down);
+    if (turning->north) series_at_points(&turning->of_north, north);
+    for (int k = 0; k < POINTS; k++)
+        for (int d = 0; d < 3; d++) view[k].down[d] = down[d][k], view[k].north[d] = north[d][k];
+}
+
 /* A force of the pads with these parts along and across the side from which the toolface counts: the high side, north or e₂. */
 static inline Vector pad_force(double along, double across, int reference, const View *view) {
     Vector side = {{1.0, 0.0}, {{0}}, {{0}}}, force;

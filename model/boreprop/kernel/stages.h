@@ -49,9 +49,13 @@ static inline void multiply(Block a, const Block b) {
 
 /* Take a times b off. */
 static inline void take_product(Block from, const Block a, const Block b) {
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < 4; i++) {
+        double row[4];
+        memcpy(row, from[i], sizeof row);
         for (int k = 0; k < 4; k++)
-            for (int j = 0; j < 4; j++) from[i][j] -= a[i][k] * b[k][j];
+            for (int j = 0; j < 4; j++) row[j] -= a[i][k] * b[k][j];
+        memcpy(from[i], row, sizeof row);
+    }
 }
 
 static inline void eliminate(Stages *stages) {
