@@ -31,12 +31,18 @@ static inline void pass_event(Integrator *p, const Step *step) {
     change_regime(p, switch_over(p->now.regime, p->scaled.n, step->event, step->side));
 }
 
-/* Go on along the path to `xi` in the present step. */
-static inline void move_path(State *now, double xi) { move_along(&now->step, xi, now->path); }
+/* A step of length zero at `xi`, where the last one has led to the state `x`: for a run to start or restart there, or to be
+   made longer. */
+static inline Step standstill(const Step *last, double xi, const double x[COMPONENTS]) {
+    Step step = {.xi = xi, .h = 1.0, .end = xi, .event = NONE, .next_h = INFINITY};
+    for (int c = 0; c < COMPONENTS; c++) step.x[c][0] = x[c];
+    lead_on(last, xi, &step);
+    return step;
+}
 
 /* Where the bit is, from the start of the run: its depth is the last of the coordinates. */
 static inline void position(const State *now, double path[AXES]) {
-    memcpy(path, now->path, sizeof now->path);
+    memcpy(path, now->step.path, sizeof now->step.path);
     move_along(&now->step, now->xi, path);
 }
 
@@ -54,7 +60,6 @@ static inline void keep_origin_near(State *now, double x[COMPONENTS]) {
 static inline int leave(Integrator *p, const Step *last, double x[COMPONENTS]) {
     State *now = &p->now;
     double xi = last->end;
-    move_path(now, xi);
     step_state(last, xi, x);
     double before[COMPONENTS];
     memcpy(before, x, sizeof before);

@@ -42,15 +42,12 @@ static inline void law_along(const Law *law, const Bound *bound, const Trial *tr
 }
 
 /* Go on to `xi` on the path north, east and down: ∫ T dξ, T = Q R(−ψ⃗)(0, 0, 1)ᵀ, by Gauss's three points. */
-static inline void move_along(const Step *step, double xi, double path[AXES]) {
+static inline void move_turning(const Step *step, const Turning *turning, double xi, double path[AXES]) {
     double nodes[3] = {0.5 - sqrt(0.15), 0.5, 0.5 + sqrt(0.15)}, weights[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
     double length = xi - step->xi;
-    Turning turning;
-    if (length == 0.0) return;
-    make_turning(&step->frame, step->x, 1, &turning);
     for (int k = 0; k < 3; k++) {
         double t = nodes[k] * length / step->h, turned[3], back[2];
-        Frame frame = frame_at(&turning, t);
+        Frame frame = frame_at(turning, t);
         for (int d = 0; d < 2; d++)
             back[d] = polynomial_slope(step->x[LATERAL + d], t) / step->h - polynomial(step->x[ANGLE + d], t);
         for (int axis = NORTH; axis <= DOWN; axis++) {
@@ -58,6 +55,22 @@ static inline void move_along(const Step *step, double xi, double path[AXES]) {
             path[axis] += weights[k] * length * turned[AHEAD];
         }
     }
+}
+
+static inline void move_along(const Step *step, double xi, double path[AXES]) {
+    Turning turning;
+    if (xi == step->xi) return;
+    make_turning(&step->frame, step->x, 1, &turning);
+    move_turning(step, &turning, xi, path);
+}
+
+/* Let path and frame of the next step begin where the last one has led at `xi`. */
+static inline void lead_on(const Step *last, double xi, Step *next) {
+    Turning turning;
+    make_turning(&last->frame, last->x, 1, &turning);
+    memcpy(next->path, last->path, sizeof next->path);
+    move_turning(last, &turning, xi, next->path);
+    next->frame = frame_at(&turning, (xi - last->xi) / last->h);
 }
 
 #define RIGHT_ANGLE 1.5707963267948966
