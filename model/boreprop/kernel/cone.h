@@ -21,7 +21,7 @@ enum { TOUCHES = -1 }; /* the contact beyond the bound of a free offset, as `cha
 static inline void direction_factors(double square, double least, double *w, double *bend) {
     double inner = REACHED * least, from = inner * inner;
     if (square >= from) {
-        *w = 1 / sqrt(square), *bend = -*w / square;
+        *w = 1 / sqrt(square), *bend = -*w * *w * *w;
         return;
     }
     double t = 1 - square / from; /* the first terms of (1 − t)^(−1/2), and one that brings it back to 1 */

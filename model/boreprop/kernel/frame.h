@@ -118,11 +118,12 @@ static inline Frame turned_along(const Frame *start, const double theta[][S + 1]
 
 /* sin a / a and (1 − cos a)/a², which turn the frame by an angle a. */
 static inline void turn_factors(double square, double *sine, double *cosine) {
-    double a = sqrt(square);
-    if (square < 1e-4) {
-        *sine = 1 - square / 6 * (1 - square / 20 * (1 - square / 42));
-        *cosine = (1 - square / 12 * (1 - square / 30 * (1 - square / 56))) / 2;
-    } else *sine = sin(a) / a, *cosine = (1 - cos(a)) / square;
+    double s = square, a;
+    if (square < 0.1) {
+        *sine = 1 - s * (1.0 / 6) * (1 - s * (1.0 / 20) * (1 - s * (1.0 / 42) * (1 - s * (1.0 / 72) * (1 - s / 110))));
+        *cosine =
+            0.5 - s * (1.0 / 24) * (1 - s * (1.0 / 30) * (1 - s * (1.0 / 56) * (1 - s * (1.0 / 90) * (1 - s / 132))));
+    } else a = sqrt(square), *sine = sin(a) / a, *cosine = (1 - cos(a)) / square;
 }
 
 /* A row of Q R(a), where R(a) takes d towards e₂ a₂ + e₃ a₃ by the angle |a|. */

@@ -150,7 +150,8 @@ static inline void guess_contacts(const Law *law, const double x[COMPONENTS], co
     memcpy(view.north, trial->step.frame.row[NORTH], sizeof view.north);
     const double first[2] = {trial->delayed[0][0][0], trial->delayed[0][1][0]};
     ScaledInputs inputs = inputs_ahead(&law->inputs, trial->ahead[0]);
-    Across across = across_the_bit(law, &inputs, x, &view, first, law->s_1);
+    Across across;
+    look_across(law, &inputs, x, &view, first, law->s_1, 0, &across);
     rows_here(law, x, &across, &solving->behind[0], &at);
     settle_discs(law->modes, at.q, v, law->contact);
     const Touching *of = &law->touching;

@@ -103,7 +103,8 @@ static inline Status drill_in_layer(Integrator *p, const Ground *ground, double 
     double top = layer_top(ground, now->layer) / l1, bottom = layer_bottom(ground, now->layer) / l1;
     for (;;) {
         double begin = larger(now->step.xi, now->stay);
-        if (!p->exit_known) p->exit_side = first_exit(&now->step, now->step.path[AXES - 1], top, bottom, begin, &p->exit);
+        if (!p->exit_known)
+            p->exit_side = first_exit(&now->step, now->step.path[AXES - 1], top, bottom, begin, &p->exit);
         p->exit_known = 1;
         *left = p->exit <= end ? p->exit_side : 0;
         if (*left) break;

@@ -21,7 +21,7 @@ static inline Response respond_at(
     const Scaled *scaled = &p->scaled;
     const Beam *beam = &p->modes.beam;
     int n = scaled->n, places = now->places.count;
-    double delayed[MAX_PLACES][DIRECTIONS], by[2][2];
+    double delayed[MAX_PLACES][DIRECTIONS];
     Law law;
     Behind behind;
     Regime free = {now->regime.contact, 0};
@@ -51,7 +51,7 @@ static inline Response respond_at(
         }
     }
     law.saturated = response.regime.saturation = length_of(at->F_0) / inputs.eta_pi > inputs.psi_star + ROUNDING;
-    tilt_under(&law, inputs.eta_pi, inputs.psi_star, at->F_0, at->psi, by);
+    tilt_under(&law, inputs.eta_pi, inputs.psi_star, at->F_0, at->psi, NULL);
     for (int d = 0; d < DIRECTIONS; d++) {
         response.Theta[d] = x[ANGLE + d] - at->psi[d], response.F_0[d] = at->F_0[d];
         for (int i = 0; i < places; i++)

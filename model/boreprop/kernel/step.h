@@ -12,8 +12,8 @@ enum { NONE = -1 }; /* no event */
 typedef struct {
     double xi, h, x[COMPONENTS][S + 1], end;
     double path[AXES]; /* from the start of the run to xi: sideways and down; in space north, east and down */
-    int event, side; /* the part whose bound is met at the end, and on which side */
-    double next_h;   /* length planned for the next step */
+    int event, side;   /* the part whose bound is met at the end, and on which side */
+    double next_h;     /* length planned for the next step */
 #ifdef SPACE
     Frame frame; /* at xi */
 #endif
