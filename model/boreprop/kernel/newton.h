@@ -6,8 +6,9 @@
 #include "stages.h"
 
 enum { MOST_ITERATIONS = 12 };
-#define REST 1e-3    /* what may be neglected of the solution of a step, in tolerances, which adds up over steps, … */
-#define FINEST 3e-10 /* … and in clearances in contact, but for those that are near rounding; … */
+#define REST 1e-3     /* what may be neglected of the solution of a step, in tolerances, which adds up over steps; … */
+#define COARSEST 1e-7 /* … in this if they are coarser, so that a run of short steps is exact; … */
+#define FINEST 3e-10  /* … in clearances in contact, but for those that are near rounding; … */
 #define LEAST_REST 3e-14 /* … at least this, above the rounding of Y */
 #define SLOW 0.1         /* a correction, over the last one, after which derivatives are taken anew */
 #define TOO_HARD 100.0   /* the error, over the tolerance, of a step that is not solved: the next is a third as long */
@@ -103,25 +104,29 @@ static inline double find_correction(
     return size;
 }
 
+/* What may be neglected of the solution of a step. */
+static inline double rest_of(const Law *law, const Options *options) {
+    double least = smaller(options->relative_tolerance, COARSEST);
+    return larger(REST * smaller(least, larger(law->finest, FINEST)), LEAST_REST);
+}
+
 /* Solve the step, with the derivatives as they are at first, and anew where that is slow; returns 0 if no solution is
    found. */
 static inline int solve_step(
     const Law *law, const Options *options, double s_1, const double x[COMPONENTS], Solving *solving, Trial *trial
 ) {
     Stages stages;
-    double h = trial->step.h, rate = INFINITY, size = 0.0, by[S][COMPONENTS];
-    double rest = larger(REST * smaller(options->relative_tolerance, larger(law->finest, FINEST)), LEAST_REST);
+    double h = trial->step.h, rest = rest_of(law, options), rate = INFINITY, before = INFINITY, by[S][COMPONENTS];
     for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
-        double before = size;
         int anew = rate > SLOW;
         if (!spread(law, x, solving, trial) || !speak_at_nodes(law, solving, trial, s_1, anew)) return 0;
         if (anew) gather(h, trial, &stages);
-        size = find_correction(h, &stages, solving, trial, by);
-        if (size <= rest) return 1;
+        double size = find_correction(h, &stages, solving, trial, by);
+        if (iteration && size <= rest) return 1;
         if (!isfinite(size)) return 0;
         for (int k = 0; k < S; k++)
             for (int c = 0; c < COMPONENTS; c++) solving->change[k][c] += by[k][c];
-        rate = iteration ? size / before : 0.0;
+        rate = size / before, before = size;
         if (iteration && rate < 1 && size * rate / (1 - rate) <= rest)
             return spread(law, x, solving, trial) && speak_at_nodes(law, solving, trial, s_1, 0);
     }
