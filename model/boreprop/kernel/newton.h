@@ -53,18 +53,17 @@ static inline int speak(const Law *law, const Solving *solving, Trial *trial, in
     );
 }
 
-/* A guess: the last step goes on or, where it is too short for that, the hole goes straight on. */
+/* A guess: the last step goes on or, where it is too short for that, turns on as it ends. */
 static inline void guess_changes(const Step *last, const double x[COMPONENTS], const Trial *trial, Solving *solving) {
-    double from = (trial->step.xi - last->xi) / last->h, by = trial->step.h / last->h;
-    int goes_on = last->end > last->xi && from + by <= 1 + FARTHEST;
+    double xi = trial->step.xi, h = trial->step.h, from = (xi - last->xi) / last->h, by = h / last->h;
+    int moves = last->end > last->xi, goes_on = moves && from + by <= 1 + FARTHEST;
     for (int c = 0; c < COMPONENTS; c++) {
-        double slope = c < LATERAL            ? 0.0
-                       : last->end > last->xi ? polynomial_slope(last->x[c], from) * by
-                                              : x[c - LATERAL] * trial->step.h;
+        double slope = moves ? h * step_derivative(last, c, 1, xi) : c < LATERAL ? 0.0 : h * x[c - LATERAL];
+        double bend = moves ? h * h / 2 * step_derivative(last, c, 2, xi) : 0.0;
         double start = polynomial(last->x[c], from);
         for (int j = 0; j < S; j++) {
             double t = POINT[point_of(j)];
-            solving->change[j][c] = goes_on ? polynomial(last->x[c], from + by * t) - start : slope * t;
+            solving->change[j][c] = goes_on ? polynomial(last->x[c], from + by * t) - start : t * (slope + t * bend);
         }
     }
 }
