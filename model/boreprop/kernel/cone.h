@@ -167,16 +167,17 @@ static inline int solve_contacts(
     for (int a = 0; a < m; a++)
         for (int d = 0; d < 2; d++) F[a][d] = -walls.beyond[a][d] / of->k[a];
     if (!by) return 1;
-    fill_rows(of, &walls, matrix);
-    for (int i = 0; i < size; i++) memcpy(&matrix[i][size], by[i], sizeof by[i]);
-    if (m > 1 && !solve_equations(size, COMPONENTS, matrix)) return 0;
+    if (m > 1) {
+        fill_rows(of, &walls, matrix);
+        for (int i = 0; i < size; i++) memcpy(&matrix[i][size], by[i], sizeof by[i]);
+        if (!solve_equations(size, COMPONENTS, matrix)) return 0;
+        for (int i = 0; i < size; i++) memcpy(by[i], &matrix[i][size], sizeof by[i]);
+    }
     for (int a = 0; a < m; a++)
-        for (int d = 0; d < 2; d++)
-            for (int c = 0; c < COMPONENTS; c++) {
-                const double *slope = walls.slope[a][d];
-                by[2 * a + d][c] =
-                    -(slope[0] * matrix[2 * a][size + c] + slope[1] * matrix[2 * a + 1][size + c]) / of->k[a];
-            }
+        for (int c = 0; c < COMPONENTS; c++) {
+            double v_by[2] = {by[2 * a][c], by[2 * a + 1][c]};
+            for (int d = 0; d < 2; d++) by[2 * a + d][c] = -dot(2, walls.slope[a][d], v_by) / of->k[a];
+        }
     return 1;
 }
 

@@ -41,7 +41,7 @@ typedef struct {
     int count, n, saturated, axial, stands, changes;
     const Modes *modes;
     Contact contact;
-    double s_1, s_n, y_star[MAX_PLACES], walk_cosine, walk_sine, toolface_cosine, toolface_sine;
+    double s_n, y_star[MAX_PLACES], walk_cosine, walk_sine, toolface_cosine, toolface_sine;
     ScaledInputs inputs;
     double inputs_xi; /* where the inputs are those that it was made under */
     double longest;   /* step of a law that changes */
@@ -91,7 +91,7 @@ static inline void make_law(
     law->stands = mode->stands;
     law->modes = modes, law->contact = regime.contact, law->inputs = inputs, law->inputs_xi = inputs_xi,
     law->bound_count = 0;
-    law->s_1 = scaled->s[0], law->s_n = scaled->s[n - 1];
+    law->s_n = scaled->s[n - 1];
     law->walk_cosine = cos(inputs.walk), law->walk_sine = sin(inputs.walk);
     law->toolface_cosine = cos(inputs.toolface), law->toolface_sine = sin(inputs.toolface);
     law->changes = law_changes(&inputs);
@@ -130,7 +130,7 @@ static inline void tilt_under(
     }
     direction_factors(F_0[0] * F_0[0] + F_0[1] * F_0[1], eta_pi * psi_star, &w, &bend);
     double limit = eta_pi * psi_star * sine, s = limit * w;
-    double c = sqrt(larger(1 - s * s, 1e-4));
+    double c = s == 0.0 ? 1.0 : sqrt(larger(1 - s * s, 1e-4));
     for (int d = 0; d < 2; d++) psi[d] = psi_star * w * (c * F_0[d] + (d ? -s : s) * F_0[!d]);
     for (int d = 0; by && d < 2; d++) {
         double turn = d ? -1.0 : 1.0, by_s = (turn * F_0[!d] - s / c * F_0[d]) * w * limit;
@@ -150,12 +150,12 @@ typedef struct {
 /* Derivatives of the weight are among it only if `slopes` are asked for. */
 static inline void look_across(
     const Law *law, const ScaledInputs *inputs, const double x[COMPONENTS], const View *view, const double first[2],
-    double s_1, int slopes, Across *across
+    int slopes, Across *across
 ) {
     double along = inputs->F_rss * law->toolface_cosine, aside = inputs->F_rss * law->toolface_sine, a[2];
-    for (int d = 0; d < 2; d++) a[d] = (x[LATERAL + d] - first[d]) / s_1 - x[ANGLE + d];
+    for (int d = 0; d < 2; d++) a[d] = x[LATERAL + d] - first[d] - x[ANGLE + d];
     memset(across, 0, sizeof *across);
-    weight_across(view->down, a, law->axial, s_1, slopes, &across->G);
+    weight_across(view->down, a, law->axial, slopes, &across->G);
     if (inputs->F_rss != 0.0) across->F_rss = pad_force(along, aside, (int)inputs->reference, view);
     if (law->modes->beam.end != 0.0) across->high = side_of(view->down, -1.0);
 }
@@ -199,15 +199,15 @@ static inline void rows_here(
     }
 }
 
-/* The law in the state `x`, `ahead` of where its inputs were taken over, with the frame in `view` and Y(ξ−s_1) as given.
+/* The law in the state `x`, `ahead` of where its inputs were taken over, with the frame in `view` and Y(ξ−s_1) as given, s_1 = 1.
    Contacts are sought from those in `at`; returns 0 if none are found. */
 static inline int law_here(
     const Law *law, const double x[COMPONENTS], double ahead, const View *view, const Behind *behind,
-    const double first[2], double s_1, int slopes, Reply *at
+    const double first[2], int slopes, Reply *at
 ) {
     ScaledInputs inputs = inputs_ahead(&law->inputs, ahead);
     Across across;
-    look_across(law, &inputs, x, view, first, s_1, slopes, &across);
+    look_across(law, &inputs, x, view, first, slopes, &across);
     int m = law->touching.touching;
     double eta_pi = at->eta_pi = inputs.eta_pi, by_F_0[2][2];
     at->psi_star = inputs.psi_star;

@@ -120,9 +120,10 @@ static inline Frame turned_along(const Frame *start, const double theta[][S + 1]
 static inline void turn_factors(double square, double *sine, double *cosine) {
     double s = square, a;
     if (square < 0.1) {
-        *sine = 1 - s * (1.0 / 6) * (1 - s * (1.0 / 20) * (1 - s * (1.0 / 42) * (1 - s * (1.0 / 72) * (1 - s / 110))));
-        *cosine =
-            0.5 - s * (1.0 / 24) * (1 - s * (1.0 / 30) * (1 - s * (1.0 / 56) * (1 - s * (1.0 / 90) * (1 - s / 132))));
+        *sine = 1 - s * (1.0 / 6) *
+                        (1 - s * (1.0 / 20) * (1 - s * (1.0 / 42) * (1 - s * (1.0 / 72) * (1 - s * (1.0 / 110)))));
+        *cosine = 0.5 - s * (1.0 / 24) *
+                            (1 - s * (1.0 / 30) * (1 - s * (1.0 / 56) * (1 - s * (1.0 / 90) * (1 - s * (1.0 / 132)))));
     } else a = sqrt(square), *sine = sin(a) / a, *cosine = (1 - cos(a)) / square;
 }
 

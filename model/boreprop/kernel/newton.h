@@ -44,12 +44,11 @@ static inline int spread(const Law *law, const double x[COMPONENTS], Solving *so
 }
 
 /* Let the law speak at a point of the step. */
-static inline int speak(const Law *law, const Solving *solving, Trial *trial, int point, double s_1, int slopes) {
+static inline int speak(const Law *law, const Solving *solving, Trial *trial, int point, int slopes) {
     double x[COMPONENTS], first[2] = {trial->delayed[0][0][point], trial->delayed[0][1][point]};
     for (int c = 0; c < COMPONENTS; c++) x[c] = trial->x[c][point];
     return law_here(
-        law, x, trial->ahead[point], &solving->view[point], &solving->behind[point], first, s_1, slopes,
-        &trial->at[point]
+        law, x, trial->ahead[point], &solving->view[point], &solving->behind[point], first, slopes, &trial->at[point]
     );
 }
 
@@ -80,9 +79,9 @@ static inline void gather(double h, const Trial *trial, Stages *stages) {
 }
 
 /* Let the law speak at the nodes; returns 0 if it cannot. */
-static inline int speak_at_nodes(const Law *law, const Solving *solving, Trial *trial, double s_1, int slopes) {
+static inline int speak_at_nodes(const Law *law, const Solving *solving, Trial *trial, int slopes) {
     int found = 1;
-    for (int k = 0; k < S && found; k++) found = speak(law, solving, trial, point_of(k), s_1, slopes);
+    for (int k = 0; k < S && found; k++) found = speak(law, solving, trial, point_of(k), slopes);
     return found;
 }
 
@@ -112,13 +111,13 @@ static inline double rest_of(const Law *law, const Options *options) {
 /* Solve the step, with the derivatives as they are at first, and anew where that is slow; returns 0 if no solution is
    found. */
 static inline int solve_step(
-    const Law *law, const Options *options, double s_1, const double x[COMPONENTS], Solving *solving, Trial *trial
+    const Law *law, const Options *options, const double x[COMPONENTS], Solving *solving, Trial *trial
 ) {
     Stages stages;
     double h = trial->step.h, rest = rest_of(law, options), rate = INFINITY, before = INFINITY, by[S][COMPONENTS];
     for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
         int anew = rate > SLOW;
-        if (!spread(law, x, solving, trial) || !speak_at_nodes(law, solving, trial, s_1, anew)) return 0;
+        if (!spread(law, x, solving, trial) || !speak_at_nodes(law, solving, trial, anew)) return 0;
         if (anew) gather(h, trial, &stages);
         double size = find_correction(h, &stages, solving, trial, by);
         if (iteration && size <= rest) return 1;
@@ -127,7 +126,7 @@ static inline int solve_step(
             for (int c = 0; c < COMPONENTS; c++) solving->change[k][c] += by[k][c];
         rate = size / before, before = size;
         if (iteration && rate < 1 && size * rate / (1 - rate) <= rest)
-            return spread(law, x, solving, trial) && speak_at_nodes(law, solving, trial, s_1, 0);
+            return spread(law, x, solving, trial) && speak_at_nodes(law, solving, trial, 0);
     }
     return 0;
 }
@@ -155,7 +154,7 @@ static inline void guess_contacts(const Law *law, const double x[COMPONENTS], co
     const double first[2] = {trial->delayed[0][0][0], trial->delayed[0][1][0]};
     ScaledInputs inputs = inputs_ahead(&law->inputs, trial->ahead[0]);
     Across across;
-    look_across(law, &inputs, x, &view, first, law->s_1, 0, &across);
+    look_across(law, &inputs, x, &view, first, 0, &across);
     rows_here(law, x, &across, &solving->behind[0], &at);
     settle_discs(law->modes, at.q, v, law->contact);
     const Touching *of = &law->touching;
@@ -175,7 +174,7 @@ static inline double astray(const Law *law, const Options *options, double h, co
 static inline void law_try(
     const Law *law, const Options *options, const Step *last, const double x[COMPONENTS], Trial *trial
 ) {
-    const double h = trial->step.h, s_1 = law->s_1;
+    const double h = trial->step.h;
     double defect[COMPONENTS] = {0.0};
     Solving solving;
     for (int k = 0; k < POINTS; k++) {
@@ -184,7 +183,7 @@ static inline void law_try(
     }
     guess_changes(last, x, trial, &solving);
     guess_contacts(law, x, &solving, trial);
-    int found = solve_step(law, options, s_1, x, &solving, trial) && speak(law, &solving, trial, AT_CHECK, s_1, 1);
+    int found = solve_step(law, options, x, &solving, trial) && speak(law, &solving, trial, AT_CHECK, 1);
     const Reply *check = &trial->at[AT_CHECK];
     for (int c = 0; c < COMPONENTS && found; c++)
         defect[c] = polynomial_slope(solving.c[c], POINT[AT_CHECK]) - h * check->rate[c];

@@ -10,11 +10,9 @@ typedef struct {
     double value[2], by_theta[2][2], by_Y[2][2];
 } Vector;
 
-/* The weight: G = −((QP)₂·down, (QP)₃·down), P = R(⟨Θ⟩_1 − θ); where the axial load counts, P = 1. Derivatives only if
+/* The weight: G = −((QP)₂·down, (QP)₃·down), P = R(a), a = ⟨Θ⟩_1 − θ; where the axial load counts, P = 1. Derivatives only if
    `slopes` are asked for. */
-static inline void weight_across(
-    const double down[3], const double a[2], int axial, double s_1, int slopes, Vector *G
-) {
+static inline void weight_across(const double down[3], const double a[2], int axial, int slopes, Vector *G) {
     double sine = 0.0, cosine = 0.0, square = a[0] * a[0] + a[1] * a[1], along = down[HIGH] * a[0] + down[RIGHT] * a[1];
     if (!axial) turn_factors(square, &sine, &cosine);
     double turned = cosine * along + sine * down[AHEAD];
@@ -31,7 +29,7 @@ static inline void weight_across(
     for (int d = 0; d < 2; d++)
         for (int c = 0; c < 2; c++) {
             double by_a = (d == c ? turned : 0.0) + a[d] * (cosine * down[c] + bend * a[c]);
-            G->by_Y[d][c] = by_a / s_1;
+            G->by_Y[d][c] = by_a;
             G->by_theta[d][c] += a[d] * (sine * down[c] - cosine * down[AHEAD] * a[c]) - by_a;
         }
 }

@@ -32,7 +32,7 @@ static inline double law_at(
     look_behind(law, &delayed[0][0], DIRECTIONS, 1, &behind);
     look_along(law, &trial->step.frame, trial->step.x, &turning);
     View view = view_at(&turning, t);
-    if (!law_here(law, x, xi - law->inputs_xi, &view, &behind, delayed[0], law->s_1, 0, &at)) return (double)NAN;
+    if (!law_here(law, x, xi - law->inputs_xi, &view, &behind, delayed[0], 0, &at)) return (double)NAN;
     return bounded_value(law, bound, &at);
 }
 
