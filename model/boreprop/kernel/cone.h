@@ -30,7 +30,7 @@ static inline void direction_factors(double square, double least, double *w, dou
 }
 
 /* Whether v lies beyond the disc, so that the support touches; without clearance it always does. */
-static inline int is_beyond(const double v[2], double y) { return y == 0.0 || hypot(v[0], v[1]) > y; }
+static inline int is_beyond(const double v[2], double y) { return y == 0.0 || length_of(v) > y; }
 
 /* What the wall takes of v: v less the nearest point of the disc of radius y, and its derivative by v, row by row. */
 static inline void beyond_disc(const double v[2], double y, double beyond[2], double slope[2][2]) {

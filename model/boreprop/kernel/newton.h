@@ -167,7 +167,7 @@ static inline void guess_contacts(const Law *law, const double x[COMPONENTS], co
    and fast where that is small: steps so short that no tilt makes an error in Y would not tell which regime follows. */
 static inline double astray(const Law *law, const Options *options, double h, const double defect[2]) {
     double way = h * law->inputs.psi_star;
-    return hypot(defect[0], defect[1]) / (AIMED * way + NO_WAY * options->relative_tolerance);
+    return length_of(defect) / (AIMED * way + NO_WAY * options->relative_tolerance);
 }
 
 /* Collocation from the state `x` over a trial step, whose place, length and delayed hole are given. */
