@@ -154,10 +154,9 @@ static inline void look_across(
 ) {
     double along = inputs->F_rss * law->toolface_cosine, aside = inputs->F_rss * law->toolface_sine, a[2];
     for (int d = 0; d < 2; d++) a[d] = x[LATERAL + d] - first[d] - x[ANGLE + d];
-    memset(across, 0, sizeof *across);
     weight_across(view->down, a, law->axial, slopes, &across->G);
-    if (inputs->F_rss != 0.0) across->F_rss = pad_force(along, aside, (int)inputs->reference, view);
-    if (law->modes->beam.end != 0.0) across->high = side_of(view->down, -1.0);
+    across->F_rss = inputs->F_rss != 0.0 ? pad_force(along, aside, (int)inputs->reference, view) : NO_VECTOR;
+    across->high = law->modes->beam.end != 0.0 ? side_of(view->down, -1.0) : NO_VECTOR;
 }
 
 /* A row of the beam without contacts in one direction, less its terms of the hole behind. */

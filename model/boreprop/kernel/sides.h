@@ -10,6 +10,8 @@ typedef struct {
     double value[2], by_theta[2][2], by_Y[2][2];
 } Vector;
 
+static const Vector NO_VECTOR = {{0.0}, {{0.0}}, {{0.0}}};
+
 /* The weight: G = −((QP)₂·down, (QP)₃·down), P = R(a), a = ⟨Θ⟩_1 − θ; where the axial load counts, P = 1. Derivatives only if
    `slopes` are asked for. */
 static inline void weight_across(const double down[3], const double a[2], int axial, int slopes, Vector *G) {
