@@ -137,8 +137,9 @@ def drill(case: Case, tolerance: float, stops: int = 1, saves: bool = False) -> 
         lengths = np.linspace(start, min(end, case.length), ROWS + 1)
         for row_start, row_end in pairwise(lengths):
             for before, length in pairwise([*np.linspace(row_start, row_end, stops + 1)[:-1], row_end]):
-                inputs = acting(course, np.array([before]), np.array([piece], dtype=np.intc))
-                run.follow(np.array([length]), inputs, np.array([-1], dtype=np.intc), np.empty((0, len(run.outputs()))))
+                inputs, which = acting(course, np.array([before]), np.array([piece], dtype=np.intc))
+                no_row, no_table = np.array([-1], dtype=np.intc), np.empty((0, len(run.outputs())))
+                run.follow(np.array([length]), inputs, no_row, no_table, which)
             if saves:
                 state, run = run.save(), begin(case, options)
                 run.restore(state)

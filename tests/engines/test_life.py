@@ -82,8 +82,9 @@ def test_results_do_not_depend_on_where_the_bit_stops_on_the_way(engine: str, st
 def test_following_legs_is_advancing_along_each(engine: str) -> None:
     following, advancing = rippling(engine), rippling(engine)
     lengths, forces = np.array([0.5, 0.5, 1.3, 2.0]), np.array([0.0, 1e-3, 1e-3, -1e-3])
-    table = np.full((3, len(following.outputs())), np.nan)
-    following.follow(lengths, held(4, forces, ETA_PI, following.bit), np.array([1, -1, -1, 0], dtype=np.intc), table)
+    inputs, which = held(3, np.array([-1e-3, 0.0, 1e-3]), ETA_PI, following.bit), np.array([1, 2, 2, 0], dtype=np.intc)
+    table = np.full((len(following.outputs()), 3), np.nan).T
+    following.follow(lengths, inputs, np.array([1, -1, -1, 0], dtype=np.intc), table, which)
     found = {}
     for length, force in zip(lengths.tolist(), forces.tolist(), strict=True):
         advancing.advance(length, force, ETA_PI)
@@ -118,6 +119,17 @@ def test_a_saved_state_runs_on_bit_by_bit(engine: str, where: float) -> None:
     other.advance(where + 6.0, 0.0, ETA_PI)
     assert kept(other) == kept(original)
     assert other.outputs() == original.outputs()
+
+
+def test_a_run_that_is_restored_takes_over_inputs_that_it_has_had_elsewhere(engine: str) -> None:
+    straight, restored = rippling(engine), rippling(engine)
+    straight.advance(4.4, 0.0, ETA_PI)
+    restored.restore(straight.save())
+    restored.advance(4.5, 1e-3, ETA_PI)
+    restored.restore(straight.save())
+    for run in (straight, restored):
+        run.advance(4.4 + 1e-9, 1e-3, ETA_PI)  # within the step
+    assert restored.outputs() == straight.outputs()
 
 
 def test_a_state_after_any_step_can_be_restored(engine: str) -> None:

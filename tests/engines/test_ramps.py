@@ -162,7 +162,8 @@ def legs(case: Case, ends: np.ndarray) -> Iterator[tuple[float, dict[str, Any]]]
     stops = np.union1d(ends, course.starts[1:])
     begins = np.append(0.0, stops[:-1])
     pieces = (np.searchsorted(course.starts, begins, side="right") - 1).astype(np.intc)
-    for end, values in zip(stops.tolist(), acting(course, begins, pieces).tolist(), strict=True):
+    inputs, which = acting(course, begins, pieces)
+    for end, values in zip(stops.tolist(), inputs[which].tolist(), strict=True):
         given_ = dict(zip(ACTING, values, strict=True))
         bit = BitRock(**fields_of("bit", given_, case.structure))
         own = {name: value for name, value in given_.items() if name not in (*ROCK, *IN_SPACE_ONLY)}

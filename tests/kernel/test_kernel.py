@@ -64,6 +64,14 @@ def test_arrays_that_do_not_fit_are_refused(case: Case, forces: int, rows: list[
         run.follow(np.array([1.0, 2.0]), held(forces, 0.0, 5e4, run.bit), rows, np.empty((2, columns - lacking)))
 
 
+@pytest.mark.parametrize("which", [[0, 1], [-1, 0], [0]])
+def test_legs_under_inputs_that_are_not_given_are_refused(case: Case, which: list[int]) -> None:
+    run = NativeDrilling(case.bha, case.bit, case.survey, active_weight_on_bit=case.active_weight_on_bit)
+    table, inputs = np.empty((0, len(scalar_names(OUTPUTS, 2)))), held(1, 0.0, 5e4, run.bit)
+    with pytest.raises(ValueError, match=r"^inputs, rows: must hold 2 times rss_force, "):
+        run.follow(np.array([1.0, 2.0]), inputs, [-1, -1], table, np.array(which, dtype=np.intc))
+
+
 # what happens where it is not
 
 

@@ -54,7 +54,8 @@ def test_what_an_engine_is_given_does_not_hold_the_rate_of_penetration() -> None
     course = course_of(scheduled(paper_case()))
     assert course.names == ("rss_force", "active_weight_on_bit", *ROCK, "rate_of_penetration")
     assert course.starts.tolist() == [0.0, 2.0, 4.0, 6.0]
-    given_ = acting(course, np.array([0.0, 3.0]), np.array([0, 1], dtype=np.intc))
+    inputs, which = acting(course, np.array([0.0, 3.0]), np.array([0, 1], dtype=np.intc))
+    given_ = inputs[which]
     ramps = ("rss_force", "active_weight_on_bit", *ROCK)
     assert ACTING == (*(name + end for name in ramps for end in ("", "_slope")), "weight_on_bit", *IN_SPACE_ONLY)
     assert given_[:, :4].tolist() == [[0.0, 500.0, 2e3, 500.0], [1e3, 0.0, 3500.0, 500.0]]

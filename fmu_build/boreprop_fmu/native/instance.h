@@ -265,7 +265,7 @@ static int compute(Component *c, char why[LINE]) {
     double outputs[MOST_OUTPUTS] = {0.0}, *before;
     Problem problem;
     if (!take_inputs(c, &before, why)) return 0;
-    int count = drilling_outputs(&c->run->drilling, outputs);
+    int count = drilling_outputs(&c->run->drilling, outputs, 1);
     give_back(c, before);
     if (!check_outputs(&c->run->drilling, outputs, &problem)) return tell(&problem, why);
     memcpy(c->value + all->first_output, outputs, (size_t)count * sizeof *outputs);

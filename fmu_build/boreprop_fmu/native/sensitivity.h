@@ -48,7 +48,8 @@ static fmi2Status derivatives_in_time(
         return fail(c, fmi2Error, why);
     }
     if (!take_inputs(c, &before, why)) return fail(c, fmi2Error, why);
-    Present at = present(&c->run->drilling);
+    Present at;
+    find_present(&c->run->drilling, &at);
     for (size_t i = 0; i < count; i++) {
         value[i] = change_in_time(c, &at, vr[i]);
         if (isnan(value[i])) status = fmi2Error;
@@ -68,7 +69,7 @@ static int outputs_with(Component *c, int given, double value, double outputs[MO
     if (!(before = kept_state(drilling, why))) return 0;
     c->value[given] = value;
     int done = check_given(c, c->value, why) && advance(c, drilling_length(drilling), present_inputs(c), why);
-    if (done) drilling_outputs(drilling, outputs);
+    if (done) drilling_outputs(drilling, outputs, 1);
     c->value[given] = own;
     give_back(c, before);
     return done;
@@ -136,7 +137,8 @@ static fmi2Status directional_derivatives(
         return fail(c, fmi2Error, why);
     }
     if (!take_inputs(c, &before, why)) return fail(c, fmi2Error, why);
-    Present at = present(&c->run->drilling);
+    Present at;
+    find_present(&c->run->drilling, &at);
     for (size_t k = 0; k < givens; k++) add_changes(c, &at, unknown, unknowns, given[k], change[k], value);
     give_back(c, before);
     return fmi2OK;

@@ -141,7 +141,7 @@ class Case:
             or walks
         )
 
-    @property
+    @cached_property
     def structure(self) -> Structure:
         """How the drilling system is made up, whether rock comes in layers, and whether it is drilled in space."""
         return self.bha.structure._replace(layered=int(self.in_layers), space=int(self.in_space))

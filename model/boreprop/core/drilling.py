@@ -192,7 +192,14 @@ class Drilling:
                 self.restore(before)
             raise
 
-    def follow(self, lengths: Iterable[float], inputs: Iterable[Any], rows: Iterable[int], table: Any) -> None:
+    def follow(
+        self,
+        lengths: Iterable[float],
+        inputs: Any,
+        rows: Iterable[int],
+        table: Any,
+        which: Iterable[int] | None = None,
+    ) -> None:
         """Drill leg after leg, each as by `advance`.
 
         Parameters
@@ -200,11 +207,13 @@ class Drilling:
         lengths
             Where the legs end, m from the start of the run, (legs,), not decreasing.
         inputs
-            The inputs where each leg starts, and their changes per metre, (legs, inputs), in the order of `ACTING`.
+            Inputs where legs start, and their changes per metre, (…, inputs), in the order of `ACTING`.
         rows
             The row of `table` that takes the outputs at the end of each leg, (legs,); −1 for none.
         table
             An array of shape (…, outputs), with the outputs in the order of the table of quantities.
+        which
+            Which of the inputs are those of each leg, (legs,); without it there are as many as legs, in their order.
 
         Raises
         ------
@@ -212,13 +221,14 @@ class Drilling:
             As in `advance`, for the leg that fails; the bit is then where the leg before ended.
         """
         rock: tuple[float, ...] = ()
-        for length, values, row in zip(lengths, inputs, rows, strict=True):
-            acting = dict(zip(ACTING, map(float, values), strict=True))
+        own = range(len(inputs)) if which is None else which
+        for length, k, row in zip(lengths, own, rows, strict=True):
+            acting = dict(zip(ACTING, map(float, inputs[k]), strict=True))
             before, rock = rock, tuple(acting[name] for name in ROCK)
             if rock != before:
                 bit = BitRock(**fields_of("bit", acting, self._bha.structure))
-            own = {name: value for name, value in acting.items() if name not in (*ROCK, *IN_SPACE_ONLY)}
-            self.advance(length, bit=bit, **own)
+            planar = {name: value for name, value in acting.items() if name not in (*ROCK, *IN_SPACE_ONLY)}
+            self.advance(length, bit=bit, **planar)
             if row >= 0:
                 table[row] = tuple(self.outputs().values())
 

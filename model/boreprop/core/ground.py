@@ -1,8 +1,10 @@
 """What the bit meets along the way: layers of rock by true vertical depth, and the wear of the bit."""
 
+from array import array
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import chain
 from math import inf
 from typing import Any, NamedTuple
@@ -86,12 +88,12 @@ class Ground:
         if len(self.rock) != len(self.tops) + 1 or any(len(row) != len(ROCK) for row in self.rock):
             raise ParameterError("rock", f"must hold {len(self.tops) + 1} times {', '.join(ROCK)}", self.rock)
 
-    @property
-    def numbers(self) -> list[float]:
-        """All of it, in the order in which the kernel takes it."""
+    @cached_property
+    def numbers(self) -> "array[float]":
+        """All of it, in the order in which the kernel takes it: the rock, layer by layer, comes last."""
         given = values_of("bit", self.bit)
         wear = (self.wear.weight_per_metre, self.wear.largest_weight) if self.wear else (0.0, 0.0)
-        return [*(given[name] for name in ROCK), *wear, *self.tops, *chain.from_iterable(self.rock)]
+        return array("d", [*(given[name] for name in ROCK), *wear, *self.tops, *chain.from_iterable(self.rock)])
 
     @property
     def first_layer(self) -> int:

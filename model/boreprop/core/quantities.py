@@ -92,7 +92,7 @@ def counts(structure: Structure) -> dict[str, int]:
     }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Quantity:
     """One quantity at the edge of the model, in SI units.
 
@@ -304,7 +304,12 @@ VARIABLES = INPUTS + OUTPUTS + PARAMETERS  # what an FMU has
 
 def scalar_names(quantities: tuple[Quantity, ...], structure: int | Structure) -> list[str]:
     """The scalar names of `quantities`, in the order of the table; the structure is as in `Quantity.names`."""
-    return [name for quantity in quantities for name in quantity.names(structure)]
+    return list(_scalar_names(quantities, structure))
+
+
+@cache
+def _scalar_names(quantities: tuple[Quantity, ...], structure: int | Structure) -> tuple[str, ...]:
+    return tuple(name for quantity in quantities for name in quantity.names(structure))
 
 
 def names_of_runs(n: int) -> list[str]:
@@ -353,23 +358,30 @@ def values_of(part: str, fields: Any) -> dict[str, float]:
         The part.
     """
     values: dict[str, float] = {}
-    for quantity in INPUTS + PARAMETERS:
-        if quantity.field and quantity.part == part:
-            value = getattr(fields, quantity.attribute)
-            if quantity.is_list:
-                values |= {f"{quantity.name}[{i}]": element for i, element in enumerate(value, 1)}
-            elif not isinstance(value, tuple):
-                values[quantity.name] = value
-            elif value:
-                values[quantity.name] = value[0]
+    for attribute, quantity in _given_in(part).items():
+        value = getattr(fields, attribute)
+        if quantity.is_list:
+            values |= {f"{quantity.name}[{i}]": element for i, element in enumerate(value, 1)}
+        elif not isinstance(value, tuple):
+            values[quantity.name] = value
+        elif value:
+            values[quantity.name] = value[0]
     return values
+
+
+@cache
+def _given_in(part: str) -> dict[str, Quantity]:
+    """The inputs and parameters that a part of a drilling system holds, by their names there."""
+    return {
+        quantity.attribute: quantity for quantity in INPUTS + PARAMETERS if quantity.field and quantity.part == part
+    }
 
 
 def fields_of(part: str, values: Mapping[str, float], structure: int | Structure) -> dict[str, Any]:
     """The fields of a part of a drilling system of this structure, from values as `values_of` gives them."""
     fields: dict[str, Any] = {}
-    for quantity in INPUTS + PARAMETERS:
-        if quantity.field and quantity.part == part and (quantity.is_list or quantity.count(structure)):
+    for attribute, quantity in _given_in(part).items():
+        if quantity.is_list or quantity.count(structure):
             elements = tuple(values[name] for name in quantity.names(structure))
-            fields[quantity.attribute] = elements if quantity.is_list else elements[0]
+            fields[attribute] = elements if quantity.is_list else elements[0]
     return fields

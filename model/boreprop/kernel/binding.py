@@ -95,14 +95,15 @@ def load(path: Path) -> ctypes.CDLL:
 
 def _declare(kernel: ctypes.CDLL, prefix: str) -> None:
     """Say what the functions with a prefix take and return."""
-    run, reals, whole = ctypes.c_void_p, _array(np.float64), ctypes.c_longlong
+    run, reals, indices, whole = ctypes.c_void_p, _array(np.float64), _array(np.intc), ctypes.c_longlong
+    table = np.ctypeslib.ndpointer(np.float64, ndim=2)
     own = ctypes.POINTER(ctypes.c_double)
     inputs, options, problem = (ctypes.POINTER(struct) for struct in (Inputs, OptionsInC, ProblemInC))
     for name, result, arguments in (
         ("sentence", None, (problem, ctypes.c_char_p)),
-        ("start", run, (_array(np.intc), reals, options, whole, *3 * (reals,), ctypes.c_int, own, inputs, problem)),
+        ("start", run, (indices, reals, options, whole, *3 * (reals,), ctypes.c_int, own, inputs, problem)),
         ("end", None, (run,)),
-        ("follow", whole, (run, whole, reals, reals, _array(np.intc), reals, problem)),
+        ("follow", whole, (run, whole, reals, reals, indices, indices, table, whole, whole, problem)),
         ("outputs", ctypes.c_int, (run, reals)),
         ("length", ctypes.c_double, (run,)),
         ("change_clearances", ctypes.c_int, (run, reals, problem)),
@@ -319,15 +320,21 @@ class NativeDrilling:
         inputs: Floats | list[list[float]],
         rows: NDArray[np.intc] | list[int],
         table: Floats,
+        which: NDArray[np.intc] | None = None,
     ) -> None:
         """Drill leg after leg, as `Drilling.follow`; `ValueError` if the arrays do not fit together."""
         legs, on_rows, given = len(lengths), numbers(rows, np.intc), numbers(inputs)
-        if given.shape != (legs, len(ACTING)) or len(on_rows) != legs or (on_rows >= len(table)).any():
+        acting = np.arange(len(given), dtype=np.intc) if which is None else numbers(which, np.intc)
+        fit = given.shape == (len(given), len(ACTING)) and ((0 <= acting) & (acting < len(given))).all()
+        if not fit or len(acting) != legs or len(on_rows) != legs or (on_rows >= len(table)).any():
             constraint = f"must hold {legs} times {', '.join(ACTING)}, like lengths, and rows below {len(table)}"
             raise ValueError(f"inputs, rows: {constraint}, got shape {given.shape} and rows {on_rows.tolist()}")
         if table.shape != (len(table), len(self._names)):
             raise ValueError(f"table: must have {len(self._names)} columns, got shape {table.shape}")
-        done = self._call("follow")(self._run, legs, numbers(lengths), given, on_rows, table, self._problem)
+        down, across = (stride // table.itemsize for stride in table.strides)
+        done = self._call("follow")(
+            self._run, legs, numbers(lengths), given, acting, on_rows, table, down, across, self._problem
+        )
         self._check(done == legs)
 
     def change_clearances(self, clearances: tuple[float, ...]) -> None:

@@ -108,14 +108,18 @@ static inline double shortest_step(const Integrator *p, double xi) {
     return p->options.smallest_step * larger(1.0, xi);
 }
 
-/* The law of the next step. Where it changes along the way each step has its own, made where it starts. */
-static inline const Law *present_law(Integrator *p) {
+/* Make the law of the next step. Where it changes along the way each step has its own, made where it starts. */
+APART static void renew_law(Integrator *p) {
     const State *now = &p->now;
-    if (p->law_known) return &p->law;
     double xi = law_changes(&now->inputs) ? now->step.end : now->inputs_xi;
     ScaledInputs inputs = inputs_ahead(&now->inputs, xi - now->inputs_xi);
     make_law(&p->law, &p->scaled, &now->places, &p->modes, now->regime, inputs, xi);
     p->law_known = 1;
+}
+
+/* The law of the next step. */
+static inline const Law *present_law(Integrator *p) {
+    if (!p->law_known) renew_law(p);
     return &p->law;
 }
 

@@ -36,11 +36,12 @@ EXPORT Run *boreprop_start(
 );
 EXPORT void boreprop_end(Run *run);
 
-/* Drill leg after leg, to lengths[k] under inputs[k], which are those where the leg starts. Unless rows[k] is negative,
-   the outputs there become that row of the table. Returns how many legs are drilled; if not all are, the problem is that
-   of the next one. */
+/* Drill leg after leg, to lengths[k] under inputs[which[k]], which are those where the leg starts. Unless rows[k] is
+   negative, the outputs there become that row of the table, in which the next value of a row is `across` numbers on, and
+   the next row `down`. Returns how many legs are drilled; if not all are, the problem is that of the next one. */
 EXPORT Count boreprop_follow(
-    Run *run, Count count, const double *lengths, const Inputs *inputs, const int *rows, double *table, Problem *problem
+    Run *run, Count count, const double *lengths, const Inputs *inputs, const int *which, const int *rows,
+    double *table, Count down, Count across, Problem *problem
 );
 
 /* Let the stabilizers have other clearances, m, from where the bit is; 0, and the problem, if that fails. */

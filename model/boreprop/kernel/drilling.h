@@ -6,12 +6,6 @@
 
 enum { LEAST_CAPACITY = 256, MOST_PIECES = 1 << 19 }; /* of hole: enough for most, and little memory to go through */
 
-/* One of the values that the outputs of a drilling system have, and its index if its output has several. */
-typedef struct {
-    Output which;
-    int index;
-} Value;
-
 /* A borehole as it is drilled, from the end of the survey on. */
 typedef struct {
     System system;
@@ -20,20 +14,18 @@ typedef struct {
     Inputs acting;         /* … those that were last to act, and … */
     ScaledInputs scaled;   /* … what these are in the paper's numbers */
     Ground ground;
-    double buckling_weight; /* over F*: under it the BHA buckles; infinite if the axial load does not count */
-    int values;
-    Value value[MOST_OUTPUTS]; /* in the order of the table of quantities */
+    double buckling_weight;          /* over F*: under it the BHA buckles; infinite if the axial load does not count */
+    int values, count[OUTPUT_COUNT]; /* how many values its outputs have, and each of them has */
     Integrator integrator;
 } Drilling;
 
-/* Note which values the outputs have. */
-static inline void list_values(Drilling *d) {
+/* Count the values of the outputs. */
+static inline void count_values(Drilling *d) {
     d->values = 0;
-    for (int k = 0; k < OUTPUT_COUNT; k++)
-        for (int i = 0; i < value_count(OUTPUT_SIZE[k], d->system.structure); i++) {
-            Value value = {(Output)k, i};
-            d->value[d->values++] = value;
-        }
+    for (int k = 0; k < OUTPUT_COUNT; k++) {
+        d->count[k] = value_count(OUTPUT_SIZE[k], d->system.structure);
+        d->values += d->count[k];
+    }
 }
 
 /* Whether bit and rock are in their ranges, and ε = χ/η and its inverse finite. */
@@ -171,7 +163,7 @@ static inline Status drilling_prepare(
         return FAILED;
     d->system = *system, d->ground = ground;
     d->drilled_length = 0.0;
-    list_values(d);
+    count_values(d);
     d->given.rss_force = d->acting.rss_force = (double)NAN; /* none so far */
     options.relative_tolerance = system->relative_tolerance;
     prepare(&d->integrator, &scaled, length_scale(system), force_scale(system), options);
@@ -193,8 +185,8 @@ static inline Status drilling_start(Drilling *d, const Survey *survey, Inputs in
 /* Whether the way to `xi` lies within the present step and layer, so that nothing but the bit moves unless inputs do. */
 static inline int is_ahead(const Drilling *d, double xi) {
     const Integrator *p = &d->integrator;
-    return p->exit_known && xi <= p->now.step.end && !(p->exit_side && p->exit <= xi) &&
-           d->ground.weight_per_metre == 0;
+    if (xi > p->now.step.end || !d->ground.there) return xi <= p->now.step.end;
+    return p->exit_known && !(p->exit_side && p->exit <= xi) && d->ground.weight_per_metre == 0;
 }
 
 /* Drill on to `xi` through the ground, under inputs that are given for a sharp bit and the rock without layers; as `drill`. */
@@ -237,17 +229,18 @@ static inline int go_straight_on(Drilling *d, double xi) {
 /* Drill on to a length, m from the start, under inputs from here; where the bit is, only they are taken over.
    After FULL: `drilling_move`, and the same call again, which goes on; or `drilling_cancel`, and nothing has moved. */
 static inline Status drilling_advance(Drilling *d, double drilled_length, Inputs inputs, Problem *problem) {
-    int there = d->ground.there, same = there && !memcmp(&inputs, &d->given, sizeof inputs);
+    int there = d->ground.there, same = !memcmp(&inputs, &d->given, sizeof inputs);
     double xi = drilled_length / length_scale(&d->system);
-    Status status = DONE;
     ScaledInputs scaled; /* of no use where layers stand in */
-    if (!same && !(there ? scale_checked(d, inputs, &scaled, problem) : let_act(d, inputs, problem))) return FAILED;
-    if (!check_number(Q_DRILLED_LENGTH, 0, drilled_length, -INFINITY, d->drilled_length, INFINITY, problem))
-        return FAILED;
-    if (!there) status = drill(&d->integrator, xi, d->scaled, problem);
-    else if (!same || !go_straight_on(d, xi)) status = drill_through(d, xi, inputs, problem);
-    if (status != DONE) return status;
-    d->drilled_length = drilled_length, d->given = inputs;
+    if (!(same && drilled_length >= d->drilled_length && go_straight_on(d, xi))) {
+        if (!(there ? same || scale_checked(d, inputs, &scaled, problem) : let_act(d, inputs, problem))) return FAILED;
+        if (!check_number(Q_DRILLED_LENGTH, 0, drilled_length, -INFINITY, d->drilled_length, INFINITY, problem))
+            return FAILED;
+        Status status = there ? drill_through(d, xi, inputs, problem) : drill(&d->integrator, xi, d->scaled, problem);
+        if (status != DONE) return status;
+        d->given = inputs;
+    }
+    d->drilled_length = drilled_length;
     return DONE;
 }
 

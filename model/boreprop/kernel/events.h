@@ -85,9 +85,10 @@ static inline void insert(Sample *samples, int *count, Sample added) {
 static inline int meet(const Watch *watch, double slack, const double values[POINTS], double *where) {
     const Step *step = &watch->trial->step;
     const Bound *bound = watch->bound;
-    Sample samples[2 * POINTS] = {{step->xi, watched_value(watch, step->xi)}};
+    Sample samples[2 * POINTS], start = {step->xi, watched_value(watch, step->xi)};
     double found[POINTS];
     int count = 1;
+    samples[0] = start;
     for (int k = 0; k < POINTS; k++) {
         Sample at_point = {step->xi + POINT[k] * step->h, values[k]};
         samples[count++] = at_point;

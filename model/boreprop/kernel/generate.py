@@ -138,6 +138,7 @@ static const Quantity INPUT_TABLE[INPUT_COUNT] = {{
 typedef enum {{
 {output_names}
 }} Output;
+#define EACH_OUTPUT(of) {each_output}
 static const Size OUTPUT_SIZE[OUTPUT_COUNT] = {{
 {output_sizes}
 }};
@@ -279,6 +280,7 @@ def quantities_header(system: Table = SYSTEM, inputs: Table = INPUTS, outputs: T
         "input_names": ", ".join(f"IN_{q.name.upper()}" for q in inputs),
         "input_table": _lines(_range_row(q, "0") for q in inputs),
         "output_names": _lines(f"OUT_{q.name.upper()}, /* {_note(q.unit, q.meaning)} */" for q in outputs),
+        "each_output": " ".join(f"of(OUT_{q.name.upper()})" for q in outputs),
         "output_sizes": _lines(f"{SIZES[q.size]}, /* {q.name} */" for q in outputs),
         "output_table": _lines(f"Q_{q.name.upper()}," for q in outputs),
         "options": ", ".join(field.name for field in fields(Options)),

@@ -145,7 +145,7 @@ static inline double law_at(
 }
 
 /* Add the terms of all places but the first, and that of a force which changes along the step. */
-static inline void add_others(const Linear *f, int count, const Trial *trial, double values[POINTS]) {
+static inline void add_others(const Linear *f, int count, const Trial *trial, double values[restrict POINTS]) {
     for (int i = 1; i < count; i++)
         if (f->delayed[i] != 0)
             for (int k = 0; k < POINTS; k++) values[k] += f->delayed[i] * trial->delayed[i][0][k];
@@ -154,7 +154,7 @@ static inline void add_others(const Linear *f, int count, const Trial *trial, do
 }
 
 /* The values of a row at the points of a trial step, by the ηΠ and χΠ where the law was made. */
-static inline void linear_along(const Linear *f, int count, const Trial *trial, double values[POINTS]) {
+APART static void linear_along(const Linear *f, int count, const Trial *trial, double values[restrict POINTS]) {
     const double *theta = trial->x[ANGLE], *Y = trial->x[LATERAL], *Y_1 = trial->delayed[0][0];
     for (int k = 0; k < POINTS; k++)
         values[k] = f->constant + f->theta * theta[k] + f->Y * Y[k] + f->delayed[0] * Y_1[k] + f->g * trial->sines[k];
@@ -171,7 +171,7 @@ static inline void law_along(const Law *law, const Bound *bound, const Trial *tr
 /* The same of a part of the right-hand side, with (θ, Y) frozen at the start of the step. */
 static inline void linear_frozen(
     const Linear *f, int count, const double x[COMPONENTS], const Trial *trial, const double sines[POINTS],
-    double values[POINTS]
+    double values[restrict POINTS]
 ) {
     double state = f->theta * x[ANGLE] + f->Y * x[LATERAL] + f->constant;
     for (int k = 0; k < POINTS; k++) values[k] = state + f->g * sines[k] + f->delayed[0] * trial->delayed[0][0][k];

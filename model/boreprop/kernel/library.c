@@ -38,17 +38,17 @@ Run *boreprop_start(
 void boreprop_end(Run *run) { run_end(run); }
 
 Count boreprop_follow(
-    Run *run, Count count, const double *lengths, const Inputs *inputs, const int *rows, double *table, Problem *problem
+    Run *run, Count count, const double *lengths, const Inputs *inputs, const int *which, const int *rows,
+    double *table, Count down, Count across, Problem *problem
 ) {
-    Count width = run->drilling.values;
     for (Count k = 0; k < count; k++) {
-        if (run_advance(run, lengths[k], inputs[k], problem) != DONE) return k;
-        if (rows[k] >= 0) drilling_outputs(&run->drilling, table + rows[k] * width);
+        if (run_advance(run, lengths[k], inputs[which[k]], problem) != DONE) return k;
+        if (rows[k] >= 0) drilling_outputs(&run->drilling, table + rows[k] * down, across);
     }
     return count;
 }
 
-int boreprop_outputs(Run *run, double out[MOST_OUTPUTS]) { return drilling_outputs(&run->drilling, out); }
+int boreprop_outputs(Run *run, double out[MOST_OUTPUTS]) { return drilling_outputs(&run->drilling, out, 1); }
 
 double boreprop_length(const Run *run) { return drilling_length(&run->drilling); }
 

@@ -18,7 +18,10 @@ typedef struct {
     unsigned char watched, point[MAX_WATCHED]; /* how many points; which support each is, less n */
 } Contact;
 
-static inline int same_contact(const Contact *a, const Contact *b) { return !memcmp(a, b, sizeof *a); }
+static inline int same_contact(const Contact *a, const Contact *b) {
+    if (a->watched != b->watched || memcmp(a->of, b->of, MAX_STABILIZERS)) return 0;
+    return !a->watched || !memcmp(a, b, sizeof *a);
+}
 
 /* How many places there are, n of them of stabilizers. */
 static inline int place_count(Contact contact, int n) { return n + contact.watched; }
@@ -198,13 +201,14 @@ typedef struct {
     int count, next, last;
 } Modes;
 
-/* What acts on the beam of a mode under `loads`. */
-static inline Bending bending_of(const Mode *mode, const Loads *loads, int n) {
-    Bending bending = {.F_rss = loads->F_rss, .g = loads->g};
-    bending.M = row_value(&mode->M, loads), bending.F_0 = row_value(&mode->F_0, loads);
+/* Find what acts on the beam of a mode under `loads`. */
+static inline void find_bending(const Mode *mode, const Loads *loads, const Scaled *scaled, Bending *bending) {
+    int n = scaled->n;
+    memset(bending->F, 0, (size_t)(n + scaled->points) * sizeof *bending->F);
+    bending->F_rss = loads->F_rss, bending->g = loads->g;
+    bending->M = row_value(&mode->M, loads), bending->F_0 = row_value(&mode->F_0, loads);
     for (int i = 0; i < loads->count; i++)
-        if (mode->contact.of[i]) bending.F[support_at(&mode->contact, n, i)] = row_value(&mode->F[i], loads);
-    return bending;
+        if (mode->contact.of[i]) bending->F[support_at(&mode->contact, n, i)] = row_value(&mode->F[i], loads);
 }
 
 /* Make the beam as it is under an axial load; no mode is known then. */
@@ -238,12 +242,13 @@ static inline int wall(double F) { return F > 0 ? 1 : F < 0 ? -1 : 0; }
 
 /* The row that lies between two bounds while the support at place `i` stays as it is in `mode`: F_i in contact, else δ_i, (7).
 
-   A stabilizer without clearance is held on both sides, and its bounds are infinite. */
+   A stabilizer without clearance is held on both sides: its bounds are infinite, and while it counts as free it lies beyond
+   them. */
 static inline const Row *contact_bounds(const Modes *modes, const Mode *mode, int i, double *lower, double *upper) {
     int contact = mode->contact.of[i];
     double y_star = modes->y_star[support_at(&mode->contact, modes->beam.n, i)];
     if (y_star == 0.0) {
-        *lower = -INFINITY, *upper = INFINITY;
+        *lower = contact ? -INFINITY : INFINITY, *upper = INFINITY;
         return &mode->F[i];
     }
     if (contact) {
@@ -264,20 +269,21 @@ static inline const Row *contact_bounds(const Modes *modes, const Mode *mode, in
    come back, by rounding under huge loads or of stabilizers close together, stabilizers may lie beyond their bounds by
    more and more until a mode is within them: at last by any amount. */
 static inline const Mode *settle(Modes *modes, const Loads *loads, const Contact *start) {
-    Contact contact = *start;
+    Contact contact;
     int n = modes->beam.n;
     double slack = ROUNDING;
-    for (int i = 0; i < n - 1; i++)
-        if (modes->y_star[i] == 0.0) contact.of[i] = 1;
     for (int pivots = 1;; pivots++) {
         int side = 0;
-        const Mode *mode = mode_of(modes, &contact);
-        for (int i = 0; i < loads->count && !side; i++) {
+        const Mode *mode = mode_of(modes, start);
+        for (int i = 0; i < loads->count; i++) {
             double lower, upper;
             if (i == n - 1) continue;
             const Row *row = contact_bounds(modes, mode, i, &lower, &upper);
             side = side_beyond(row_value(row, loads), lower, upper, slack);
-            if (side) contact.of[i] = change(contact.of[i], side);
+            if (!side) continue;
+            contact = *start, start = &contact;
+            contact.of[i] = change(contact.of[i], side);
+            break;
         }
         if (!side) return mode;
         if (pivots % MOST_PIVOTS == 0) slack *= LOOSER;

@@ -10,7 +10,7 @@
 
 typedef long long Count; /* of stations, and of pieces of hole: 32 bits are not enough for a long life */
 
-/* A function that is seldom called: inlined, it would slow down what is. */
+/* A function that would slow down its callers if it were inlined. */
 #ifdef __GNUC__
 #define APART __attribute__((noinline))
 #else

@@ -26,29 +26,29 @@ static inline void find_body(Integrator *p, const double x[COMPONENTS], Present 
     at->wall_distance = wall_distance(p, p->now.xi, x, pull);
 }
 
-static inline Present present(Drilling *d) {
+/* Find it. */
+static inline void find_present(Drilling *d, Present *at) {
     Integrator *p = &d->integrator;
     const State *now = &p->now;
     double state[COMPONENTS], path[AXES];
-    Present at;
-    at.l1 = length_scale(&d->system), at.F_star = force_scale(&d->system);
-    at.earlier = earlier_inclination(p, now->xi - 1.0);
+    at->l1 = length_scale(&d->system), at->F_star = force_scale(&d->system);
+    at->earlier = earlier_inclination(p, now->xi - 1.0);
     step_state(&now->step, now->xi, state);
-    at.theta = state[ANGLE], at.Y = state[LATERAL];
-    find_present_loads(p, state, &at.loads);
-    at.mode = settle(&p->modes, &at.loads, &now->regime.contact);
-    at.F_0 = row_value(&at.mode->F_0, &at.loads);
-    contact_forces(at.mode, &at.loads, at.F);
-    at.inputs = inputs_here(now);
-    at.psi = bit_tilt(at.F_0, at.inputs.eta_pi, at.inputs.psi_star);
-    at.Theta = at.theta - at.psi;
+    at->theta = state[ANGLE], at->Y = state[LATERAL];
+    find_present_loads(p, state, &at->loads);
+    at->mode = settle(&p->modes, &at->loads, &now->regime.contact);
+    at->F_0 = row_value(&at->mode->F_0, &at->loads);
+    contact_forces(at->mode, &at->loads, at->F);
+    at->inputs = inputs_here(now);
+    at->psi = bit_tilt(at->F_0, at->inputs.eta_pi, at->inputs.psi_star);
+    at->Theta = at->theta - at->psi;
     position(now, path);
-    at.x = path[0], at.z = path[1];
-    find_body(p, state, &at);
-    if (!p->scaled.sensors) return at;
-    Bending bending = bending_of(at.mode, &at.loads, p->scaled.n);
-    find_sensed(p, state, &bending, at.sensed, at.told);
-    return at;
+    at->x = path[0], at->z = path[1];
+    find_body(p, state, at);
+    if (!p->scaled.sensors) return;
+    Bending bending;
+    find_bending(at->mode, &at->loads, &p->scaled, &bending);
+    find_sensed(p, state, &bending, at->sensed, at->told);
 }
 
 /* One output, the value with this index if it has several. If an output of the table were missing, it would not compile. */

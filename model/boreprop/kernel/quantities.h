@@ -8,7 +8,7 @@
 
 /* clang-format off */
 
-#define QUANTITIES_DIGEST "0e33059ac23bfe86" /* of this file, but for this line, and of problems.h */
+#define QUANTITIES_DIGEST "3b8cf1ab0c8b5d08" /* of this file, but for this line, and of problems.h */
 #define MOST_DRILLED 100000.0 /* m in a communication step */
 #define LEAST_SPAN 0.01 /* m between stabilizers, at least: forces between closer ones are rounding errors */
 #define POINTS_ALONG_BHA 36 /* at which its distance from the hole is looked at */
@@ -158,6 +158,7 @@ typedef enum {
     OUT_ETA_PI, /* lateral penetration stiffness of the rock over the BHA's bending stiffness */
     OUT_FORMATION, /* number of the formation by true vertical depth in which the bit is, from the top; 0 above the first */
 } Output;
+#define EACH_OUTPUT(of) of(OUT_DRILLED_LENGTH) of(OUT_BIT_INCLINATION) of(OUT_BOREHOLE_INCLINATION) of(OUT_BIT_TILT) of(OUT_AVERAGE_INCLINATION) of(OUT_STABILIZER_DEFLECTION) of(OUT_STABILIZER_FORCE) of(OUT_STABILIZER_CONTACT) of(OUT_BIT_TILT_SATURATION) of(OUT_BIT_LATERAL_FORCE) of(OUT_BIT_MOMENT) of(OUT_BOREHOLE_CURVATURE) of(OUT_BODY_CONTACT_FORCE) of(OUT_BODY_CONTACT_POSITION) of(OUT_WALL_DISTANCE) of(OUT_BODY_CONTACT_FORCE_HIGH) of(OUT_BODY_CONTACT_FORCE_RIGHT) of(OUT_BIT_AZIMUTH) of(OUT_BOREHOLE_AZIMUTH) of(OUT_BIT_TILT_HIGH) of(OUT_BIT_TILT_RIGHT) of(OUT_BIT_LATERAL_FORCE_HIGH) of(OUT_BIT_LATERAL_FORCE_RIGHT) of(OUT_STABILIZER_FORCE_HIGH) of(OUT_STABILIZER_FORCE_RIGHT) of(OUT_STABILIZER_DEFLECTION_HIGH) of(OUT_STABILIZER_DEFLECTION_RIGHT) of(OUT_NORTH) of(OUT_EAST) of(OUT_SENSOR_INCLINATION) of(OUT_SENSOR_BENDING_MOMENT) of(OUT_SENSOR_CLEARANCE) of(OUT_SENSOR_AZIMUTH) of(OUT_SENSOR_BENDING_MOMENT_HIGH) of(OUT_SENSOR_BENDING_MOMENT_RIGHT) of(OUT_DISPLACEMENT) of(OUT_TRUE_VERTICAL_DEPTH) of(OUT_ETA_PI) of(OUT_FORMATION)
 static const Size OUTPUT_SIZE[OUTPUT_COUNT] = {
     ONE, /* drilled_length */
     ONE, /* bit_inclination */

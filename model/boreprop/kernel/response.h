@@ -19,7 +19,7 @@ static inline double inclination_under(Integrator *p, double theta, const Loads 
 static inline void bend(Integrator *p, double xi, const double x[COMPONENTS], Bending bending[DIRECTIONS]) {
     Loads loads;
     find_loads(p, xi, x, force_at(&p->now, xi), &loads);
-    bending[0] = bending_of(settle(&p->modes, &loads, &p->now.regime.contact), &loads, p->scaled.n);
+    find_bending(settle(&p->modes, &loads, &p->now.regime.contact), &loads, &p->scaled, bending);
 }
 
 /* What bends it under loads in a mode. */
@@ -106,12 +106,13 @@ static inline double curvature_jump(
     return fabs(bent);
 }
 
-/* Θ as it was when the bit was at `xi`, at most LOOK_BACK behind; where Θ jumped, its value after the jump. */
+/* Θ as it was when the bit was at `xi`, at most LOOK_BACK behind, where the first stabilizer is; where
+   Θ jumped, its value after the jump. */
 static inline double earlier_inclination(Integrator *p, double xi) {
     const Hole *hole = &p->now.hole;
-    const Piece *at = piece(hole, find(hole, xi + MERGE));
+    const Piece *at = piece(hole, find_from(hole, hole->cursor[0], xi + MERGE));
     if (at->inputs.eta_pi == 0 || p->scaled.points || xi + MERGE < p->now.cleared) { /* Θ is the slope of the hole */
-        const Piece *own = piece(hole, find(hole, xi));
+        const Piece *own = piece(hole, find_from(hole, hole->cursor[0], xi));
         return polynomial_slope(own->x[LATERAL], (xi - own->start) * own->rate) * own->rate;
     }
     double ahead = larger(xi - at->start, 0.0), x[COMPONENTS];

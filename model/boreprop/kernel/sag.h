@@ -18,7 +18,8 @@ static inline void present_shape(const Drilling *d, const Present *at, const dou
     int n = p->scaled.n;
     double e_n = at->loads.e[n - 1], lambda_ = p->scaled.s[n - 1];
     if (beam->stepped) {
-        Bending bending = bending_of(at->mode, &at->loads, n);
+        Bending bending;
+        find_bending(at->mode, &at->loads, &p->scaled, &bending);
         beam_shape(beam, &bending, n + p->scaled.points, 1.0, POINTS_ALONG_BHA, s, v);
         return;
     }
@@ -34,7 +35,8 @@ static inline void present_shape(const Drilling *d, const Present *at, const dou
    axis of the bit. */
 static inline Sag present_sag(Drilling *d) {
     const State *now = &d->integrator.now;
-    Present at = present(d);
+    Present at;
+    find_present(d, &at);
     double s[POINTS_ALONG_BHA], v[POINTS_ALONG_BHA], largest = 0.0,
                                                      reach = d->integrator.scaled.s[d->integrator.scaled.n - 1];
     int found = 0;

@@ -39,30 +39,29 @@ static inline void find_body(Integrator *p, Present *at) {
     at->wall_distance = wall_distance(p, p->now.xi, at->x, pull);
 }
 
-static inline Present present(Drilling *d) {
+/* Find it. */
+static inline void find_present(Drilling *d, Present *at) {
     Integrator *p = &d->integrator;
     const State *now = &p->now;
-    Present at;
-    at.l1 = length_scale(&d->system), at.F_star = force_scale(&d->system);
-    at.inputs = inputs_here(now);
-    step_state(&now->step, now->xi, at.x);
-    at.is = respond(p, at.x, at.inputs);
-    high_side(&at.is.frame, at.high);
-    position(now, at.path);
-    const Piece *own = piece(&now->hole, find(&now->hole, now->xi - 1.0));
+    at->l1 = length_scale(&d->system), at->F_star = force_scale(&d->system);
+    at->inputs = inputs_here(now);
+    step_state(&now->step, now->xi, at->x);
+    at->is = respond(p, at->x, at->inputs);
+    high_side(&at->is.frame, at->high);
+    position(now, at->path);
+    const Piece *own = piece(&now->hole, find_from(&now->hole, now->hole.cursor[0], now->xi - 1.0));
     for (int k = 0; k < DIRECTIONS; k++)
-        at.earlier[k] = polynomial_slope(own->x[LATERAL + k], (now->xi - 1.0 - own->start) * own->rate) * own->rate;
+        at->earlier[k] = polynomial_slope(own->x[LATERAL + k], (now->xi - 1.0 - own->start) * own->rate) * own->rate;
     for (int axis = NORTH; axis <= DOWN; axis++) {
-        double back[DIRECTIONS] = {-at.is.at.psi[0], -at.is.at.psi[1]}, turned[3];
-        turned_row(at.is.frame.row[axis], back, turned);
-        at.T[axis] = turned[AHEAD];
+        double back[DIRECTIONS] = {-at->is.at.psi[0], -at->is.at.psi[1]}, turned[3];
+        turned_row(at->is.frame.row[axis], back, turned);
+        at->T[axis] = turned[AHEAD];
     }
-    find_body(p, &at);
-    if (!p->scaled.sensors) return at;
+    find_body(p, at);
+    if (!p->scaled.sensors) return;
     Bending bending[DIRECTIONS];
-    bend_under(p, &at.is, bending);
-    find_sensed(p, at.x, bending, at.sensed, at.told);
-    return at;
+    bend_under(p, &at->is, bending);
+    find_sensed(p, at->x, bending, at->sensed, at->told);
 }
 
 /* The inclination of the hole between two places behind the bit, whose offsets from the bit's axis are given, on average. */

@@ -244,7 +244,7 @@ static inline void become(Drilling *d, const Snapshot *snapshot, Tape tape) {
     memcpy(kinks.ahead, snapshot->passed, sizeof kinks.ahead);
     for (Count k = 0; k < snapshot->pieces; k++) pass_piece(&tape, piece(&hole, k));
     for (Count k = 0; k < snapshot->kinks; k++) pass_kink(&tape, kink(&kinks, k));
-    d->drilled_length = snapshot->drilled_length;
+    d->drilled_length = snapshot->drilled_length, d->given.rss_force = (double)NAN; /* others may have led here */
     double cosine = p->now.cosine;
     p->now = snapshot->now, p->now.hole = hole, p->now.kinks = kinks, p->around = snapshot->around;
     p->around.near = p->around.known = 1; /* for all that is said */

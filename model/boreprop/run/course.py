@@ -13,6 +13,8 @@ from ..case.case import Case
 from ..case.inputs import Profile
 from ..core.quantities import ACTING
 
+Indices = NDArray[np.intc]
+
 
 @dataclass(frozen=True, eq=False)
 class Course:
@@ -38,9 +40,12 @@ class Course:
     @classmethod
     def of(cls, profiles: dict[str, Profile]) -> "Course":
         """The course of some inputs, each with its own entries."""
-        starts = np.unique(np.concatenate([profile.drilled_length for profile in profiles.values()]))
-        values, slopes = np.empty((2, len(starts), len(profiles)))
+        starts = np.array(sorted({at for profile in profiles.values() for at in profile.drilled_length}))
+        values = np.full((len(starts), len(profiles)), [profile.values[0] for profile in profiles.values()])
+        slopes = np.zeros(values.shape)
         for i, profile in enumerate(profiles.values()):
+            if len(profile.values) == 1:
+                continue
             entry = np.searchsorted(profile.drilled_length, starts, side="right") - 1
             length, value = np.array(profile.drilled_length), np.array(profile.values)
             slope = np.zeros(len(value))
@@ -55,7 +60,7 @@ class Course:
         values = self.values[:, self.names.index(name)]
         return bool((values != values[0]).any())
 
-    def column(self, name: str, length: Floats, piece: NDArray[np.intc]) -> Floats:
+    def column(self, name: str, length: Floats, piece: Indices) -> Floats:
         """An input at drilled lengths, m, each on the piece of that number; shape (lengths,)."""
         i = self.names.index(name)
         values: Floats = self.values[piece, i]
@@ -69,16 +74,22 @@ def course_of(case: Case) -> Course:
     return Course.of(case.profiles())
 
 
-def acting(course: Course, length: Floats, piece: NDArray[np.intc]) -> Floats:
-    """What an engine is given for legs that start at some lengths, each on a piece; (legs, inputs) as of `ACTING`."""
+def acting(course: Course, length: Floats, piece: Indices) -> tuple[Floats, Indices]:
+    """What an engine is given for legs that start at some lengths, each on a piece.
+
+    Returns the inputs, (…, inputs) as of `ACTING`, and which of them are those of each leg, (legs,): those of its piece
+    as long as nothing is linear.
+    """
     on_pieces = np.zeros((len(course.starts), len(ACTING)))
-    for i, name in enumerate(course.names):
-        if name in ACTING:
-            on_pieces[:, ACTING.index(name)] = course.values[:, i]
-            if f"{name}_slope" in ACTING:
-                on_pieces[:, ACTING.index(f"{name}_slope")] = course.slopes[:, i]
+    given = [i for i, name in enumerate(course.names) if name in ACTING]
+    on_pieces[:, [ACTING.index(course.names[i]) for i in given]] = course.values[:, given]
+    if not course.slopes.any():
+        return on_pieces, piece
+    for name, slopes in zip(course.names, course.slopes.T, strict=True):
+        if f"{name}_slope" in ACTING:
+            on_pieces[:, ACTING.index(f"{name}_slope")] = slopes
     inputs: Floats = np.take(on_pieces, piece, axis=0)
     for name, slopes in zip(course.names, course.slopes.T, strict=True):
         if name in ACTING and slopes.any():
             inputs[:, ACTING.index(name)] = course.column(name, length, piece)
-    return inputs
+    return inputs, np.arange(len(piece), dtype=np.intc)

@@ -50,7 +50,14 @@ class Engine(Protocol):
     ) -> None:
         """Drill on under inputs from here, constant or linear in the drilled length."""
 
-    def follow(self, lengths: Floats, inputs: Floats, rows: NDArray[np.intc], table: Floats) -> None:
+    def follow(
+        self,
+        lengths: Floats,
+        inputs: Floats,
+        rows: NDArray[np.intc],
+        table: Floats,
+        which: NDArray[np.intc] | None = None,
+    ) -> None:
         """Drill leg after leg, and write outputs into rows of a table."""
 
     def change_clearances(self, clearances: tuple[float, ...]) -> None:

@@ -1,7 +1,6 @@
 """What the case of a run says of each of its rows: bit and rock there, clearances, and how blunt the bit is."""
 
 from collections.abc import Mapping
-from itertools import chain
 
 import numpy as np
 
@@ -21,7 +20,7 @@ def rock_in_layers(case: Case, formation: Floats) -> dict[str, Floats]:
     ground, columns = case.ground, dict[str, Floats]()
     assert ground is not None
     own, layer = values_of("bit", ground.bit), formation.astype(np.intp)
-    rocks = np.fromiter(chain.from_iterable(ground.rock), float).reshape(-1, len(ROCK))
+    rocks = np.array(ground.numbers[-len(ground.rock) * len(ROCK) :]).reshape(-1, len(ROCK))
     for name, values in zip(ROCK, rocks.T, strict=True):
         rock = np.where(values == 0.0, own[name], values)
         if (rock != rock[0]).any():

@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..arrays import Floats
 from ..case.case import Case, in_dimensions
@@ -12,12 +11,10 @@ from ..core.checks import check_number
 from ..core.errors import CannotContinue
 from ..core.options import RELATIVE_TOLERANCE, Options
 from ..core.quantities import CLEARANCES, OUTPUTS, ROCK, scalar_names
-from .course import Course, acting, course_of
+from .course import Course, Indices, acting, course_of
 from .engines import Engine, chosen, start, start_in_space
 from .ground import rock_in_layers
 from .trajectory import Stopped, Trajectory
-
-Indices = NDArray[np.intc]
 
 SAMPLE_INTERVAL = 0.1  # m, the usual distance between rows: about 50 rows for each wave of the paper's rippling hole
 PARTS = 100  # a run reports its progress about this many times
@@ -92,20 +89,23 @@ def simulate(
     engine, course, options = chosen(engine, in_space=case.in_space), course_of(case), Options(relative_tolerance)
     drilling = start_in_space(case, options) if case.in_space else start(case, engine, options, case.ground)
     names = scalar_names(OUTPUTS, case.structure)
-    table = np.full((int(length / sample_interval + ROUNDING) + 1, len(names)), np.nan)
+    outputs = np.empty((len(names), int(length / sample_interval + ROUNDING) + 1))  # a run is read column by column
+    outputs[0], table = np.nan, outputs.T  # until a row is drilled
     lengths, pieces, rows = _in_parts(*_legs(course, len(table), sample_interval), LONGEST_LEG * case.bha.length_scale)
-    inputs = acting(course, np.append(0.0, lengths[:-1]), pieces)
+    inputs, which = acting(course, np.append(0.0, lengths[:-1]), pieces)
+    opening = [name for name in course.names if name in CLEARANCES]
     failure = None
     try:
-        for part in _parts(len(lengths), progress is not None, _worn(course, pieces)):
-            _change_clearances(drilling, case, course, pieces[part.start])
-            drilling.follow(lengths[part], inputs[part], rows[part], table)
+        for part in _parts(len(lengths), progress is not None, _opened(course, opening, pieces)):
+            if opening:
+                _change_clearances(drilling, case, course, pieces[part.start])
+            drilling.follow(lengths[part], inputs, rows[part], table, which[part])
             if progress:
                 progress(drilling.drilled_length)
     except CannotContinue as error:
         failure = error
-    drilled = np.count_nonzero(~np.isnan(table[:, 0]))
-    outputs = np.ascontiguousarray(table[:drilled].T)  # a run is read column by column
+    drilled = np.count_nonzero(~np.isnan(outputs[0]))
+    outputs = outputs[:, :drilled]
     on_rows = rows >= 0
     at, piece = lengths[on_rows][:drilled], pieces[on_rows][:drilled]
     told = [name for name in course.names if name not in CONSTANT or course.changes(name)]
@@ -126,12 +126,11 @@ def _parts(legs: int, reported: bool, cuts: Indices) -> Iterator[slice]:
     return (slice(first, end) for first, end in pairwise((*starts, legs)))
 
 
-def _worn(course: Course, pieces: Indices) -> Indices:
-    """The legs with which other clearances begin."""
-    scheduled = [course.values[:, course.names.index(name)] for name in course.names if name in CLEARANCES]
+def _opened(course: Course, opening: list[str], pieces: Indices) -> Indices:
+    """The legs with which others of the clearances that a course changes begin."""
     changed = np.zeros(len(pieces), dtype=bool)
-    for values in scheduled:
-        changed[1:] |= np.diff(values[pieces]) != 0.0
+    for name in opening:
+        changed[1:] |= np.diff(course.values[pieces, course.names.index(name)]) != 0.0
     return np.flatnonzero(changed).astype(np.intc)
 
 
@@ -160,7 +159,9 @@ def _legs(course: Course, count: int, sample_interval: float) -> tuple[Floats, I
 def _in_parts(lengths: Floats, pieces: Indices, rows: Indices, longest: float) -> tuple[Floats, Indices, Indices]:
     """The same legs, each cut into parts no longer than `longest`, m. Only the last part of a leg ends on its row."""
     starts = np.concatenate([[0.0], lengths[:-1]])
-    parts = int(np.ceil((lengths - starts).max() / longest)) or 1
+    parts = int(np.ceil((lengths - starts).max() / longest))
+    if parts <= 1:
+        return lengths, pieces, rows
     ends = starts[:, None] + np.outer(lengths - starts, np.arange(1, parts + 1) / parts)
     ends[:, -1] = lengths
     on_rows = np.full(ends.shape, -1, dtype=np.intc)
