@@ -2,12 +2,13 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from boreprop.core.options import Options
 from boreprop.kernel.binding import available
 from boreprop.run.engines import start_in_space
-from fuzz_space import draw, ending, examine_all, plain
+from fuzz_space import SAME, draw, ending, examine_all, plain, way
 
 pytestmark = pytest.mark.skipif(not available(), reason="the kernel is not built")
 
@@ -31,6 +32,13 @@ def test_a_hole_does_not_wind_by_noise_where_clearances_are_far_smaller_than_the
         run.advance(0.03 * case.length_scale, case.schedule.rss_force[0], case.active_weight_on_bit)
         inclinations.append(run.outputs()["borehole_inclination"])
     assert inclinations[0] == pytest.approx(inclinations[1], abs=1e-6)
+
+
+@pytest.mark.parametrize("number", [(4005, 8428), (5001, 30125), (5001, 35143)])
+def test_a_disc_far_smaller_than_the_tolerance_is_not_left_and_entered_in_every_step(number: tuple[int, int]) -> None:
+    """Of the tilt, at a walk of 84° and 79°; of a stabilizer in a clearance of 2e-8 ℓ₁ under hardly any force."""
+    case, tolerance = draw(*number)
+    np.testing.assert_allclose(way(case, tolerance), way(case, tolerance / 10), rtol=0, atol=SAME * tolerance)
 
 
 def test_hardly_a_step_is_tried_in_vain_with_a_body_on_the_wall_at_many_points() -> None:

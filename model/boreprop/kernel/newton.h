@@ -6,14 +6,14 @@
 #include "stages.h"
 
 enum { MOST_ITERATIONS = 12 };
-#define REST 1e-3     /* what may be neglected of the solution of a step, in tolerances, which adds up over steps; … */
-#define COARSEST 1e-7 /* … in this if they are coarser, so that a run of short steps is exact; … */
-#define FINEST 3e-10  /* … in clearances in contact, but for those that are near rounding; … */
+#define REST 1e-3 /* what may be left of the solution of a step, over what it may err, since it adds up over steps, … */
+#define COARSEST 1e-7    /* … which counts no more than so, that a run of short steps is exact; … */
 #define LEAST_REST 3e-14 /* … at least this, above the rounding of Y */
+#define FINEST 1e-11     /* the least error in Y that is asked for: clearances in contact may be near rounding */
 #define SLOW 0.1         /* a correction, over the last one, after which derivatives are taken anew */
 #define TOO_HARD 100.0   /* the error, over the tolerance, of a step that is not solved: the next is a third as long */
 #define AIMED 0.03       /* of ψ*: the error of a saturated tilt in a step, at most, … */
-#define NO_WAY 1e-3      /* … or what adds so many tolerances to Y */
+#define NO_WAY 1e-12     /* … or what adds so little to Y that it is near rounding */
 #define FARTHEST 2.0     /* over the last step, up to which its polynomial is taken as a guess */
 
 /* What a step is solved with: the change of the state up to each node, and what its points need. */
@@ -102,10 +102,16 @@ static inline double find_correction(
     return size;
 }
 
-/* What may be neglected of the solution of a step. */
-static inline double rest_of(const Law *law, const Options *options) {
-    double least = smaller(options->relative_tolerance, COARSEST);
-    return larger(REST * smaller(least, larger(law->finest, FINEST)), LEAST_REST);
+/* What a step may err in Y: a tolerance or, where that is smaller, the least clearance in contact. Steps that err more would
+   not tell whether a stabilizer stays on the wall. */
+static inline double may_err(const Law *law, const Options *options) {
+    return smaller(options->relative_tolerance, larger(law->finest, FINEST));
+}
+
+/* What it may err in Y by a saturated tilt, in its residual and in what is left of its solution. The tilt turns with F_0, and
+   fast where that is small: steps so short that no tilt makes an error in Y would not tell which regime follows. */
+static inline double may_stray(const Law *law, double h) {
+    return law->saturated ? AIMED * h * law->inputs.psi_star + NO_WAY : INFINITY;
 }
 
 /* Solve the step, with the derivatives as they are at first, and anew where that is slow; returns 0 if no solution is
@@ -114,7 +120,9 @@ static inline int solve_step(
     const Law *law, const Options *options, const double x[COMPONENTS], Solving *solving, Trial *trial
 ) {
     Stages stages;
-    double h = trial->step.h, rest = rest_of(law, options), rate = INFINITY, before = INFINITY, by[S][COMPONENTS];
+    double h = trial->step.h, least = smaller(may_err(law, options), may_stray(law, h));
+    double rest = larger(REST * smaller(least, COARSEST), LEAST_REST);
+    double rate = INFINITY, before = INFINITY, by[S][COMPONENTS];
     for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
         int anew = rate > SLOW;
         if (!spread(law, x, solving, trial) || !speak_at_nodes(law, solving, trial, anew)) return 0;
@@ -163,13 +171,6 @@ static inline void guess_contacts(const Law *law, const double x[COMPONENTS], co
             restate(v[of->C[k]], of->y[k], of->K_inv[k][k], of->k[k], trial->at[point].v[k]);
 }
 
-/* How far a saturated tilt is from the law's in a trial step with these defects of Y, over what is allowed. It turns with F_0,
-   and fast where that is small: steps so short that no tilt makes an error in Y would not tell which regime follows. */
-static inline double astray(const Law *law, const Options *options, double h, const double defect[2]) {
-    double way = h * law->inputs.psi_star;
-    return length_of(defect) / (AIMED * way + NO_WAY * options->relative_tolerance);
-}
-
 /* Collocation from the state `x` over a trial step, whose place, length and delayed hole are given. */
 static inline void law_try(
     const Law *law, const Options *options, const Step *last, const double x[COMPONENTS], Trial *trial
@@ -187,7 +188,7 @@ static inline void law_try(
     const Reply *check = &trial->at[AT_CHECK];
     for (int c = 0; c < COMPONENTS && found; c++)
         defect[c] = polynomial_slope(solving.c[c], POINT[AT_CHECK]) - h * check->rate[c];
-    trial->error = law->saturated ? astray(law, options, h, &defect[LATERAL]) : 0.0;
+    trial->error = length_of(&defect[LATERAL]) / may_stray(law, h);
     if (!found || !damp(h, check->by, defect)) {
         for (int c = 0; c < COMPONENTS; c++) memset(trial->step.x[c], 0, sizeof trial->step.x[c]);
         trial->error = TOO_HARD;
@@ -195,8 +196,8 @@ static inline void law_try(
     }
     memcpy(trial->step.x, solving.c, sizeof trial->step.x);
     for (int c = 0; c < COMPONENTS; c++) {
-        double weight = c < LATERAL ? options->theta_weight : 1.0;
-        trial->error = larger(trial->error, weight * fabs(defect[c]) / options->relative_tolerance);
+        double allowed = c < LATERAL ? options->relative_tolerance / options->theta_weight : may_err(law, options);
+        trial->error = larger(trial->error, fabs(defect[c]) / allowed);
     }
 }
 
