@@ -11,7 +11,9 @@ import numpy as np
 from hypothesis import strategies as st
 
 from boreprop.case.case import Case
+from boreprop.core.errors import ParameterError
 from boreprop.core.system import BottomHoleAssembly
+from boreprop.kernel.binding import lie
 
 FOLDER = Path(__file__).parent / "reference_bha"
 CASES: dict[str, dict[str, Any]] = json.loads((FOLDER / "cases.json").read_text(encoding="utf-8"))["cases"]
@@ -51,6 +53,16 @@ def with_points(bha: BottomHoleAssembly, points: list[float], clearance: float) 
         body_point_positions=tuple(points),
         body_point_clearances=(clearance,) * len(points),
     )
+
+
+def bearable(bha: BottomHoleAssembly, inclination: float) -> float:
+    """The weight on bit under which a BHA buckles, N."""
+    supports = len(bha.stabilizer_positions) + len(bha.body_point_positions)
+    try:
+        lie(bha, np.zeros((1, supports)), np.zeros(1), np.zeros(1), weight_on_bit=1e15, inclination=inclination)
+    except ParameterError as error:
+        return error.problem.limit if error.problem else 0.0
+    raise AssertionError("nothing bears so much")
 
 
 def in_sections(case: Case, lengths: tuple[float, ...], stiffnesses: tuple[float, ...]) -> Case:

@@ -57,7 +57,8 @@ def inputs_of(random: Random, case: Case, names: set[str]) -> InputSchedule:
     given["active_weight_on_bit"] = tuple(case.active_weight_on_bit * random.uniform(0.2, 1.0) for _ in entries)
     if case.weight_on_bit:
         given["weight_on_bit"] = tuple(case.weight_on_bit * random.uniform(0.9, 1.0) for _ in entries)
-        weights = zip(given["weight_on_bit"], given["active_weight_on_bit"], strict=True)
+        whole = given["weight_on_bit"]  # constant from entry to entry: no ramp of the active one may end above it
+        weights = zip(whole, (whole[0], *whole[:-1]), given["active_weight_on_bit"], strict=True)
         given["active_weight_on_bit"] = tuple(min(weights_) for weights_ in weights)
     if case.bit.walk_angle:
         given["bit_walk_angle"] = tuple(case.bit.walk_angle * random.uniform(-1.0, 1.0) for _ in entries)

@@ -14,10 +14,9 @@ again, and ends in exit status 1.
 import argparse
 import sys
 from collections import Counter
-from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
-from itertools import count, pairwise
+from itertools import count
 from math import cos, isfinite, pi, radians, sin
 from random import Random
 from time import monotonic
@@ -28,29 +27,26 @@ from boreprop.case.case import Case
 from boreprop.case.inputs import Schedule
 from boreprop.core.errors import CannotContinue, ParameterError
 from boreprop.core.options import Options
-from boreprop.core.quantities import CLEARANCES, TOOLFACE_REFERENCES, fields_of, values_of
+from boreprop.core.quantities import TOOLFACE_REFERENCES
 from boreprop.core.survey import Survey
-from boreprop.core.system import BitRock
-from boreprop.run.course import Course, acting, course_of
-from boreprop.run.engines import Engine, start_in_space
-from boreprop.run.trajectory import Stopped
+from boreprop.run.course import course_of
+from boreprop.run.engines import start_in_space
 from fuzz_along import varied
 from fuzz_engines import EXPLAINED, any_tolerance, as_built, near_bit, wide
+from fuzz_legs import drill, goes_on_as_it_was
 from space_runs import Outputs, Vector, direction, pair, place
 
 LENGTH = 300.0  # m, at most, …
 SHORT = 3.0  # … and in all but a few cases so many times the distance from the bit to the last stabilizer
 FEW = 0.01
 BUILT = 0.15  # of the length of a BHA as built
-ROWS = 3  # looked at on each leg
-STEPS = 500  # for each ℓ₁ of a case, at most, …
-TIGHTER = 1e-2  # … unless so much less of the tolerance needs that many, too
+TIGHTER = 1e-2  # a case is rough if with so much less of the tolerance it takes too many steps, too
 SYMMETRIC = 20  # every so many-th case is looked at for what must not matter
 HAIR, GROWS = 1e-12, 1e4  # relative; how much more than this a rounding may grow
 SAME = 100.0  # tolerances
 TURN = 2.0  # of the whole world, rad
 ROUNDING = 1e-9  # of the largest number in a condition of the discs
-NOTHING = 1e-18  # m: rounding of the hole where nothing bends the BHA
+SETTLED = 1e-13  # of the largest clearance: so near to their solution contacts are found, in kernel/cone.h
 BATCH = 20  # cases that a process gets at once
 
 
@@ -113,60 +109,16 @@ def in_space(random: Random, case: Case) -> tuple[Case, float]:
     return case, tolerance
 
 
-def begin(case: Case, options: Options) -> Engine:
-    """A case before its first step; what is in the way of that is raised as it is farther on."""
-    try:
-        return start_in_space(case, options)
-    except Stopped as stopped:
-        raise (stopped.__cause__ or stopped) from None
-
-
-def drill(case: Case, tolerance: float, stops: int = 1, saves: bool = False) -> Iterator[tuple[Outputs, Case]]:
-    """Outputs along a case, and the case as it is there; the bit stops so many times from row to row.
-
-    Another run may go on at each row.
-    """
-    steps = int(STEPS * (1 + case.length / case.length_scale))
-    course, options = course_of(case), Options(relative_tolerance=tolerance, most_steps=steps)
-    run = begin(case, options)
-    for piece, (start, end) in enumerate(pairwise([*course.starts, np.inf])):
-        if start >= case.length:
-            return
-        here = as_on(case, course, start, piece)
-        run.change_clearances(here.bha.stabilizer_clearances)
-        lengths = np.linspace(start, min(end, case.length), ROWS + 1)
-        for row_start, row_end in pairwise(lengths):
-            for before, length in pairwise([*np.linspace(row_start, row_end, stops + 1)[:-1], row_end]):
-                inputs, which = acting(course, np.array([before]), np.array([piece], dtype=np.intc))
-                no_row, no_table = np.array([-1], dtype=np.intc), np.empty((0, len(run.outputs())))
-                run.follow(np.array([length]), inputs, no_row, no_table, which)
-            if saves:
-                state, run = run.save(), begin(case, options)
-                run.restore(state)
-            row = run.outputs()
-            yield row, as_on(case, course, row_end, piece, int(row.get("formation", 0)))
-
-
-def as_on(case: Case, course: Course, length: float, piece: int, layer: int = 0) -> Case:
-    """A case with bit and clearances as they are at a drilled length on a piece of its course, in a layer."""
-    where = np.array([length]), np.array([piece], dtype=np.intc)
-    given = {name: course.column(name, *where).item() for name in course.names}
-    clearances = zip(CLEARANCES, case.bha.stabilizer_clearances, strict=False)
-    bha = replace(case.bha, stabilizer_clearances=tuple(given.get(name, own) for name, own in clearances))
-    bit = BitRock(**fields_of("bit", values_of("bit", case.bit) | given, case.structure))
-    bit = case.ground.bit_in(layer, bit) if case.ground else bit
-    return replace(case, bha=bha, bit=bit, inputs=None, formations=(), wear=None)
-
-
 def fault_of(row: Outputs, case: Case) -> str | None:
     """What is wrong with outputs, if anything."""
     if not all(map(isfinite, row.values())):
         return f"not finite: {', '.join(name for name, value in row.items() if not isfinite(value))}"
     forces = [pair(row, "stabilizer_force", i) for i in range(1, len(case.bha.stabilizer_clearances) + 1)]
     largest = max((float(np.hypot(*force)) for force in forces), default=0.0)
+    settled = SETTLED * max((*case.bha.stabilizer_clearances, *case.bha.body_point_clearances), default=0.0)
     for i, (force, clearance) in enumerate(zip(forces, case.bha.stabilizer_clearances, strict=True), 1):
         delta, size = pair(row, "stabilizer_deflection", i), float(np.hypot(*force))
-        room = NOTHING + ROUNDING * (clearance + largest * case.bha.stabilizer_positions[-1] / case.bha.force_scale)
+        room = settled + ROUNDING * (clearance + largest * case.bha.stabilizer_positions[-1] / case.bha.force_scale)
         if np.hypot(*delta) > clearance + room:
             return f"stabilizer {i} is {np.hypot(*delta) - clearance:g} m beyond the wall"
         if abs(force @ delta + clearance * size) > room * (size + ROUNDING * largest):
@@ -176,11 +128,11 @@ def fault_of(row: Outputs, case: Case) -> str | None:
     return None
 
 
-def way(case: Case, tolerance: float, **how: int) -> Vector:
+def way(case: Case, tolerance: float, stops: int = 1) -> Vector:
     """Where the bit is and where it points along a case, row by row; ℓ₁ and no unit."""
     rows: list[Outputs] = []
     try:
-        rows.extend(row for row, _ in drill(case, tolerance, **how))  # type: ignore[arg-type]
+        rows.extend(run.outputs() for run, _ in drill(case, tolerance, stops))
     except CannotContinue as stop:
         if stop.code not in EXPLAINED:
             raise
@@ -203,7 +155,7 @@ def what_matters(case: Case, tolerance: float) -> str | None:
     even = not (course_of(case).slopes.any() or case.ground)  # on a ramp a stop rounds what acts
     if even and not np.array_equal(here, stopping):
         return "where the bit stops matters"
-    if not np.array_equal(here, way(case, tolerance, saves=True)):
+    if not goes_on_as_it_was(case, tolerance):
         return "a saved run goes on to elsewhere"
     others = {"right and left": way(mirrored(case), tolerance), "a hair": way(stiffer(case), tolerance)}
     others["where the bit stops"] = stopping
@@ -267,8 +219,8 @@ def ending(case: Case, tolerance: float, symmetric: bool = False) -> tuple[str, 
     """How a case ends, and what is wrong; if it is to be symmetric, also in what ought not to matter."""
     end = "drilled"
     try:
-        for row, here in drill(case, tolerance):
-            if fault := fault_of(row, here):
+        for run, here in drill(case, tolerance):
+            if fault := fault_of(run.outputs(), here):
                 return "wrong", fault
     except CannotContinue as stop:
         end = "rough" if stop.code == "too many" and is_rough(case, tolerance) else stop.code

@@ -254,3 +254,11 @@ def test_a_negative_force_and_one_of_another_kind_are_refused() -> None:
 def test_a_case_made_in_python_checks_its_schedules(case: Case) -> None:
     with pytest.raises(ParameterError, match=r"active_weight_on_bit\[2\]: must be > 0, got -1"):
         replace(case, inputs=InputSchedule((0.0, 1.0), (("active_weight_on_bit", (1.0, -1.0)),)))
+
+
+def test_the_whole_weight_which_is_held_bears_what_drills_up_to_the_next_entry() -> None:
+    """Before, rows decided: a run was refused where one lay beyond the place at which the active weight passed it."""
+    weights = ("active_weight_on_bit", (2e3, 3e3)), ("weight_on_bit", (2.5e3, 4e3))
+    assert InputSchedule((0.0, 10.0), weights).inputs == weights
+    with pytest.raises(ParameterError, match=r"weight_on_bit\[1\]: must be >= 3000, got 2500\.0"):
+        InputSchedule((0.0, 10.0), weights, "linear")

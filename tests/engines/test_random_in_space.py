@@ -8,6 +8,7 @@ import pytest
 from boreprop.core.options import Options
 from boreprop.kernel.binding import available
 from boreprop.run.engines import start_in_space
+from fuzz_legs import goes_on_as_it_was
 from fuzz_space import SAME, draw, ending, examine_all, plain, way
 
 pytestmark = pytest.mark.skipif(not available(), reason="the kernel is not built")
@@ -46,6 +47,10 @@ def test_hardly_a_step_is_tried_in_vain_with_a_body_on_the_wall_at_many_points()
     run = start_in_space(case, Options(relative_tolerance=tolerance))
     run.advance(2.9, case.schedule.rss_force[0], case.active_weight_on_bit, weight_on_bit=case.weight_on_bit)
     assert run.statistics.rejected < run.statistics.accepted / 2
+
+
+def test_a_run_that_is_saved_where_its_body_turned_round_near_the_wall_goes_on_as_it_was() -> None:
+    assert goes_on_as_it_was(*draw(5001, 2620))
 
 
 def test_random_cases_in_space_do_not_fail() -> None:

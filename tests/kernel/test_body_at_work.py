@@ -50,6 +50,34 @@ def test_no_touch_is_missed_between_the_ends_of_steps(points: list[int], clearan
     np.testing.assert_allclose(usual[:, 1], fine[:, 1], atol=30.0)
 
 
+def pressed(
+    stabilizers: tuple[float, ...], clearances: tuple[float, ...], weight: float, force: float, largest: float = 1.0
+) -> NativeDrilling:
+    """Two metres of a hole at 17° under more weight than the BHA bears without its stabilizers."""
+    uniform = BottomHoleAssembly(stabilizers, clearances, 0.5, 1000.0, 1e7, axial_load=True)
+    bha = with_points(uniform, (stabilizers[-1] * (np.arange(8) + 0.4) / 8).tolist(), 0.03)
+    survey, bit = Survey((0.0, stabilizers[-1] + 10.0), (0.3, 0.3)), BitRock(20.0, 1.0, 0.02)
+    options = replace(Options(), largest_step=largest)
+    run = NativeDrilling(
+        bha, bit, survey, active_weight_on_bit=1e4, weight_on_bit=weight, rss_force=force, options=options
+    )
+    run.advance(2.0, force, 1e4, weight_on_bit=weight)
+    return run
+
+
+def test_a_touch_is_seen_where_a_point_comes_by_the_start_of_the_step() -> None:
+    """There the hole that it passes turns sharply: it is at the wall just before, and not at the end of the step."""
+    usual, fine = (pressed((13.0, 33.0, 40.0), (5e-3, 5e-3), 532e3, 5e3, largest).outputs() for largest in (1.0, 0.01))
+    assert usual["bit_lateral_force"] == pytest.approx(fine["bit_lateral_force"], abs=0.1)
+
+
+def test_a_force_that_hardly_changes_moves_nothing_where_there_are_other_ways_to_lie() -> None:
+    run = pressed((10.0, 20.0), (1e-2,), 1.033e6, -5e3)
+    before = run.outputs()["bit_lateral_force"]
+    run.advance(2.0, -5e3 + 1e-3, 1e4, weight_on_bit=1.033e6)
+    assert run.outputs()["bit_lateral_force"] == pytest.approx(before, abs=0.1)
+
+
 SLENDER = BottomHoleAssembly((2.0, 14.0, 26.0), (2e-3, 2e-3), 0.5, 800.0, 4e6, axial_load=True)
 
 

@@ -177,8 +177,8 @@ class InputSchedule:
     ------
     ParameterError
         If a name is of no input, a value is out of range, the lengths do not start at 0 or do not increase, the shapes
-        differ, there is no such interpolation, or a rate of penetration is 0, with which no next entry would be
-        reached.
+        differ, there is no such interpolation, a rate of penetration is 0, with which no next entry would be reached,
+        or all of the weight is less than the active weight up to the next entry.
 
     Examples
     --------
@@ -204,6 +204,15 @@ class InputSchedule:
             if name == RATE:
                 for index, value in enumerate(values, 1):
                     check_number(name, value, index=index, above=0.0)
+        self._check_weights()
+
+    def _check_weights(self) -> None:
+        """Raise `ParameterError` unless all of the weight, which is held, is as much as drills up to the next entry."""
+        columns, reach = dict(self.inputs), 2 if self.interpolation == "linear" else 1
+        active = columns.get("active_weight_on_bit", ())
+        for k, weight in enumerate(columns.get("weight_on_bit", ())):
+            if weight and active:
+                check_number("weight_on_bit", weight, index=k + 1, at_least=max(active[k : k + reach]))
 
     def profiles(self) -> dict[str, Profile]:
         """Each input over the drilled length."""

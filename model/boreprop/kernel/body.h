@@ -94,7 +94,7 @@ static inline void lay_chain(const Chain *chain, const Path *path, const Bent *b
     }
     hold(chain, acting, &held);
     for (int i = 0; i < path->supports; i++)
-        if (i != path->n - 1 && !path->of[i]) lain->of[i] = bent->e[i] + place_between(chain, &held, acting, i);
+        if (i != path->n - 1) lain->of[i] = path->of[i] ? 0.0 : bent->e[i] + place_between(chain, &held, acting, i);
     for (int k = 0; k < chain->spans - 1; k++) lain->of[chain->held[k]] = held.F[k];
     lain->M = held.M, lain->F_0 = held.F_0;
 }
@@ -126,19 +126,106 @@ static inline int switch_contact(Path *path, int i) {
     return 1;
 }
 
-enum { MOST_SWITCHES = 1000 }; /* of a path: it takes three as a rule, and under a hundred where nearly all touch */
+enum { MOST_SWITCHES = 10000 }; /* of a path: three as a rule, over a thousand in holes that no bit drills */
 
-/* Follow the contacts from t = 0 to 1, one switch after the other. A support that comes free, so that the beam buckles, goes
-   to the other wall. Returns what is in the way: TOO_CROWDED if more touch than there is room for, BUCKLES if the beam does
-   between those that touch first, NO_MODE if there is no end; else NO_PROBLEM. */
+#define AJAR 1e-6 /* of clearances that open: from there on there is room to fall */
+
+/* Loads and clearances at t. */
+static inline Bent bent_at(const Path *path, double t) {
+    Bent bent = path->bent;
+    const Bent *bending = &path->bending;
+    bent.F_rss += t * bending->F_rss, bent.g += t * bending->g, bent.end += t * bending->end;
+    for (int i = 0; i < path->supports; i++) bent.e[i] += t * bending->e[i], bent.y[i] += t * bending->y[i];
+    return bent;
+}
+
+/* Find where a beam goes that does not lie still: to its equilibrium between its contacts or, if it does not stand between
+   these, on with the support that has come loose from `wall`. Returns the most of that way; 0 if there is none. */
+static inline double way_of_fall(const Beam *beam, Path *fall, int loose, signed char wall) {
+    Chain chain;
+    Lain to;
+    Bent inwards;
+    if (make_chain(&chain, beam, fall->supports, fall->of)) {
+        lay_chain(&chain, fall, &fall->bent, &to);
+        for (int i = 0; i < fall->supports; i++) {
+            if (fall->of[i]) fall->start.of[i] = to.of[i], fall->rate.of[i] = 0.0;
+            else fall->rate.of[i] = to.of[i] - fall->start.of[i];
+        }
+        return 1.0;
+    }
+    memset(&inwards, 0, sizeof inwards);
+    fall->of[loose] = wall, inwards.y[loose] = -1.0;
+    if (!make_chain(&chain, beam, fall->supports, fall->of)) return 0.0;
+    lay_chain(&chain, fall, &inwards, &fall->rate);
+    for (int i = 0; i < fall->supports; i++)
+        if (fall->of[i]) fall->rate.of[i] = 0.0;
+    fall->of[loose] = 0, fall->rate.of[loose] = wall;
+    return INFINITY;
+}
+
+/* The support that its wall pulls most, which a wall cannot; −1 if there is none. */
+static inline int pulled_most(const Path *path) {
+    int found = -1;
+    double most = 0.0;
+    for (int i = 0; i < path->supports; i++)
+        if (path->bent.y[i] > 0 && path->of[i] * path->start.of[i] < most)
+            most = path->of[i] * path->start.of[i], found = i;
+    return found;
+}
+
+/* Let the beam fall to where it lies under the loads of the path, from where its supports are: held, or at `start`. The loose
+   one has left `wall`, if there is one without which it does not stand. It takes a way on which its energy falls: supports
+   that meet a wall stay there while others move, and come loose one after the other where the wall would have to pull.
+   Returns what is in the way, as `follow`. */
+static inline Code fall(const Beam *beam, Path *path, int loose, signed char wall) {
+    for (int moves = 0; moves < MOST_SWITCHES; moves++) {
+        int first = -1;
+        double way = way_of_fall(beam, path, loose, wall);
+        if (way == 0.0) break;
+        for (int i = 0; i < path->supports; i++) {
+            double at = leaves_at(path, i, 0.0);
+            if (at < way) way = at, first = i;
+        }
+        for (int i = 0; i < path->supports; i++)
+            if (!path->of[i]) path->start.of[i] += way * path->rate.of[i];
+        if (first >= 0) {
+            if (!switch_contact(path, first)) return TOO_CROWDED;
+            continue;
+        }
+        loose = pulled_most(path);
+        if (loose < 0) return NO_PROBLEM;
+        wall = path->of[loose], path->start.of[loose] = -wall * path->bent.y[loose];
+        path->of[loose] = 0, path->touching--;
+    }
+    return NO_MODE;
+}
+
+/* The same from a place on a path, where the support that is loose has left `wall`. */
+static inline Code fall_at(const Beam *beam, Path *path, int loose, signed char wall, double t) {
+    Path fallen = *path;
+    fallen.bent = bent_at(path, t);
+    for (int i = 0; i < path->supports; i++)
+        fallen.start.of[i] = i == loose ? -wall * fallen.bent.y[i] : path->start.of[i] + t * path->rate.of[i];
+    memset(&fallen.bending, 0, sizeof fallen.bending);
+    Code problem = fall(beam, &fallen, loose, wall);
+    memcpy(path->of, fallen.of, sizeof path->of), path->touching = fallen.touching;
+    return problem;
+}
+
+/* Follow the contacts from t = 0 to 1, one switch after the other. Where a support comes free, so that the beam buckles, it
+   falls to where it lies then. Returns what is in the way: TOO_CROWDED if more touch than there is room for, BUCKLES if the
+   beam does between those that touch first, NO_MODE if there is no end; else NO_PROBLEM. */
 static inline Code follow(const Beam *beam, Path *path) {
     double t = 0.0;
-    int first = -1, wall = 0;
+    int first = -1;
+    signed char wall = 0;
     for (int switches = 0; switches < MOST_SWITCHES; switches++) {
         double next = 1.0;
         if (!look_ahead(beam, path)) {
-            if (!wall) return BUCKLES;
-            path->of[first] = (signed char)-wall, path->touching++, wall = 0;
+            t = larger(t, AJAR);
+            Code problem = wall ? fall_at(beam, path, first, wall, t) : BUCKLES;
+            if (problem) return problem;
+            wall = 0;
             continue;
         }
         first = -1;
@@ -177,11 +264,30 @@ static inline Code follow_load(const Modes *modes, const Bent *loads, int points
     return follow(&modes->beam, path);
 }
 
-/* The same, as the contacts of a regime. */
-static inline Code search(const Modes *modes, const Bent *loads, int points, Contact *found) {
+/* The contacts under loads to which a beam comes from those that it has; BUCKLES if it does not stand between these. */
+static inline Code lie_down(const Modes *modes, const Bent *loads, int points, const Contact *contact, Path *path) {
+    int n = modes->beam.n;
+    memset(path, 0, sizeof *path);
+    path->n = n, path->supports = n + points, path->bent = *loads;
+    memcpy(path->bent.y, modes->y_star, (size_t)path->supports * sizeof *modes->y_star);
+    for (int i = 0; i < place_count(*contact, n); i++) path->of[support_at(contact, n, i)] = contact->of[i];
+    for (int i = 0; i < n - 1; i++)
+        if (path->bent.y[i] == 0.0) path->of[i] = 1;
+    for (int i = 0; i < path->supports; i++) path->touching += path->of[i] != 0;
+    if (!look_ahead(&modes->beam, path)) return BUCKLES;
+    for (int i = 0; i < path->supports; i++) {
+        double y = path->bent.y[i];
+        if (!path->of[i]) path->start.of[i] = larger(-y, smaller(y, path->start.of[i]));
+    }
+    return fall(&modes->beam, path, -1, 0);
+}
+
+/* The contacts of all supports, as those of a regime: from those that there are if they are given and lead there. */
+static inline Code search(const Modes *modes, const Bent *loads, int points, const Contact *from, Contact *found) {
     int n = modes->beam.n;
     Path path;
-    Code problem = follow_load(modes, loads, points, &path);
+    Code problem = from ? lie_down(modes, loads, points, from, &path) : BUCKLES;
+    if (problem) problem = follow_load(modes, loads, points, &path);
     if (problem) return problem;
     memset(found, 0, sizeof *found);
     for (int i = 0; i < n - 1; i++) found->of[i] = path.of[i];

@@ -25,7 +25,7 @@ typedef struct {
     Turned m_start, q_start, m_end, q_end;
 } Span;
 
-/* A support between two that are held: in which span, and the deflections there of the lines. */
+/* A support: in which span it is, or at whose end, and the deflections there of the lines. */
 typedef struct {
     int span;
     double v[UNITS];
@@ -69,15 +69,18 @@ static inline void make_span(Span *span, double lines[UNITS][PARTS]) {
     span->m_end = turned(span, lines, MOMENT), span->q_end = turned(span, lines, SHEAR);
 }
 
-/* Hold a beam at its last stabilizer and where `holds` says so of the first `supports`; 0 if it buckles between these. */
+static inline int is_held(const Beam *beam, const signed char *holds, int i) { return holds[i] || i == beam->n - 1; }
+
+/* Hold a beam at its last stabilizer and where `holds` says so of the first `supports`; 0 if it buckles between these. Of
+   supports at one place one holds it, and the others are where that is. */
 static inline int make_chain(Chain *chain, const Beam *beam, int supports, const signed char *holds) {
     const Nodes *nodes = &beam->nodes;
     int at[MAX_NODES];
     double lines[UNITS][PARTS] = {{0}};
     for (int k = 0; k < nodes->count; k++) at[k] = -1;
-    for (int i = supports - 1; i >= 0; i--) { /* of two at one place the first */
-        Between nowhere = {0, {0}};
-        at[beam->node[i]] = i, chain->between[i] = nowhere;
+    for (int i = supports - 1; i >= 0; i--) {
+        int *own = &at[beam->node[i]];
+        if (*own < 0 || is_held(beam, holds, i) || !is_held(beam, holds, *own)) *own = i;
     }
     chain->spans = 0;
     lines[UNIT_SLOPE][SLOPE_OF_BEAM] = lines[UNIT_MOMENT][MOMENT] = lines[UNIT_SHEAR][SHEAR] = 1.0;
@@ -88,11 +91,9 @@ static inline int make_chain(Chain *chain, const Beam *beam, int supports, const
         if (!(clamped(lines[UNIT_MOMENT], lines[UNIT_SHEAR]) > 0)) return 0;
         int support = at[k + 1], last = chain->spans;
         if (support < 0) continue;
-        if (!holds[support] && support != beam->n - 1) {
-            chain->between[support].span = last;
-            for (int unit = 0; unit < UNITS; unit++) chain->between[support].v[unit] = lines[unit][DEFLECTION];
-            continue;
-        }
+        chain->between[support].span = last;
+        for (int unit = 0; unit < UNITS; unit++) chain->between[support].v[unit] = lines[unit][DEFLECTION];
+        if (!is_held(beam, holds, support)) continue;
         Span *span = &chain->span[last];
         make_span(span, lines);
         chain->held[last] = support, chain->pivot[last] = span->m_end.end;
@@ -106,6 +107,7 @@ static inline int make_chain(Chain *chain, const Beam *beam, int supports, const
         memset(lines, 0, sizeof lines);
         lines[UNIT_SLOPE][SLOPE_OF_BEAM] = lines[UNIT_MOMENT][MOMENT] = lines[UNIT_SHEAR][SHEAR] = 1.0;
     }
+    for (int i = 0; i < supports; i++) chain->between[i] = chain->between[at[beam->node[i]]];
     int last = chain->spans - 1;
     const Span *end = &chain->span[last];
     if (last > 0) chain->pivot[last] += end->m_end.start * end->m_start.end / chain->pivot[last - 1];
@@ -152,7 +154,7 @@ static inline void hold(const Chain *chain, Acting acting, Held *held) {
     held->M = -held->m[0], held->F_0 = held->q[0];
 }
 
-/* Where a support is that is not held. */
+/* Where a support is that does not hold the beam. */
 static inline double place_between(const Chain *chain, const Held *held, Acting acting, int support) {
     const Between *at = &chain->between[support];
     int k = at->span;

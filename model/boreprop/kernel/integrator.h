@@ -168,7 +168,7 @@ static inline Status stand(Integrator *p, double xi, const double x[COMPONENTS],
     int jumps = plan->searched;
     double bears = borne(p, &p->now.regime.contact, p->now.inputs.W);
     plan->searched = 1;
-    if (touch_down(p, xi, x, problem) != DONE) return FAILED;
+    if (touch_down(p, xi, x, 1, problem) != DONE) return FAILED;
     for (int i = 0; i < p->scaled.n - 1; i++) jumps |= !before.of[i] && p->now.regime.contact.of[i];
     return jumps ? met(problem, SNAPS, bears * p->force_scale, xi * p->length_scale) : DONE;
 }
@@ -195,7 +195,7 @@ static inline Status find_step(
         if (plan->h < shortest) { /* where other contacts hold, a regime may have no answer */
             if (!lands(p) || plan->searched) return failed(p, TOO_SHORT, xi, problem);
             plan->searched = 1, plan->switches = 0;
-            if (touch_down(p, xi, x, problem) != DONE) return FAILED;
+            if (touch_down(p, xi, x, 1, problem) != DONE) return FAILED;
             plan->planned = p->options.layers * present_law(p)->relaxation;
             continue;
         }
@@ -216,7 +216,7 @@ static inline Status find_step(
         }
         if (lands(p) && !plan->searched) {
             plan->searched = 1, plan->switches = 0;
-            if (touch_down(p, xi, x, problem) == DONE) continue;
+            if (touch_down(p, xi, x, 1, problem) == DONE) continue;
         }
         plan->planned = larger(plan->h / CLOSER, shortest);
         plan->repeated = 1, plan->switches = 0, plan->slack *= CLOSER;

@@ -30,8 +30,8 @@ static inline int stays_off(Integrator *p, double xi, const double x[COMPONENTS]
 }
 
 /* Find all contacts of a BHA whose body may touch the wall, with the bit at `xi`, where the last step ends, in the state
-   `x`. Points that are watched stay so. */
-static inline Status touch_down(Integrator *p, double xi, const double x[COMPONENTS], Problem *problem) {
+   `x`: anew, or from those that there are, which under an axial load may lead to others. Points that are watched stay so. */
+static inline Status touch_down(Integrator *p, double xi, const double x[COMPONENTS], int anew, Problem *problem) {
     int n = p->scaled.n, points = p->scaled.points;
     const Contact *now = &p->now.regime.contact;
     Bent bent = {.end = p->modes.beam.end};
@@ -44,7 +44,7 @@ static inline Status touch_down(Integrator *p, double xi, const double x[COMPONE
     memcpy(bent.e, loads.e, (size_t)n * sizeof *bent.e);
     hole_at_points(p, xi, Y);
     for (int k = 0; k < points; k++) bent.e[n + k] = x[LATERAL] - Y[k][0] - p->scaled.s[n + k] * x[ANGLE];
-    Code code = search(&p->modes, &bent, points, &contact);
+    Code code = search(&p->modes, &bent, points, anew ? NULL : now, &contact);
     if (code) {
         double tolerance = p->options.relative_tolerance, place = xi * p->length_scale;
         return no_contacts(code, &p->scaled, p->modes.axial, p->force_scale, tolerance, place, problem);

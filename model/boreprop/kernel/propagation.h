@@ -17,7 +17,7 @@ static inline Status restart(
     now->step = standstill(&now->step, now->xi, x);
     p->exit_known = 0;
     bear(p, inputs.W);
-    if (lands(p) && touch_down(p, now->xi, x, problem) != DONE) return FAILED;
+    if (lands(p) && touch_down(p, now->xi, x, 0, problem) != DONE) return FAILED;
     if (!known) *answer = respond(p, x, inputs);
     for (int d = 0; d < DIRECTIONS; d++) {
         if (!isfinite(answer->Theta[d]) || !isfinite(answer->F_0[d])) return failed(p, NOT_FINITE, now->xi, problem);

@@ -28,7 +28,8 @@ static inline int watch_deepest(Integrator *p, double xi, const double gap[MAX_P
 
 /* Find all contacts with the bit at `xi`, where the last step ends, in the state `x`. The minimum that the contact forces are
    is unique, so that it is found by taking in, again and again, points that are in the wall without one. */
-static inline Status touch_down(Integrator *p, double xi, const double x[COMPONENTS], Problem *problem) {
+static inline Status touch_down(Integrator *p, double xi, const double x[COMPONENTS], int anew, Problem *problem) {
+    (void)anew;
     for (int round = 0; round <= p->scaled.points; round++) {
         double gap[MAX_POINTS];
         Pull pull[DIRECTIONS];

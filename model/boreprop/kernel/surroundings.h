@@ -241,7 +241,8 @@ static inline double least_gap(const Integrator *p, const Step *step, int k, con
     Count own = find_near(hole, p->seen.cursor[k], at);
     Arc gap = {0.0, 0.0, 0.0};
     for (int first = 1; at < end; first = 0, own++) {
-        double next = own + 1 < hole->end ? smaller(piece(hole, own + 1)->start, end) : end;
+        double next = own + 1 < hole->end ? piece(hole, own + 1)->start : step->xi; /* where the hole ends */
+        next = at < next ? smaller(next, end) : end;
         double middle = (at + next) / 2, places[] = {at, middle, next}, gaps[3], off[DIRECTIONS];
         for (int i = 0; i < 3; i++) {
             if (i == 0 && !first) continue;
@@ -273,8 +274,8 @@ static inline void look_between(
         Arc arc[DIRECTIONS];
         for (int d = 0; d < DIRECTIONS; d++)
             arc[d].start = around->body[d][k], arc[d].middle = middle[d][k], arc[d].end = body[d][k];
-        around->gap[k] = smaller(around->gap[k], least_gap(p, step, k, arc));
-        around->near |= around->gap[k] < 0;
+        double lowest = least_gap(p, step, k, arc);
+        if (lowest < 0) around->gap[k] = lowest, around->near = 1; /* it is watched, and the step tried again */
     }
 }
 
