@@ -85,8 +85,9 @@ def test_the_error_falls_nearly_with_the_sixth_power_of_the_step_where_all_is_sm
     smooth = SpatialCase(y_star=(1.0,), w=5e-3, eta_pi=0.3, psi_star=0.5, walk=0.3, force=8e-3, toolface=1.2)
     smooth = replace(smooth, inclination=(0.5, 0.5, 0.51), azimuth=(1.0,) * 3)
     ends = []
-    for options in ({"relative_tolerance": 1e-12}, *({"largest_step": h, "layers": 1e9} for h in (1 / 8, 1 / 32))):
-        [row] = smooth.rows([4.0], **{"relative_tolerance": 1e-2, **options})
+    for h, tolerance in ((1.0, 1e-12), (1 / 8, 1e-2), (1 / 32, 1e-10)):
+        layers = 16.0 if h == 1 else 1e9
+        [row] = smooth.rows([4.0], largest_step=h, layers=layers, relative_tolerance=tolerance)
         ends.append(np.concatenate([direction(row, "bit"), place(row)]))
     exact, coarse, fine = ends
     assert abs(coarse - exact).max() > 4**5.5 * abs(fine - exact).max()

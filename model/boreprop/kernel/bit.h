@@ -30,7 +30,6 @@ typedef struct {
     double cleared;                 /* … where they got them */
     int layer;                      /* of the ground, in which the bit is, and … */
     double stay;                    /* … where it may leave it again */
-    double path[AXES];              /* from the start of the run to that of the present step: sideways and down */
     double origin[DIRECTIONS];      /* of the lateral coordinates */
     double cosine; /* of the inclination at which the weight acts along the beam; 0 if the axial load does not count */
     Step step;

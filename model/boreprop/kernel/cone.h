@@ -21,7 +21,7 @@ enum { TOUCHES = -1 }; /* the contact beyond the bound of a free offset, as `cha
 static inline void direction_factors(double square, double least, double *w, double *bend) {
     double inner = REACHED * least, from = inner * inner;
     if (square >= from) {
-        *w = 1 / sqrt(square), *bend = -*w / square;
+        *w = 1 / sqrt(square), *bend = -*w * *w * *w;
         return;
     }
     double t = 1 - square / from; /* the first terms of (1 − t)^(−1/2), and one that brings it back to 1 */
@@ -30,7 +30,7 @@ static inline void direction_factors(double square, double least, double *w, dou
 }
 
 /* Whether v lies beyond the disc, so that the support touches; without clearance it always does. */
-static inline int is_beyond(const double v[2], double y) { return y == 0.0 || hypot(v[0], v[1]) > y; }
+static inline int is_beyond(const double v[2], double y) { return y == 0.0 || length_of(v) > y; }
 
 /* What the wall takes of v: v less the nearest point of the disc of radius y, and its derivative by v, row by row. */
 static inline void beyond_disc(const double v[2], double y, double beyond[2], double slope[2][2]) {
@@ -167,16 +167,17 @@ static inline int solve_contacts(
     for (int a = 0; a < m; a++)
         for (int d = 0; d < 2; d++) F[a][d] = -walls.beyond[a][d] / of->k[a];
     if (!by) return 1;
-    fill_rows(of, &walls, matrix);
-    for (int i = 0; i < size; i++) memcpy(&matrix[i][size], by[i], sizeof by[i]);
-    if (m > 1 && !solve_equations(size, COMPONENTS, matrix)) return 0;
+    if (m > 1) {
+        fill_rows(of, &walls, matrix);
+        for (int i = 0; i < size; i++) memcpy(&matrix[i][size], by[i], sizeof by[i]);
+        if (!solve_equations(size, COMPONENTS, matrix)) return 0;
+        for (int i = 0; i < size; i++) memcpy(by[i], &matrix[i][size], sizeof by[i]);
+    }
     for (int a = 0; a < m; a++)
-        for (int d = 0; d < 2; d++)
-            for (int c = 0; c < COMPONENTS; c++) {
-                const double *slope = walls.slope[a][d];
-                by[2 * a + d][c] =
-                    -(slope[0] * matrix[2 * a][size + c] + slope[1] * matrix[2 * a + 1][size + c]) / of->k[a];
-            }
+        for (int c = 0; c < COMPONENTS; c++) {
+            double v_by[2] = {by[2 * a][c], by[2 * a + 1][c]};
+            for (int d = 0; d < 2; d++) by[2 * a + d][c] = -dot(2, walls.slope[a][d], v_by) / of->k[a];
+        }
     return 1;
 }
 

@@ -16,7 +16,7 @@ enum { COMPONENTS = 2 * DIRECTIONS, ANGLE = 0, LATERAL = DIRECTIONS, AXES = DIRE
 
 /* How long a lateral vector is. */
 static inline double length_of(const double a[DIRECTIONS]) {
-    return DIRECTIONS == 1 ? fabs(a[0]) : hypot(a[0], a[DIRECTIONS - 1]);
+    return DIRECTIONS == 1 ? fabs(a[0]) : sqrt(a[0] * a[0] + a[DIRECTIONS - 1] * a[DIRECTIONS - 1]);
 }
 
 #endif

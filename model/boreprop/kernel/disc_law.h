@@ -41,7 +41,7 @@ typedef struct {
     int count, n, saturated, axial, stands, changes;
     const Modes *modes;
     Contact contact;
-    double s_1, s_n, y_star[MAX_PLACES], walk_cosine, walk_sine, toolface_cosine, toolface_sine;
+    double s_n, y_star[MAX_PLACES], walk_cosine, walk_sine, toolface_cosine, toolface_sine;
     ScaledInputs inputs;
     double inputs_xi; /* where the inputs are those that it was made under */
     double longest;   /* step of a law that changes */
@@ -91,7 +91,7 @@ static inline void make_law(
     law->stands = mode->stands;
     law->modes = modes, law->contact = regime.contact, law->inputs = inputs, law->inputs_xi = inputs_xi,
     law->bound_count = 0;
-    law->s_1 = scaled->s[0], law->s_n = scaled->s[n - 1];
+    law->s_n = scaled->s[n - 1];
     law->walk_cosine = cos(inputs.walk), law->walk_sine = sin(inputs.walk);
     law->toolface_cosine = cos(inputs.toolface), law->toolface_sine = sin(inputs.toolface);
     law->changes = law_changes(&inputs);
@@ -112,27 +112,32 @@ static inline void make_law(
     find_gains(law, mode_of(modes, &regime.contact), places);
 }
 
-/* The bit tilt under F_0, and its derivative: |ψ| <= ψ*, and F_0 − ηΠ R₂(ϖ)ψ in the normal cone of that disc. */
+/* How the frame turns along a step from the bit whose θ is a polynomial, as far as the law looks at it; 0 if too far. */
+static inline int look_along(const Law *law, const Frame *start, const double theta[][S + 1], Turning *turning) {
+    return make_turning(start, theta, (int)law->inputs.reference == FROM_NORTH, turning);
+}
+
+/* The bit tilt under F_0 and, where `by` is given, its derivative: |ψ| <= ψ*, and F_0 − ηΠ R₂(ϖ)ψ in the normal cone of that
+   disc. */
 static inline void tilt_under(
     const Law *law, double eta_pi, double psi_star, const double F_0[2], double psi[2], double by[2][2]
 ) {
     double cosine = law->walk_cosine, sine = law->walk_sine, factor = 1 / eta_pi, w, bend;
     if (!law->saturated) {
         psi[0] = factor * (cosine * F_0[0] + sine * F_0[1]), psi[1] = factor * (cosine * F_0[1] - sine * F_0[0]);
-        by[0][0] = by[1][1] = factor * cosine, by[0][1] = factor * sine, by[1][0] = -factor * sine;
+        if (by) by[0][0] = by[1][1] = factor * cosine, by[0][1] = factor * sine, by[1][0] = -factor * sine;
         return;
     }
     direction_factors(F_0[0] * F_0[0] + F_0[1] * F_0[1], eta_pi * psi_star, &w, &bend);
     double limit = eta_pi * psi_star * sine, s = limit * w;
-    double c = sqrt(larger(1 - s * s, 1e-4)), tangent = s / c;
-    for (int d = 0; d < 2; d++) {
-        double turn = d ? -1.0 : 1.0, n = w * F_0[d], m = w * F_0[!d];
-        psi[d] = psi_star * (c * n + turn * s * m);
+    double c = s == 0.0 ? 1.0 : sqrt(larger(1 - s * s, 1e-4));
+    for (int d = 0; d < 2; d++) psi[d] = psi_star * w * (c * F_0[d] + (d ? -s : s) * F_0[!d]);
+    for (int d = 0; by && d < 2; d++) {
+        double turn = d ? -1.0 : 1.0, by_s = (turn * F_0[!d] - s / c * F_0[d]) * w * limit;
         for (int k = 0; k < 2; k++) {
             double n_by = (d == k ? w : 0.0) + bend * F_0[d] * F_0[k],
                    m_by = (d != k ? w : 0.0) + bend * F_0[!d] * F_0[k];
-            double s_by = limit * bend * F_0[k];
-            by[d][k] = psi_star * (c * n_by + turn * s * m_by + (turn * m - tangent * n) * s_by);
+            by[d][k] = psi_star * (c * n_by + turn * s * m_by + by_s * bend * F_0[k]);
         }
     }
 }
@@ -142,16 +147,16 @@ typedef struct {
     Vector G, F_rss, high;
 } Across;
 
-static inline Across across_the_bit(
+/* Derivatives of the weight are among it only if `slopes` are asked for. */
+static inline void look_across(
     const Law *law, const ScaledInputs *inputs, const double x[COMPONENTS], const View *view, const double first[2],
-    double s_1
+    int slopes, Across *across
 ) {
     double along = inputs->F_rss * law->toolface_cosine, aside = inputs->F_rss * law->toolface_sine, a[2];
-    Across across = {.F_rss = pad_force(along, aside, (int)inputs->reference, view)};
-    for (int d = 0; d < 2; d++) a[d] = (x[LATERAL + d] - first[d]) / s_1 - x[ANGLE + d];
-    across.G = weight_across(view->down, a, law->axial, s_1);
-    if (law->modes->beam.end != 0.0) across.high = side_of(view->down, -1.0);
-    return across;
+    for (int d = 0; d < 2; d++) a[d] = x[LATERAL + d] - first[d] - x[ANGLE + d];
+    weight_across(view->down, a, law->axial, slopes, &across->G);
+    across->F_rss = inputs->F_rss != 0.0 ? pad_force(along, aside, (int)inputs->reference, view) : NO_VECTOR;
+    across->high = law->modes->beam.end != 0.0 ? side_of(view->down, -1.0) : NO_VECTOR;
 }
 
 /* A row of the beam without contacts in one direction, less its terms of the hole behind. */
@@ -193,14 +198,15 @@ static inline void rows_here(
     }
 }
 
-/* The law in the state `x`, `ahead` of where its inputs were taken over, with the frame in `view` and Y(ξ−s_1) as given.
+/* The law in the state `x`, `ahead` of where its inputs were taken over, with the frame in `view` and Y(ξ−s_1) as given, s_1 = 1.
    Contacts are sought from those in `at`; returns 0 if none are found. */
 static inline int law_here(
     const Law *law, const double x[COMPONENTS], double ahead, const View *view, const Behind *behind,
-    const double first[2], double s_1, int slopes, Reply *at
+    const double first[2], int slopes, Reply *at
 ) {
     ScaledInputs inputs = inputs_ahead(&law->inputs, ahead);
-    Across across = across_the_bit(law, &inputs, x, view, first, s_1);
+    Across across;
+    look_across(law, &inputs, x, view, first, slopes, &across);
     int m = law->touching.touching;
     double eta_pi = at->eta_pi = inputs.eta_pi, by_F_0[2][2];
     at->psi_star = inputs.psi_star;
@@ -215,7 +221,7 @@ static inline int law_here(
             at->M[d] += law->modes->beam.M_F[law->touching.support[k]] * at->F[k][d];
             at->F_0[d] += law->modes->beam.F0_F[law->touching.support[k]] * at->F[k][d];
         }
-    tilt_under(law, eta_pi, inputs.psi_star, at->F_0, at->psi, by_F_0);
+    tilt_under(law, eta_pi, inputs.psi_star, at->F_0, at->psi, slopes ? by_F_0 : NULL);
     double rate = 1 / inputs.chi_pi;
     for (int d = 0; d < 2; d++) {
         at->rate[ANGLE + d] = rate * at->M[d];

@@ -26,25 +26,27 @@ typedef struct {
 } Series;
 
 /* The series of a row that begins with `start`, where θ is a polynomial: (m+1) r_{m+1} = Σ_j r_{m−j} Ω_j, Ω' = Q⁻¹ Q'. It
-   converges for any turn, but is given up, with 0, where that would take too many terms. */
+   ends where S terms, which make the next ones, make them smaller than the least. It converges for any turn, but is given up,
+   with 0, where that would take too many terms. */
 static inline int make_series(const double theta[][S + 1], const double start[3], Series *series) {
-    double rate[2][S];
+    double rate[S][2], turn = 0.0;
     int small = 0;
-    for (int d = 0; d < 2; d++)
-        for (int j = 0; j < S; j++) rate[d][j] = (j + 1) * theta[d][j + 1];
+    for (int j = 0; j < S; j++)
+        for (int d = 0; d < 2; d++) rate[j][d] = (j + 1) * theta[d][j + 1], turn += fabs(rate[j][d]);
     memcpy(series->term[0], start, sizeof series->term[0]);
     for (int m = 0; m < MOST_TERMS - 1; m++) {
-        double high = 0.0, right = 0.0, ahead = 0.0;
-        for (int j = 0; j < S && j <= m; j++) {
+        double aside[2] = {0.0, 0.0}, along[2] = {0.0, 0.0}, share = 1.0 / (m + 1);
+        for (int j = m < S ? m : S - 1; j >= 0; j--) { /* what was found last comes last */
             const double *r = series->term[m - j];
-            high -= r[AHEAD] * rate[0][j], right -= r[AHEAD] * rate[1][j];
-            ahead += r[HIGH] * rate[0][j] + r[RIGHT] * rate[1][j];
+            for (int d = 0; d < 2; d++) aside[d] -= r[AHEAD] * rate[j][d], along[d] += r[d] * rate[j][d];
         }
-        double *next = series->term[m + 1], share = 1.0 / (m + 1);
-        next[HIGH] = share * high, next[RIGHT] = share * right, next[AHEAD] = share * ahead;
-        small = fabs(next[HIGH]) + fabs(next[RIGHT]) + fabs(next[AHEAD]) < LEAST_TERM ? small + 1 : 0;
-        if (small == S) { /* S terms make the next one */
-            series->count = m + 2 - S;
+        double *next = series->term[m + 1];
+        for (int d = 0; d < 2; d++) next[d] = share * aside[d];
+        next[AHEAD] = share * (along[0] + along[1]);
+        double size = fabs(next[HIGH]) + fabs(next[RIGHT]) + fabs(next[AHEAD]);
+        small = size * turn <= LEAST_TERM * (m + 1) ? small + 1 : 0;
+        if (small == S) {
+            series->count = m + 2;
             return 1;
         }
     }
@@ -61,40 +63,68 @@ static inline void series_at(const Series *series, double t, double row[3]) {
     row[HIGH] = high, row[RIGHT] = right, row[AHEAD] = ahead;
 }
 
+/* The row at the points of a step. */
+static inline void series_at_points(const Series *series, double row[3][POINTS]) {
+    for (int d = 0; d < 3; d++) {
+        double sum[POINTS] = {0.0};
+        for (int m = series->count - 1; m >= 0; m--)
+            for (int k = 0; k < POINTS; k++) sum[k] = sum[k] * POINT[k] + series->term[m][d];
+        memcpy(row[d], sum, sizeof sum);
+    }
+}
+
 static inline double dot_3(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/* Make a frame orthonormal that has lost a few digits. */
+/* Make a frame orthonormal that has lost a few digits, from its rows north and down. */
 static inline void straighten(Frame *frame) {
     double *north = frame->row[NORTH], *east = frame->row[EAST], *down = frame->row[DOWN];
-    double size = sqrt(dot_3(down, down)), along;
-    for (int k = 0; k < 3; k++) down[k] /= size;
+    double share = 1 / sqrt(dot_3(down, down)), along;
+    for (int k = 0; k < 3; k++) down[k] *= share;
     along = dot_3(north, down);
     for (int k = 0; k < 3; k++) north[k] -= along * down[k];
-    size = sqrt(dot_3(north, north));
-    for (int k = 0; k < 3; k++) north[k] /= size;
+    share = 1 / sqrt(dot_3(north, north));
+    for (int k = 0; k < 3; k++) north[k] *= share;
     for (int k = 0; k < 3; k++)
         east[k] = down[(k + 1) % 3] * north[(k + 2) % 3] - down[(k + 2) % 3] * north[(k + 1) % 3];
 }
 
-/* The frame at t on a way along which θ is a polynomial, from the frame at its start. */
-static inline Frame turned_along(const Frame *start, const double theta[][S + 1], double t) {
+/* How the frame turns along a way: its rows down and, if that is asked for, north. */
+typedef struct {
+    int north;
+    Series of_down, of_north;
+} Turning;
+
+/* On a way along which θ is a polynomial, from the frame at its start; returns 0 if it turns too far. */
+static inline int make_turning(const Frame *start, const double theta[][S + 1], int north, Turning *turning) {
+    turning->north = north;
+    int whole = make_series(theta, start->row[DOWN], &turning->of_down);
+    return (!north || make_series(theta, start->row[NORTH], &turning->of_north)) && whole;
+}
+
+/* The frame at t, where its row north is asked for. */
+static inline Frame frame_at(const Turning *turning, double t) {
     Frame frame;
-    Series series;
-    for (int axis = NORTH; axis <= DOWN; axis++) {
-        make_series(theta, start->row[axis], &series);
-        series_at(&series, t, frame.row[axis]);
-    }
+    series_at(&turning->of_down, t, frame.row[DOWN]), series_at(&turning->of_north, t, frame.row[NORTH]);
     straighten(&frame);
     return frame;
 }
 
+/* The frame at t on a way along which θ is a polynomial, from the frame at its start. */
+static inline Frame turned_along(const Frame *start, const double theta[][S + 1], double t) {
+    Turning turning;
+    make_turning(start, theta, 1, &turning);
+    return frame_at(&turning, t);
+}
+
 /* sin a / a and (1 − cos a)/a², which turn the frame by an angle a. */
 static inline void turn_factors(double square, double *sine, double *cosine) {
-    double a = sqrt(square);
-    if (square < 1e-4) {
-        *sine = 1 - square / 6 * (1 - square / 20 * (1 - square / 42));
-        *cosine = (1 - square / 12 * (1 - square / 30 * (1 - square / 56))) / 2;
-    } else *sine = sin(a) / a, *cosine = (1 - cos(a)) / square;
+    double s = square, a;
+    if (square < 0.1) {
+        *sine = 1 - s * (1.0 / 6) *
+                        (1 - s * (1.0 / 20) * (1 - s * (1.0 / 42) * (1 - s * (1.0 / 72) * (1 - s * (1.0 / 110)))));
+        *cosine = 0.5 - s * (1.0 / 24) *
+                            (1 - s * (1.0 / 30) * (1 - s * (1.0 / 56) * (1 - s * (1.0 / 90) * (1 - s * (1.0 / 132)))));
+    } else a = sqrt(square), *sine = sin(a) / a, *cosine = (1 - cos(a)) / square;
 }
 
 /* A row of Q R(a), where R(a) takes d towards e₂ a₂ + e₃ a₃ by the angle |a|. */

@@ -31,12 +31,18 @@ static inline void pass_event(Integrator *p, const Step *step) {
     change_regime(p, switch_over(p->now.regime, p->scaled.n, step->event, step->side));
 }
 
-/* Go on along the path to `xi` in the present step. */
-static inline void move_path(State *now, double xi) { move_along(&now->step, xi, now->path); }
+/* A step of length zero at `xi`, where the last one has led to the state `x`: for a run to start or restart there, or to be
+   made longer. */
+static inline Step standstill(const Step *last, double xi, const double x[COMPONENTS]) {
+    Step step = {.xi = xi, .h = 1.0, .end = xi, .event = NONE, .next_h = INFINITY};
+    for (int c = 0; c < COMPONENTS; c++) step.x[c][0] = x[c];
+    lead_on(last, xi, &step);
+    return step;
+}
 
 /* Where the bit is, from the start of the run: its depth is the last of the coordinates. */
 static inline void position(const State *now, double path[AXES]) {
-    memcpy(path, now->path, sizeof now->path);
+    memcpy(path, now->step.path, sizeof now->step.path);
     move_along(&now->step, now->xi, path);
 }
 
@@ -54,7 +60,6 @@ static inline void keep_origin_near(State *now, double x[COMPONENTS]) {
 static inline int leave(Integrator *p, const Step *last, double x[COMPONENTS]) {
     State *now = &p->now;
     double xi = last->end;
-    move_path(now, xi);
     step_state(last, xi, x);
     double before[COMPONENTS];
     memcpy(before, x, sizeof before);
@@ -113,12 +118,11 @@ static inline void choose_length(const Integrator *p, const Law *law, double xi,
     plan->h = h;
 }
 
-/* A trial step of length `h` from the state `x` at `xi`, before events cut it. */
-static inline void try_step(
-    const Integrator *p, const Law *law, double xi, double h, const double x[COMPONENTS], Trial *trial
-) {
+/* A trial step of length `h` from the state `x`, before events cut it. */
+static inline void try_step(const Integrator *p, const Law *law, double h, const double x[COMPONENTS], Trial *trial) {
     const Step *last = &p->now.step;
-    trial->step = next_step(last, xi, h);
+    Step *step = &trial->step;
+    step->h = h, step->end = step->xi + h, step->event = NONE, step->side = 0;
     trial->follows = p->now.stay > 0 && last->end > last->xi;
     look_up(&p->now.hole, &p->now.places, trial);
     law_try(law, &p->options, last, x, trial);
@@ -195,7 +199,7 @@ static inline Status find_step(
             plan->planned = p->options.layers * present_law(p)->relaxation;
             continue;
         }
-        try_step(p, law, xi, plan->h, x, trial);
+        try_step(p, law, plan->h, x, trial);
         if (!is_finite(trial)) return failed(p, NOT_FINITE, xi, problem);
         if (trial->error > 1.0) {
             plan->planned = plan->resumed = plan->h * larger(growth(trial->error), SMALLEST_GROWTH);
@@ -258,6 +262,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     int kink = leave(p, &last, x);
     if (p->law.changes) p->law_known = 0;
     Plan plan = first_plan(&last, kink, present_law(p), p->options.layers);
+    trial.step = standstill(&last, last.end, x);
     Status status = find_step(p, last.end, x, &plan, &trial, problem);
     if (status == DONE && p->scaled.points) status = keep_clear(p, &last, kink, x, &plan, &trial, problem);
     if (status != DONE) return status;

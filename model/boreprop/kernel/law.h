@@ -369,6 +369,12 @@ static inline void move_along(const Step *step, double xi, double path[AXES]) {
     path[0] += x, path[1] += z;
 }
 
+/* Let the path of the next step begin where the last one has led at `xi`. */
+static inline void lead_on(const Step *last, double xi, Step *next) {
+    memcpy(next->path, last->path, sizeof next->path);
+    move_along(last, xi, next->path);
+}
+
 #define LARGEST_INCLINATION 6.283185307179586 /* beyond a full turn nothing is drilled */
 
 /* Whether the bit, in the state `x` at the end of a trial step, has turned over. */

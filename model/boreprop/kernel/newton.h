@@ -3,75 +3,31 @@
 #define BOREPROP_NEWTON_H
 
 #include "disc_law.h"
+#include "stages.h"
 
-/* The rows of the frame that the law looks at, along a step whose θ is a polynomial; returns 0 if it turns too far. */
-typedef struct {
-    int north;
-    Series of_down, of_north;
-} Views;
-
-static inline int make_views(const Law *law, const Frame *frame, const double theta[][S + 1], Views *views) {
-    views->north = (int)law->inputs.reference == FROM_NORTH;
-    return make_series(theta, frame->row[DOWN], &views->of_down) &&
-           (!views->north || make_series(theta, frame->row[NORTH], &views->of_north));
-}
-
-static inline View view_at(const Views *views, double t) {
-    View view = {{0}, {0}};
-    series_at(&views->of_down, t, view.down);
-    if (views->north) series_at(&views->of_north, t, view.north);
-    return view;
-}
-
-enum { UNKNOWNS = S * COMPONENTS, MOST_ITERATIONS = 12 };
-#define REST 0.03      /* what may be left of the solution of a step, over what it may err: little beside its error */
-#define FINEST 1e-11   /* the least error in Y that is asked for: clearances in contact may be near rounding */
-#define TOO_HARD 100.0 /* the error, over the tolerance, of a step that is not solved: the next is a third as long */
-#define AIMED 0.03     /* of ψ*: the error of a saturated tilt in a step, at most, … */
-#define NO_WAY 1e-12   /* … or what adds so little to Y that it is near rounding */
-#define FARTHEST 2.0   /* over the last step, up to which its polynomial is taken as a guess */
-
-/* One step of Newton's method on all stages. */
-typedef struct {
-    double row[UNKNOWNS][UNKNOWNS + 1];
-} Correction;
-
-/* Solve, in place; returns 0 if the matrix is singular. */
-static inline int eliminate(Correction *correction) {
-    double (*row)[UNKNOWNS + 1] = correction->row;
-    for (int column = 0; column < UNKNOWNS; column++) {
-        int pivot = column;
-        for (int i = column + 1; i < UNKNOWNS; i++)
-            if (fabs(row[i][column]) > fabs(row[pivot][column])) pivot = i;
-        if (!(fabs(row[pivot][column]) > 0)) return 0;
-        for (int j = column; pivot != column && j <= UNKNOWNS; j++) {
-            double value = row[pivot][j];
-            row[pivot][j] = row[column][j], row[column][j] = value;
-        }
-        for (int i = column + 1; i < UNKNOWNS; i++) {
-            double factor = row[i][column] / row[column][column];
-            if (factor == 0.0) continue;
-            for (int j = column + 1; j <= UNKNOWNS; j++) row[i][j] -= factor * row[column][j];
-        }
-    }
-    for (int i = UNKNOWNS - 1; i >= 0; i--) {
-        for (int j = i + 1; j < UNKNOWNS; j++) row[i][UNKNOWNS] -= row[i][j] * row[j][UNKNOWNS];
-        row[i][UNKNOWNS] /= row[i][i];
-    }
-    return 1;
-}
+enum { MOST_ITERATIONS = 12 };
+#define REST 1e-3 /* what may be left of the solution of a step, over what it may err, since it adds up over steps, … */
+#define COARSEST 1e-7    /* … which counts no more than so, that a run of short steps is exact; … */
+#define LEAST_REST 3e-14 /* … at least this, above the rounding of Y */
+#define FINEST 1e-11     /* the least error in Y that is asked for: clearances in contact may be near rounding */
+#define SLOW 0.1         /* a correction, over the last one, after which derivatives are taken anew */
+#define TOO_HARD 100.0   /* the error, over the tolerance, of a step that is not solved: the next is a third as long */
+#define AIMED 0.03       /* of ψ*: the error of a saturated tilt in a step, at most, … */
+#define NO_WAY 1e-12     /* … or what adds so little to Y that it is near rounding */
+#define FARTHEST 2.0     /* over the last step, up to which its polynomial is taken as a guess */
 
 /* What a step is solved with: the change of the state up to each node, and what its points need. */
 typedef struct {
     double change[S][COMPONENTS], c[COMPONENTS][S + 1];
     Behind behind[POINTS];
-    Views views;
+    View view[POINTS];
 } Solving;
 
 static inline int point_of(int node) { return node < AT_CHECK ? node : node + 1; }
 
-/* The polynomial of the step, and the state at its points. */
-static inline void spread(const double x[COMPONENTS], Solving *solving, Trial *trial) {
+/* The polynomial of the step, and state and frame at its points; returns 0 if it turns too far. */
+static inline int spread(const Law *law, const double x[COMPONENTS], Solving *solving, Trial *trial) {
+    Turning turning;
     for (int c = 0; c < COMPONENTS; c++) {
         double *coefficient = solving->c[c];
         coefficient[0] = x[c];
@@ -82,60 +38,68 @@ static inline void spread(const double x[COMPONENTS], Solving *solving, Trial *t
         for (int j = 0; j < S; j++) trial->x[c][point_of(j)] = x[c] + solving->change[j][c];
         trial->x[c][AT_CHECK] = polynomial(coefficient, POINT[AT_CHECK]);
     }
+    if (!look_along(law, &trial->step.frame, (const double (*)[S + 1]) solving->c, &turning)) return 0;
+    view_at_points(&turning, solving->view);
+    return 1;
 }
 
 /* Let the law speak at a point of the step. */
-static inline int speak(const Law *law, const Solving *solving, Trial *trial, int point, double s_1, int slopes) {
+static inline int speak(const Law *law, const Solving *solving, Trial *trial, int point, int slopes) {
     double x[COMPONENTS], first[2] = {trial->delayed[0][0][point], trial->delayed[0][1][point]};
-    View view = view_at(&solving->views, POINT[point]);
     for (int c = 0; c < COMPONENTS; c++) x[c] = trial->x[c][point];
-    return law_here(law, x, trial->ahead[point], &view, &solving->behind[point], first, s_1, slopes, &trial->at[point]);
+    return law_here(
+        law, x, trial->ahead[point], &solving->view[point], &solving->behind[point], first, slopes, &trial->at[point]
+    );
 }
 
-/* A guess: the last step goes on or, where it is too short for that, the hole goes straight on. */
+/* A guess: the last step goes on or, where it is too short for that, turns on as it ends. */
 static inline void guess_changes(const Step *last, const double x[COMPONENTS], const Trial *trial, Solving *solving) {
-    double from = (trial->step.xi - last->xi) / last->h, by = trial->step.h / last->h;
-    int goes_on = last->end > last->xi && from + by <= 1 + FARTHEST;
+    double xi = trial->step.xi, h = trial->step.h, from = (xi - last->xi) / last->h, by = h / last->h;
+    int moves = last->end > last->xi, goes_on = moves && from + by <= 1 + FARTHEST;
     for (int c = 0; c < COMPONENTS; c++) {
-        double slope = c < LATERAL            ? 0.0
-                       : last->end > last->xi ? polynomial_slope(last->x[c], from) * by
-                                              : x[c - LATERAL] * trial->step.h;
+        double slope = moves ? h * step_derivative(last, c, 1, xi) : c < LATERAL ? 0.0 : h * x[c - LATERAL];
+        double bend = moves ? h * h / 2 * step_derivative(last, c, 2, xi) : 0.0;
         double start = polynomial(last->x[c], from);
         for (int j = 0; j < S; j++) {
             double t = POINT[point_of(j)];
-            solving->change[j][c] = goes_on ? polynomial(last->x[c], from + by * t) - start : slope * t;
+            solving->change[j][c] = goes_on ? polynomial(last->x[c], from + by * t) - start : t * (slope + t * bend);
         }
     }
 }
 
-/* One correction; gives its size. Returns 0 if there is none. */
-static inline int correct(const Law *law, double s_1, double h, Solving *solving, Trial *trial, double *size) {
-    Correction correction;
-    for (int k = 0; k < S; k++) {
-        int point = point_of(k);
-        if (!speak(law, solving, trial, point, s_1, 1)) return 0;
-        const Reply *at = &trial->at[point];
-        for (int c = 0; c < COMPONENTS; c++) {
-            double *row = correction.row[k * COMPONENTS + c], rest = h * at->rate[c];
-            memset(row, 0, sizeof correction.row[0]);
-            for (int j = 0; j < S; j++) {
-                row[j * COMPONENTS + c] = DIFFERENCE[k][j];
-                rest -= DIFFERENCE[k][j] * solving->change[j][c];
-            }
-            for (int e = 0; e < COMPONENTS; e++) row[k * COMPONENTS + e] -= h * at->by[c][e];
-            row[UNKNOWNS] = rest;
-        }
-    }
-    if (!eliminate(&correction)) return 0;
-    *size = 0.0;
+/* The equations for the changes, from the derivatives by the state that the law has said at the nodes. */
+static inline void gather(double h, const Trial *trial, Stages *stages) {
+    for (int k = 0; k < S; k++)
+        for (int j = 0; j < S; j++)
+            for (int c = 0; c < COMPONENTS; c++)
+                for (int e = 0; e < COMPONENTS; e++)
+                    stages->block[k][j][c][e] =
+                        (c == e ? DIFFERENCE[k][j] : 0.0) - (k == j ? h * trial->at[point_of(k)].by[c][e] : 0.0);
+    eliminate(stages);
+}
+
+/* Let the law speak at the nodes; returns 0 if it cannot. */
+static inline int speak_at_nodes(const Law *law, const Solving *solving, Trial *trial, int slopes) {
+    int found = 1;
+    for (int k = 0; k < S && found; k++) found = speak(law, solving, trial, point_of(k), slopes);
+    return found;
+}
+
+/* The correction of the changes, by what the law has said; returns its size. */
+static inline double find_correction(
+    double h, const Stages *stages, const Solving *solving, const Trial *trial, double by[S][COMPONENTS]
+) {
+    double size = 0.0;
     for (int k = 0; k < S; k++)
         for (int c = 0; c < COMPONENTS; c++) {
-            double by = correction.row[k * COMPONENTS + c][UNKNOWNS];
-            solving->change[k][c] += by;
-            if (!isfinite(by)) return 0;
-            *size = larger(*size, fabs(by));
+            by[k][c] = h * trial->at[point_of(k)].rate[c];
+            for (int j = 0; j < S; j++) by[k][c] -= DIFFERENCE[k][j] * solving->change[j][c];
         }
-    return 1;
+    solve_stages(stages, by);
+    for (int k = 0; k < S; k++)
+        for (int c = 0; c < COMPONENTS; c++)
+            size = fabs(by[k][c]) <= size ? size : fabs(by[k][c]); /* or not a number */
+    return size;
 }
 
 /* What a step may err in Y: a tolerance or, where that is smaller, the least clearance in contact. Steps that err more would
@@ -150,22 +114,27 @@ static inline double may_stray(const Law *law, double h) {
     return law->saturated ? AIMED * h * law->inputs.psi_star + NO_WAY : INFINITY;
 }
 
-/* Solve the step; returns 0 if no solution is found. */
+/* Solve the step, with the derivatives as they are at first, and anew where that is slow; returns 0 if no solution is
+   found. */
 static inline int solve_step(
-    const Law *law, const Options *options, double s_1, const double x[COMPONENTS], Solving *solving, Trial *trial
+    const Law *law, const Options *options, const double x[COMPONENTS], Solving *solving, Trial *trial
 ) {
-    double before = INFINITY, size = INFINITY;
-    double rest = REST * smaller(may_err(law, options), may_stray(law, trial->step.h));
+    Stages stages;
+    double h = trial->step.h, least = smaller(may_err(law, options), may_stray(law, h));
+    double rest = larger(REST * smaller(least, COARSEST), LEAST_REST);
+    double rate = INFINITY, before = INFINITY, by[S][COMPONENTS];
     for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
-        spread(x, solving, trial);
-        if (!make_views(law, &trial->step.frame, (const double (*)[S + 1]) solving->c, &solving->views)) return 0;
-        before = size;
-        if (!correct(law, s_1, trial->step.h, solving, trial, &size)) return 0;
-        double rate = isfinite(before) ? size / before : 1.0;
-        if (size == 0.0 || (rate < 1 && size * rate / (1 - rate) <= rest)) {
-            spread(x, solving, trial);
-            return make_views(law, &trial->step.frame, (const double (*)[S + 1]) solving->c, &solving->views);
-        }
+        int anew = rate > SLOW;
+        if (!spread(law, x, solving, trial) || !speak_at_nodes(law, solving, trial, anew)) return 0;
+        if (anew) gather(h, trial, &stages);
+        double size = find_correction(h, &stages, solving, trial, by);
+        if (iteration && size <= rest) return 1;
+        if (!isfinite(size)) return 0;
+        for (int k = 0; k < S; k++)
+            for (int c = 0; c < COMPONENTS; c++) solving->change[k][c] += by[k][c];
+        rate = size / before, before = size;
+        if (iteration && rate < 1 && size * rate / (1 - rate) <= rest)
+            return spread(law, x, solving, trial) && speak_at_nodes(law, solving, trial, 0);
     }
     return 0;
 }
@@ -192,7 +161,8 @@ static inline void guess_contacts(const Law *law, const double x[COMPONENTS], co
     memcpy(view.north, trial->step.frame.row[NORTH], sizeof view.north);
     const double first[2] = {trial->delayed[0][0][0], trial->delayed[0][1][0]};
     ScaledInputs inputs = inputs_ahead(&law->inputs, trial->ahead[0]);
-    Across across = across_the_bit(law, &inputs, x, &view, first, law->s_1);
+    Across across;
+    look_across(law, &inputs, x, &view, first, 0, &across);
     rows_here(law, x, &across, &solving->behind[0], &at);
     settle_discs(law->modes, at.q, v, law->contact);
     const Touching *of = &law->touching;
@@ -205,7 +175,7 @@ static inline void guess_contacts(const Law *law, const double x[COMPONENTS], co
 static inline void law_try(
     const Law *law, const Options *options, const Step *last, const double x[COMPONENTS], Trial *trial
 ) {
-    const double h = trial->step.h, s_1 = law->s_1;
+    const double h = trial->step.h;
     double defect[COMPONENTS] = {0.0};
     Solving solving;
     for (int k = 0; k < POINTS; k++) {
@@ -214,12 +184,11 @@ static inline void law_try(
     }
     guess_changes(last, x, trial, &solving);
     guess_contacts(law, x, &solving, trial);
-    int found = solve_step(law, options, s_1, x, &solving, trial);
-    for (int k = 0; k < POINTS && found; k++) found = speak(law, &solving, trial, k, s_1, k == AT_CHECK);
+    int found = solve_step(law, options, x, &solving, trial) && speak(law, &solving, trial, AT_CHECK, 1);
     const Reply *check = &trial->at[AT_CHECK];
     for (int c = 0; c < COMPONENTS && found; c++)
         defect[c] = polynomial_slope(solving.c[c], POINT[AT_CHECK]) - h * check->rate[c];
-    trial->error = hypot(defect[LATERAL], defect[LATERAL + 1]) / may_stray(law, h);
+    trial->error = length_of(&defect[LATERAL]) / may_stray(law, h);
     if (!found || !damp(h, check->by, defect)) {
         for (int c = 0; c < COMPONENTS; c++) memset(trial->step.x[c], 0, sizeof trial->step.x[c]);
         trial->error = TOO_HARD;

@@ -42,7 +42,6 @@ static inline Status steer(Integrator *p, ScaledInputs inputs, Problem *problem)
     step_state(&now->step, now->xi, x);
     Response so_far = respond(p, x, before), answer;
     int known = answer_is_known(p, x, inputs, before, &so_far, &answer);
-    move_path(now, now->xi);
     Status status = restart(p, inputs, x, so_far.Theta, known, &answer, problem);
     if (status != DONE) return status;
     double bent = curvature_jump(p, x, before, inputs, &answer);
@@ -87,7 +86,6 @@ static inline Status change_clearances(Integrator *p, const double *y_star, Prob
     ScaledInputs inputs = inputs_here(now);
     step_state(&now->step, now->xi, x);
     Response so_far = respond(p, x, inputs), answer;
-    move_path(now, now->xi);
     memcpy(now->y_star, y_star, (size_t)(p->scaled.n - 1) * sizeof *y_star);
     now->cleared = now->xi;
     clear(p);
@@ -105,7 +103,8 @@ static inline Status drill_in_layer(Integrator *p, const Ground *ground, double 
     double top = layer_top(ground, now->layer) / l1, bottom = layer_bottom(ground, now->layer) / l1;
     for (;;) {
         double begin = larger(now->step.xi, now->stay);
-        if (!p->exit_known) p->exit_side = first_exit(&now->step, now->path[AXES - 1], top, bottom, begin, &p->exit);
+        if (!p->exit_known)
+            p->exit_side = first_exit(&now->step, now->step.path[AXES - 1], top, bottom, begin, &p->exit);
         p->exit_known = 1;
         *left = p->exit <= end ? p->exit_side : 0;
         if (*left) break;

@@ -24,15 +24,15 @@ static inline double law_at(
     double delayed[][DIRECTIONS]
 ) {
     Behind behind;
-    Views views;
+    Turning turning;
     double t = (xi - trial->step.xi) / trial->step.h;
     int point = 0;
     while (point < POINTS - 1 && POINT[point] < t) point++;
     Reply at = trial->at[point];
     look_behind(law, &delayed[0][0], DIRECTIONS, 1, &behind);
-    make_views(law, &trial->step.frame, trial->step.x, &views);
-    View view = view_at(&views, t);
-    if (!law_here(law, x, xi - law->inputs_xi, &view, &behind, delayed[0], law->s_1, 0, &at)) return (double)NAN;
+    look_along(law, &trial->step.frame, trial->step.x, &turning);
+    View view = view_at(&turning, t);
+    if (!law_here(law, x, xi - law->inputs_xi, &view, &behind, delayed[0], 0, &at)) return (double)NAN;
     return bounded_value(law, bound, &at);
 }
 
@@ -42,22 +42,35 @@ static inline void law_along(const Law *law, const Bound *bound, const Trial *tr
 }
 
 /* Go on to `xi` on the path north, east and down: ∫ T dξ, T = Q R(−ψ⃗)(0, 0, 1)ᵀ, by Gauss's three points. */
-static inline void move_along(const Step *step, double xi, double path[AXES]) {
+static inline void move_turning(const Step *step, const Turning *turning, double xi, double path[AXES]) {
     double nodes[3] = {0.5 - sqrt(0.15), 0.5, 0.5 + sqrt(0.15)}, weights[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
     double length = xi - step->xi;
-    if (length == 0.0) return;
-    for (int axis = NORTH; axis <= DOWN; axis++) {
-        Series series;
-        make_series(step->x, step->frame.row[axis], &series);
-        for (int k = 0; k < 3; k++) {
-            double t = nodes[k] * length / step->h, row[3], turned[3], back[2];
-            series_at(&series, t, row);
-            for (int d = 0; d < 2; d++)
-                back[d] = polynomial_slope(step->x[LATERAL + d], t) / step->h - polynomial(step->x[ANGLE + d], t);
-            turned_row(row, back, turned);
+    for (int k = 0; k < 3; k++) {
+        double t = nodes[k] * length / step->h, turned[3], back[2];
+        Frame frame = frame_at(turning, t);
+        for (int d = 0; d < 2; d++)
+            back[d] = polynomial_slope(step->x[LATERAL + d], t) / step->h - polynomial(step->x[ANGLE + d], t);
+        for (int axis = NORTH; axis <= DOWN; axis++) {
+            turned_row(frame.row[axis], back, turned);
             path[axis] += weights[k] * length * turned[AHEAD];
         }
     }
+}
+
+static inline void move_along(const Step *step, double xi, double path[AXES]) {
+    Turning turning;
+    if (xi == step->xi) return;
+    make_turning(&step->frame, step->x, 1, &turning);
+    move_turning(step, &turning, xi, path);
+}
+
+/* Let path and frame of the next step begin where the last one has led at `xi`. */
+static inline void lead_on(const Step *last, double xi, Step *next) {
+    Turning turning;
+    make_turning(&last->frame, last->x, 1, &turning);
+    memcpy(next->path, last->path, sizeof next->path);
+    move_turning(last, &turning, xi, next->path);
+    next->frame = frame_at(&turning, (xi - last->xi) / last->h);
 }
 
 #define RIGHT_ANGLE 1.5707963267948966

@@ -21,7 +21,7 @@ static inline Response respond_at(
     const Scaled *scaled = &p->scaled;
     const Beam *beam = &p->modes.beam;
     int n = scaled->n, places = now->places.count;
-    double delayed[MAX_PLACES][DIRECTIONS], by[2][2];
+    double delayed[MAX_PLACES][DIRECTIONS];
     Law law;
     Behind behind;
     Regime free = {now->regime.contact, 0};
@@ -35,7 +35,7 @@ static inline Response respond_at(
     View view = {{0}, {0}};
     memcpy(view.down, response.frame.row[DOWN], sizeof view.down);
     memcpy(view.north, response.frame.row[NORTH], sizeof view.north);
-    law_here(&law, x, 0.0, &view, &behind, delayed[0], law.s_1, 0, at);
+    law_here(&law, x, 0.0, &view, &behind, delayed[0], 0, at);
     memcpy(response.delta, at->q, sizeof at->q);
     response.regime.contact = settle_discs(&p->modes, at->q, at->v, now->regime.contact);
     for (int j = 0; j < places; j++) {
@@ -51,7 +51,7 @@ static inline Response respond_at(
         }
     }
     law.saturated = response.regime.saturation = length_of(at->F_0) / inputs.eta_pi > inputs.psi_star + ROUNDING;
-    tilt_under(&law, inputs.eta_pi, inputs.psi_star, at->F_0, at->psi, by);
+    tilt_under(&law, inputs.eta_pi, inputs.psi_star, at->F_0, at->psi, NULL);
     for (int d = 0; d < DIRECTIONS; d++) {
         response.Theta[d] = x[ANGLE + d] - at->psi[d], response.F_0[d] = at->F_0[d];
         for (int i = 0; i < places; i++)
@@ -147,7 +147,7 @@ static inline void slope_of_hole(
     look_behind(&law, &delayed[0][0], DIRECTIONS, 1, &behind);
     memcpy(view.down, now->step.frame.row[DOWN], sizeof view.down);
     memcpy(view.north, now->step.frame.row[NORTH], sizeof view.north);
-    law_here(&law, x, ahead, &view, &behind, delayed[0], law.s_1, 1, at);
+    law_here(&law, x, ahead, &view, &behind, delayed[0], 1, at);
 }
 
 /* The jump of Θ⃗' where ε, or the slope of an input, changes in the present regime, which answers so. */

@@ -94,7 +94,7 @@ static inline void pass_snapshot(Tape *tape, const Scaled *scaled, Snapshot *sna
     pass(tape, 1, &now->stay);
     pass(tape, 1, &now->cleared);
     pass(tape, n - 1, now->y_star);
-    pass(tape, AXES, now->path);
+    pass(tape, AXES, step->path);
     pass(tape, DIRECTIONS, now->origin);
     pass(tape, 1, &step->xi);
     pass(tape, 1, &step->h);

@@ -11,8 +11,9 @@ enum { NONE = -1 }; /* no event */
 /* A stretch [xi, end] of the run: the state as polynomials in t = (ξ − xi)/h, and the event at its end, if any. */
 typedef struct {
     double xi, h, x[COMPONENTS][S + 1], end;
-    int event, side; /* the part whose bound is met at the end, and on which side */
-    double next_h;   /* length planned for the next step */
+    double path[AXES]; /* from the start of the run to xi: sideways and down; in space north, east and down */
+    int event, side;   /* the part whose bound is met at the end, and on which side */
+    double next_h;     /* length planned for the next step */
 #ifdef SPACE
     Frame frame; /* at xi */
 #endif
@@ -53,25 +54,6 @@ static inline double polynomial(const double c[S + 1], double t) {
 
 static inline double polynomial_slope(const double c[S + 1], double t) {
     return c[1] + t * (2 * c[2] + t * (3 * c[3] + t * (4 * c[4] + t * 5 * c[5])));
-}
-
-/* A step that is to begin at `xi`, where the last one has led, and to be `h` long. */
-static inline Step next_step(const Step *last, double xi, double h) {
-    Step step = {.xi = xi, .h = h, .end = xi + h, .event = NONE, .next_h = INFINITY};
-#ifdef SPACE
-    step.frame = turned_along(&last->frame, last->x, (xi - last->xi) / last->h);
-#else
-    (void)last;
-#endif
-    return step;
-}
-
-/* A step of length zero at `xi`, so that a run can start or restart there. */
-static inline Step standstill(const Step *last, double xi, const double x[COMPONENTS]) {
-    Step step = next_step(last, xi, 1.0);
-    step.end = xi;
-    for (int c = 0; c < COMPONENTS; c++) step.x[c][0] = x[c];
-    return step;
 }
 
 /* The state at `xi`. */
