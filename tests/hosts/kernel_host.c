@@ -42,7 +42,10 @@ static int lead(char **arguments) {
         const int *, const double *, const double *, long long, const double *, const double *, const double *, int,
         const double *, const double *, void *
     );
-    long long (*follow)(void *, long long, const double *, const double *, const int *, double *, void *);
+    long long (*follow)(
+        void *, long long, const double *, const double *, const int *, const int *, double *, long long, long long,
+        void *
+    );
     int (*outputs)(void *, double *);
     void (*end)(void *);
     static double list[LISTS][MOST], out[MOST], problem[MOST];
@@ -67,7 +70,9 @@ static int lead(char **arguments) {
         NULL, list[INPUTS], problem
     );
     must(run != NULL, "the run must start");
-    must(follow(run, 1, &length, list[INPUTS], (const int[]){-1}, NULL, problem) == 1, "the leg must be drilled");
+    const int first[] = {0}, no_row[] = {-1};
+    long long drilled = follow(run, 1, &length, list[INPUTS], first, no_row, NULL, 0, 0, problem);
+    must(drilled == 1, "the leg must be drilled");
     int n = outputs(run, out);
     for (int k = 0; k < n; k++) {
         char line[64];
