@@ -157,18 +157,21 @@ def what_matters(case: Case, tolerance: float) -> str | None:
         return "where the bit stops matters"
     if not goes_on_as_it_was(case, tolerance):
         return "a saved run goes on to elsewhere"
-    others = {"right and left": way(mirrored(case), tolerance), "a hair": way(stiffer(case), tolerance)}
+    others = {"right and left": way(mirrored(case), tolerance)}
+    hairs = {"a hair": way(stiffer(case), tolerance), "a hair across": way(crooked(case), tolerance)}
     others["where the bit stops"] = stopping
     if "north" not in case.schedule.toolface_reference:
         azimuth = tuple(angle + TURN for angle in case.survey.azimuth)
         others["north"] = way(replace(case, survey=replace(case.survey, azimuth=azimuth)), tolerance)
     back = {"right and left": np.diag([1.0, -1.0, 1.0]), "north": turn(-TURN)}
     apart = {}
-    for name, there in others.items():
+    for name, there in (others | hairs).items():
         rows, to_here = min(len(here), len(there)), back.get(name, np.eye(3)).T
         there = np.hstack([there[:rows, :3] @ to_here, there[:rows, 3:] @ to_here])
         apart[name] = np.abs(there - here[:rows]).max(axis=1, initial=0.0)
-    allowed = SAME * tolerance + GROWS * np.maximum.accumulate(apart.pop("a hair"))
+    moved = [apart.pop(name) for name in hairs]
+    rows = min(map(len, moved))
+    allowed = SAME * tolerance + GROWS * np.maximum.accumulate(np.max([off[:rows] for off in moved], axis=0))
     for name, off in apart.items():
         rows = min(len(off), len(allowed))
         if (off[:rows] > allowed[:rows]).any():
@@ -195,6 +198,12 @@ def mirrored(case: Case) -> Case:
         schedule=replace(case.schedule, rss_toolface=toolfaces),
         inputs=inputs,
     )
+
+
+def crooked(case: Case) -> Case:
+    """The case with a hair's bend across its hole: what lies in one plane may be about to buckle out of it."""
+    *before, last = case.survey.azimuth or (0.0,) * len(case.survey.inclination)
+    return replace(case, survey=replace(case.survey, azimuth=(*before, last + HAIR)))
 
 
 def stiffer(case: Case) -> Case:
