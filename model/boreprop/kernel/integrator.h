@@ -31,8 +31,7 @@ static inline void pass_event(Integrator *p, const Step *step) {
     change_regime(p, switch_over(p->now.regime, p->scaled.n, step->event, step->side));
 }
 
-/* A step of length zero at `xi`, where the last one has led to the state `x`: for a run to start or restart there, or to be
-   made longer. */
+/* A step of length zero at `xi`, where the last one has led to the state `x`: for a run to start or restart there. */
 static inline Step standstill(const Step *last, double xi, const double x[COMPONENTS]) {
     Step step = {.xi = xi, .h = 1.0, .end = xi, .event = NONE, .next_h = INFINITY};
     for (int c = 0; c < COMPONENTS; c++) step.x[c][0] = x[c];
@@ -262,7 +261,8 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     int kink = leave(p, &last, x);
     if (p->law.changes) p->law_known = 0;
     Plan plan = first_plan(&last, kink, present_law(p), p->options.layers);
-    trial.step = standstill(&last, last.end, x);
+    trial.step.xi = last.end;
+    lead_on(&last, last.end, &trial.step);
     Status status = find_step(p, last.end, x, &plan, &trial, problem);
     if (status == DONE && p->scaled.points) status = keep_clear(p, &last, kink, x, &plan, &trial, problem);
     if (status != DONE) return status;
