@@ -179,12 +179,6 @@ typedef struct {
     double q[MAX_PLACES][2], M[2], F_0[2];
 } Behind;
 
-static inline double delayed_part(const Linear *row, int count, const double *delayed, int stride) {
-    double sum = 0.0;
-    for (int i = 0; i < count; i++) sum += row->delayed[i] * delayed[i * stride];
-    return sum;
-}
-
 /* The rows of the beam without contacts: M, F_0 and each q. */
 static inline void rows_here(
     const Law *law, const double x[COMPONENTS], const Across *across, const Behind *behind, Reply *at

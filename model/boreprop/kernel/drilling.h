@@ -10,9 +10,9 @@ enum { LEAST_CAPACITY = 256, MOST_PIECES = 1 << 19 }; /* of hole: enough for mos
 typedef struct {
     System system;
     double drilled_length; /* m */
-    Inputs given;          /* the inputs under which the bit has come here through the ground, if there is any; … */
-    Inputs acting;         /* … those that were last to act, and … */
-    ScaledInputs scaled;   /* … what these are in the paper's numbers */
+    Inputs given;        /* the inputs that were given for the way here, without what layers and wear make of them; … */
+    Inputs acting;       /* … those that were last to act, and … */
+    ScaledInputs scaled; /* … what these are in the paper's numbers */
     Ground ground;
     double buckling_weight;          /* over F*: under it the BHA buckles; infinite if the axial load does not count */
     int values, count[OUTPUT_COUNT]; /* how many values its outputs have, and each of them has */
@@ -185,8 +185,8 @@ static inline Status drilling_start(Drilling *d, const Survey *survey, Inputs in
 /* Whether the way to `xi` lies within the present step and layer, so that nothing but the bit moves unless inputs do. */
 static inline int is_ahead(const Drilling *d, double xi) {
     const Integrator *p = &d->integrator;
-    if (xi > p->now.step.end || !d->ground.there) return xi <= p->now.step.end;
-    return p->exit_known && !(p->exit_side && p->exit <= xi) && d->ground.weight_per_metre == 0;
+    int stays = !d->ground.there || (p->exit_known && !(p->exit_side && p->exit <= xi));
+    return xi <= p->now.step.end && stays && d->ground.weight_per_metre == 0;
 }
 
 /* Drill on to `xi` through the ground, under inputs that are given for a sharp bit and the rock without layers; as `drill`. */

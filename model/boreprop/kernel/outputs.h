@@ -8,7 +8,7 @@
 #include "plane_outputs.h"
 #endif
 
-/* How many values an output has: what is known of it before does not have to be looked up for each row. */
+/* How many values an output has: of most, one is known when this is compiled. */
 static inline int count_of(const Drilling *d, Output which) { return OUTPUT_SIZE[which] == ONE ? 1 : d->count[which]; }
 
 /* Every output of the table of quantities where the bit is, in its order, each value `across` numbers after the one before;

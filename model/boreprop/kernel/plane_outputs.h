@@ -26,7 +26,7 @@ static inline void find_body(Integrator *p, const double x[COMPONENTS], Present 
     at->wall_distance = wall_distance(p, p->now.xi, x, pull);
 }
 
-/* Find it. */
+/* Find all that. */
 static inline void find_present(Drilling *d, Present *at) {
     Integrator *p = &d->integrator;
     const State *now = &p->now;

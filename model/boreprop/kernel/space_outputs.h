@@ -39,7 +39,7 @@ static inline void find_body(Integrator *p, Present *at) {
     at->wall_distance = wall_distance(p, p->now.xi, at->x, pull);
 }
 
-/* Find it. */
+/* Find all that. */
 static inline void find_present(Drilling *d, Present *at) {
     Integrator *p = &d->integrator;
     const State *now = &p->now;
