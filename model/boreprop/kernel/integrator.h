@@ -25,6 +25,10 @@
 #define CLOSER 8.0
 #define MOST_SLACK 1e-6  /* of that slack */
 #define ORIGIN_LIMIT 8.0 /* |Y| beyond which the origin of Y is moved to the bit */
+/* In space the law of a regime goes on beyond a bound nearly as that of the regime beyond: the solution bends there. */
+#define FAR 0.8   /* of its length: a trial that meets a bound so early has led far beyond it, and is tried again … */
+#define CRUDE 0.3 /* … if its error, over the tolerance, is more than this: inside it is larger than at the end */
+#define PAST 1.03 /* over the way to the bound: how long it is tried then */
 
 /* Go to the regime on the other side of the bound that a step has met. */
 static inline void pass_event(Integrator *p, const Step *step) {
@@ -172,6 +176,21 @@ static inline Status stand(Integrator *p, double xi, const double x[COMPONENTS],
     return jumps ? met(problem, SNAPS, bears * p->force_scale, xi * p->length_scale) : DONE;
 }
 
+/* Whether a trial is too long: it errs too much, or in space has led far beyond a bound. Then a shorter one is planned. Else it
+   ends at the first bound that it meets. */
+static inline int too_long(Integrator *p, const Law *law, Plan *plan, Trial *trial) {
+    const Step *step = &trial->step;
+    if (trial->error <= 1.0 || (DIRECTIONS > 1 && trial->error != TOO_HARD))
+        cut_at_event(&p->now.places, &p->now.hole, law, plan->slack, trial);
+    double way = step->end - step->xi;
+    int far = DIRECTIONS > 1 && way >= shortest_step(p, step->xi) && way < FAR * plan->h;
+    if (trial->error <= (far ? CRUDE : 1.0)) return 0;
+    plan->planned = plan->resumed = far ? PAST * way : plan->h * larger(growth(trial->error), SMALLEST_GROWTH);
+    plan->repeated = 1;
+    p->now.rejected++;
+    return 1;
+}
+
 /* Find the first trial of a step whose error is tolerable and whose regime holds beyond its start at `xi`, and its event.
 
    A bound that is met where the step starts switches the regime there. By the rates exactly one regime holds, but
@@ -200,13 +219,7 @@ static inline Status find_step(
         }
         try_step(p, law, plan->h, x, trial);
         if (!is_finite(trial)) return failed(p, NOT_FINITE, xi, problem);
-        if (trial->error > 1.0) {
-            plan->planned = plan->resumed = plan->h * larger(growth(trial->error), SMALLEST_GROWTH);
-            plan->repeated = 1;
-            p->now.rejected++;
-            continue;
-        }
-        cut_at_event(&p->now.places, &p->now.hole, law, plan->slack, trial);
+        if (too_long(p, law, plan, trial)) continue;
         if (step->event == NONE || step->end - xi >= shortest) return DONE;
         if (plan->switches < 2 * law->bound_count) {
             pass_event(p, step);

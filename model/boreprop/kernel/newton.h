@@ -11,7 +11,6 @@ enum { MOST_ITERATIONS = 12 };
 #define LEAST_REST 3e-14 /* … at least this, above the rounding of Y */
 #define FINEST 1e-11     /* the least error in Y that is asked for: clearances in contact may be near rounding */
 #define SLOW 0.1         /* a correction, over the last one, after which derivatives are taken anew */
-#define TOO_HARD 100.0   /* the error, over the tolerance, of a step that is not solved: the next is a third as long */
 #define AIMED 0.03       /* of ψ*: the error of a saturated tilt in a step, at most, … */
 #define NO_WAY 1e-12     /* … or what adds so little to Y that it is near rounding */
 #define FARTHEST 2.0     /* over the last step, up to which its polynomial is taken as a guess */

@@ -34,6 +34,8 @@ typedef struct {
 } Reply;
 #endif
 
+#define TOO_HARD 100.0 /* the error, over the tolerance, of a step that is not solved: the next is a third as long */
+
 /* A step as the collocation gives it, before events cut it, with values at its points. */
 typedef struct {
     Step step;
