@@ -98,14 +98,16 @@ typedef struct {
     int switches;   /* of the regime where it starts */
     int searched;   /* whether all contacts have been searched for there */
     double h;       /* the length of the trial */
+    int order;      /* in h, of the error of a trial that errs too much */
 } Plan;
 
 /* The plan of the next step: as the last one left it, but after a kink no longer than `layers` allow. */
 static inline Plan first_plan(const Step *last, int kink, const Law *law, double layers) {
-    Plan plan = {last->next_h, last->next_h, 0, ROUNDING, 0, 0, 0.0};
+    Plan plan = {last->next_h, last->next_h, 0, ROUNDING, 0, 0, 0.0, S + 1};
     if (kink <= SMOOTHEST_KINK || last->end == last->xi) {
         plan.planned = smaller(plan.planned, layers * law->relaxation);
         if (last->event != NONE) plan.resumed = plan.planned;
+        if (DIRECTIONS > 1) plan.order = 2; /* of the transient; in a plane, runs keep their steps to the last bit */
     }
     return plan;
 }
@@ -138,13 +140,13 @@ static inline int is_finite(const Trial *trial) {
     return isfinite(trial->error);
 }
 
-/* How much longer than a trial with this error the next one may be: the error grows as h^(S+1). */
-static inline double growth(double error) { return SAFETY * pow(larger(error, LEAST_ERROR), -1.0 / (S + 1)); }
+/* How much longer than a trial with this error the next one may be: the error grows as h^order. */
+static inline double growth(double error, int order) { return SAFETY * pow(larger(error, LEAST_ERROR), -1.0 / order); }
 
 /* The length that is planned for the next step after one with this error. */
 static inline double next_length(const Plan *plan, double error) {
     double least = plan->h < plan->resumed ? plan->resumed : 0.0, most = LARGEST_GROWTH * plan->h;
-    return least >= most ? least : larger(least, smaller(plan->h * growth(error), most));
+    return least >= most ? least : larger(least, smaller(plan->h * growth(error, S + 1), most));
 }
 
 /* The weight on the bit that a BHA bears while it is held at some contacts alone, over F*; it bears none of `most`. */
@@ -185,7 +187,8 @@ static inline int too_long(Integrator *p, const Law *law, Plan *plan, Trial *tri
     double way = step->end - step->xi;
     int far = DIRECTIONS > 1 && way >= shortest_step(p, step->xi) && way < FAR * plan->h;
     if (trial->error <= (far ? CRUDE : 1.0)) return 0;
-    plan->planned = plan->resumed = far ? PAST * way : plan->h * larger(growth(trial->error), SMALLEST_GROWTH);
+    double shorter = plan->h * larger(growth(trial->error, plan->order), SMALLEST_GROWTH);
+    plan->planned = plan->resumed = far ? PAST * way : shorter;
     plan->repeated = 1;
     p->now.rejected++;
     return 1;

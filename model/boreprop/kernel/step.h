@@ -34,7 +34,8 @@ typedef struct {
 } Reply;
 #endif
 
-#define TOO_HARD 100.0 /* the error, over the tolerance, of a step that is not solved: the next is a third as long */
+/* The error, over the tolerance, of a step that is not solved: the next is a third as long, behind a kink a tenth. */
+#define TOO_HARD 100.0
 
 /* A step as the collocation gives it, before events cut it, with values at its points. */
 typedef struct {
