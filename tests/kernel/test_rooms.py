@@ -56,7 +56,7 @@ void gains_of(int n, const double *s, const double *y_star, double w, double eps
     prepare(&p, &scaled, 1.0, 1.0, USUAL_OPTIONS);
     find_places(&p.now, &p.scaled, 0.0);
     p.now.inputs = inputs;
-    memcpy(gains, present_law(&p)->gains, (size_t)n * sizeof *gains);
+    for (int i = 0; i < n; i++) gains[i] = present_law(&p)->gains[i].Theta;
 }
 
 double origin_moved(double Y) {

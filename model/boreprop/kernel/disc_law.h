@@ -51,11 +51,11 @@ typedef struct {
     double relaxation;
     int bound_count;
     Bound bounds[MAX_PLACES];
-    double gains[MAX_PLACES];
+    Gain gains[MAX_PLACES];
 } Law;
 
-/* How far the law's values change per change of Y(ξ−s_i), at most, and over which length θ forgets: those of a planar hole
-   in which the same stabilizers touch. */
+/* The gains and the length over which θ forgets: those of a planar hole in which the same stabilizers touch. A saturated tilt
+   has that of a free one, which it may become. */
 static inline void find_gains(Law *law, const Mode *mode, const Places *places) {
     double eta_pi = law->inputs.eta_pi, rate = 1 / law->inputs.chi_pi;
     Linear M = linear_of(&mode->M, places), F_0 = linear_of(&mode->F_0, places);
@@ -63,14 +63,15 @@ static inline void find_gains(Law *law, const Mode *mode, const Places *places) 
     for (int k = 0; k < law->touching.touching; k++) k_i[law->touching.C[k]] = law->touching.k[k];
     law->relaxation = 1 / fabs(rate * M.theta - (law->saturated ? 0.0 : F_0.Y / eta_pi));
     for (int i = 0; i < law->count; i++) {
-        law->gains[i] = fabs(M.delayed[i] / M.theta) + fabs(F_0.delayed[i]) / eta_pi;
+        Gain *gain = &law->gains[i];
+        gain->theta = fabs(M.delayed[i] / M.theta), gain->Theta = fabs(F_0.delayed[i]) / eta_pi;
         for (int k = 0; k < law->count; k++) {
             if (k == law->n - 1) continue;
             Linear delta = linear_of(&mode->delta[k], places), F = linear_of(&mode->F[k], places);
-            law->gains[i] = larger(law->gains[i], larger(fabs(delta.delayed[i]), k_i[k] * fabs(F.delayed[i])));
+            gain->theta = larger(gain->theta, larger(fabs(delta.delayed[i]), k_i[k] * fabs(F.delayed[i])));
         }
     }
-    if (!law->axial) law->gains[0] += fabs(M.g / M.theta) + fabs(F_0.g) / eta_pi;
+    if (!law->axial) law->gains[0].theta += fabs(M.g / M.theta), law->gains[0].Theta += fabs(F_0.g) / eta_pi;
 }
 
 static inline void add_bound(Law *law, int part, double lower, double upper) {

@@ -115,7 +115,7 @@ static inline Plan first_plan(const Step *last, int kink, const Law *law, double
 /* Choose the length of the trial: as planned, but no kink lies within it, and none is left a short step ahead. */
 static inline void choose_length(const Integrator *p, const Law *law, double xi, Plan *plan) {
     double largest = smaller(smaller(p->options.largest_step, p->now.places.nearest), law->longest);
-    int many = p->now.inputs_xi > 0 || p->now.regime.contact.watched; /* kinks */
+    int many = DIRECTIONS > 1 || p->now.inputs_xi > 0 || p->now.regime.contact.watched; /* kinks */
     double h = smaller(plan->planned, largest);
     double way = reach(&p->now.kinks, &p->now.places, law->gains, &p->options, many, xi, &h);
     double longest = plan->repeated ? h : smaller(STRETCH * h, largest);

@@ -60,27 +60,33 @@ static inline int kink_here(Kinks *kinks, const Places *places, double xi, doubl
     return lowest;
 }
 
-/* What a step of length h over a jump of 1 in derivative m of the delayed Y errs: in Y up to PASSED_Y[m] h^(m+1), in θ up
-   to PASSED_THETA[m] h^m, by a gain of 1. Largest errors of the interpolation of (t − a)^m/m!, which begins at any a in
-   [0, 1], between the Radau nodes, and of the integral of that. */
+/* How far θ, or a bounded value, and Θ change per change of Y at a place. */
+typedef struct {
+    double theta, Theta;
+} Gain;
+
+/* What a step of length h over a jump of 1 in derivative m of the delayed Y errs: in Y up to PASSED_Y[m] h^(m+1) by a gain
+   of Θ of 1, in θ up to PASSED_THETA[m] h^m by a gain of θ of 1. Largest errors of the interpolation of (t − a)^m/m!, which
+   begins at any a in [0, 1], between the Radau nodes, and of the integral of that. */
 static const double PASSED_Y[SMOOTHEST_KINK + 1] = {0, 9.13e-3, 4.40e-4, 3.51e-5};
 static const double PASSED_THETA[SMOOTHEST_KINK + 1] = {0, 7.17e-2, 6.09e-3, 7.31e-4};
 
-/* What passing a kink does to a step, per jump and gain, by the order of the kink. */
+/* What passing a kink does to a step, per jump and gain, by the order of the kink: to θ, and by Θ. */
 typedef struct {
-    double by[SMOOTHEST_KINK + 1];
+    double theta[SMOOTHEST_KINK + 1], Theta[SMOOTHEST_KINK + 1];
 } Harm;
 
 /* Of a step of length `h`, where errors of θ have this weight. It is no more than what a kink changes over twice the step,
-   which counts where there are not many: before inputs change on the way, while no point of the body is watched.
-   Such runs keep their steps to the last bit. */
+   which counts where there are not many: in a plane, before inputs change on the way, while no point of the body is
+   watched. Such runs keep their steps to the last bit. */
 static inline void find_harm(double h, double theta_weight, int many, Harm *harm) {
     static const double factorial[] = {1, 1, 2, 6, 24};
     double power = h, twice = 2 * h;
     for (int m = 1; m <= SMOOTHEST_KINK; m++) {
         twice *= 2 * h;
-        harm->by[m] = twice / factorial[m + 1];
-        if (many) harm->by[m] = smaller(harm->by[m], power * larger(PASSED_Y[m] * h, theta_weight * PASSED_THETA[m]));
+        double most = twice / factorial[m + 1];
+        harm->theta[m] = many ? smaller(most, power * (theta_weight * PASSED_THETA[m])) : most;
+        harm->Theta[m] = many ? smaller(most, power * (PASSED_Y[m] * h)) : most;
         power *= h;
     }
 }
@@ -88,8 +94,7 @@ static inline void find_harm(double h, double theta_weight, int many, Harm *harm
 /* Where the next kink within `h` of `xi` lies that a step must not pass; infinity if there is none. It may pass
    those that do it less harm than the tolerance; `gains` are those of the law. */
 static inline double next_kink(
-    const Kinks *kinks, const Places *places, const double *gains, const Harm *harm, double tolerance, double xi,
-    double h
+    const Kinks *kinks, const Places *places, const Gain *gains, const Harm *harm, double tolerance, double xi, double h
 ) {
     double first = INFINITY;
     for (int i = 0; i < places->count; i++)
@@ -97,7 +102,9 @@ static inline double next_kink(
             const Kink *next = kink(kinks, k);
             double at = next->xi + places->s[i];
             if (at >= xi + h || at >= first) break;
-            if (gains[i] * next->jump * harm->by[(int)next->order] > tolerance) first = at;
+            int m = (int)next->order;
+            double of_theta = gains[i].theta * next->jump * harm->theta[m];
+            if (larger(of_theta, gains[i].Theta * next->jump * harm->Theta[m]) > tolerance) first = at;
         }
     return first;
 }
@@ -106,8 +113,7 @@ static inline double next_kink(
    `many` kinks, the length is halved until the step goes farther than to half of it: a shorter step may pass a kink that a
    longer one may not. */
 static inline double reach(
-    const Kinks *kinks, const Places *places, const double *gains, const Options *options, int many, double xi,
-    double *h
+    const Kinks *kinks, const Places *places, const Gain *gains, const Options *options, int many, double xi, double *h
 ) {
     Harm harm;
     for (;; *h /= 2) {

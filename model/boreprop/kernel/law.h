@@ -61,8 +61,7 @@ typedef struct {
     double relaxation; /* length over which θ forgets */
     int bound_count;
     Bound bounds[MAX_PLACES];
-    /* per change of Y(ξ−s_i) the change of Θ, once θ has followed, or that of a bounded value if it is larger */
-    double gains[MAX_PLACES];
+    Gain gains[MAX_PLACES];
 } Law;
 
 /* Θ = θ − ψ, with ψ as it is without saturation. */
@@ -79,14 +78,14 @@ static inline void less_limit(Linear *Theta, int side, ScaledInputs inputs, int 
     for (int i = 0; i < count; i++) Theta->delayed[i] = 0.0;
 }
 
-/* How far the law's values change per change of Y(ξ−s_i). */
+/* As gains of either kind the change of Θ, once θ has followed, or that of a bounded value if it is larger. */
 static inline void find_gains(Law *law) {
     for (int i = 0; i < law->count; i++) {
-        law->gains[i] = fabs(law->theta_rate.delayed[i] / law->theta_rate.theta) + fabs(law->Theta.delayed[i]);
-        for (int k = 0; k < law->bound_count; k++)
-            law->gains[i] = larger(law->gains[i], fabs(law->bounds[k].value.delayed[i]));
+        double gain = fabs(law->theta_rate.delayed[i] / law->theta_rate.theta) + fabs(law->Theta.delayed[i]);
+        for (int k = 0; k < law->bound_count; k++) gain = larger(gain, fabs(law->bounds[k].value.delayed[i]));
+        if (i == 0 && !law->axial) gain += fabs(law->theta_rate.g / law->theta_rate.theta) + fabs(law->Theta.g);
+        law->gains[i].theta = law->gains[i].Theta = gain;
     }
-    if (!law->axial) law->gains[0] += fabs(law->theta_rate.g / law->theta_rate.theta) + fabs(law->Theta.g);
 }
 
 /* Make the law of a regime under inputs taken over at `inputs_xi`. */
