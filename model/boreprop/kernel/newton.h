@@ -195,7 +195,7 @@ static inline void law_try(
     }
     memcpy(trial->step.x, solving.c, sizeof trial->step.x);
     for (int c = 0; c < COMPONENTS; c++) {
-        double allowed = c < LATERAL ? options->relative_tolerance / options->theta_weight : may_err(law, options);
+        double allowed = c < LATERAL ? options->relative_tolerance / weight_of_theta(options) : may_err(law, options);
         trial->error = larger(trial->error, fabs(defect[c]) / allowed);
     }
 }
