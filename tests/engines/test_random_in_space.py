@@ -35,9 +35,9 @@ def test_a_hole_does_not_wind_by_noise_where_clearances_are_far_smaller_than_the
     assert inclinations[0] == pytest.approx(inclinations[1], abs=1e-6)
 
 
-@pytest.mark.parametrize("number", [(4005, 8428), (5001, 30125), (5001, 35143)])
+@pytest.mark.parametrize("number", [(4005, 8428), (5001, 30125), (5001, 35143), (7001, 59541), (8001, 4615)])
 def test_a_disc_far_smaller_than_the_tolerance_is_not_left_and_entered_in_every_step(number: tuple[int, int]) -> None:
-    """Of the tilt, at a walk of 84° and 79°; of a stabilizer in a clearance of 2e-8 ℓ₁ under hardly any force."""
+    """Of the tilt, at walks of 84°, 79° and 36°; of stabilizers under hardly any force, in 2e-8 ℓ₁ and in 1e-7 ℓ₁."""
     case, tolerance = draw(*number)
     np.testing.assert_allclose(way(case, tolerance), way(case, tolerance / 10), rtol=0, atol=SAME * tolerance)
 
