@@ -17,6 +17,7 @@ UNTOUCHED = (signal.SIG_DFL, signal.default_int_handler)  # what they do unless 
 def endings_like_interrupt() -> Iterator[None]:
     """Let the first signal that asks for the end raise KeyboardInterrupt, which removes drafts; ignore all others.
 
+    Where C code that has called Python puts an error of its own in the place of that, it is raised from that error.
     At the end drafts and temporary folders are removed, and a process that was asked by another signal than Ctrl-C ends
     by that signal, so that its exit status says why.
     """
@@ -35,6 +36,10 @@ def endings_like_interrupt() -> Iterator[None]:
         signal.signal(number, interrupt)
     try:
         yield
+    except Exception as error:
+        if received:
+            raise KeyboardInterrupt from error
+        raise
     finally:
         for number, handler in ours.items():
             signal.signal(number, signal.SIG_IGN if received else handler)

@@ -309,3 +309,12 @@ def test_a_ripple_is_known_as_far_as_its_trend_is() -> None:
     assert at[0] == pytest.approx(AXIS_REACH)
     assert at[-1] == pytest.approx(length[-1] - AXIS_REACH, abs=1 / 40)
     assert axis_ripple(length[:70], straight[:70], 1.0)[0].size == 0
+
+
+def test_ctrl_c_while_modes_are_found_is_not_lost(paper_run: Trajectory, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    # numpy compares rows as structures by this, and hides what interrupts it behind an error of its own
+    monkeypatch.setattr("numpy._core._internal._promote_fields", interrupted, raising=False)
+    assert find_rippling(paper_run).modes

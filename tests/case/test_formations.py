@@ -57,6 +57,15 @@ def test_formations_are_a_schedule_by_depth(engine: str) -> None:
         assert one[name].tolist() == other[name].tolist()
 
 
+def test_the_bit_starts_in_the_last_of_thin_layers_that_begin_millimetres_below_it(engine: str) -> None:
+    rock = {-0.001: 15.0, 0.001: 20.0, 0.003: 30.0, 2.0: 40.0}
+    layers = tuple(Formation(None, eta, true_vertical_depth=top) for top, eta in rock.items())
+    run = simulate(replace(paper_case(), formations=layers), engine=engine, length=4.0, sample_interval=0.5)
+    expected = np.where(run["true_vertical_depth"] < 2.0, 30.0, 40.0)
+    assert run["lateral_steering_resistance"].tolist() == expected.tolist()
+    assert set(expected) == {30.0, 40.0}
+
+
 def test_a_case_with_formations_is_written_and_read_back() -> None:
     case = with_text(LAYERS)
     assert parse_case(dump_case(case), Path("again.toml")) == case

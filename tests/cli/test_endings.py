@@ -70,6 +70,32 @@ def test_a_library_that_is_being_compiled(
     assert set(FOLDER.iterdir()) == before
 
 
+REPLACED = """
+import ctypes, os, signal, sys
+import typer
+from boreprop.cli.console import execute
+
+class Number:
+    @classmethod
+    def from_param(cls, value):
+        os.kill(os.getpid(), signal.SIGINT)
+
+def command():
+    ctypes.pythonapi.Py_IncRef.argtypes = [Number]
+    ctypes.pythonapi.Py_IncRef(None)  # ArgumentError: argument 1: KeyboardInterrupt
+
+app = typer.Typer()
+app.command()(command)
+sys.argv = ["command"]
+execute(app)
+"""
+
+
+def test_ctrl_c_for_which_a_library_raises_an_error_of_its_own() -> None:
+    done = subprocess.run([sys.executable, "-c", REPLACED], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "")
+
+
 TWICE = """
 import os, signal, sys
 from boreprop.endings import endings_like_interrupt

@@ -284,13 +284,15 @@ def _modes(length: Floats, modes: NDArray[np.int_], starts: Floats) -> tuple[Str
     """
     rows = (length >= starts[0]) & (length < starts[-1])
     phase = np.interp(length[rows], starts, np.arange(len(starts))) % 1.0
-    kinds, kind = np.unique(modes[rows], axis=0, return_inverse=True)
+    met = [tuple(mode) for mode in modes[rows].tolist()]
+    kinds = sorted(set(met))
+    kind = np.array([kinds.index(mode) for mode in met])
     away = np.abs((phase - np.arange(PHASES)[:, None] / PHASES + 0.5) % 1.0 - 0.5)
     waves = len(starts) - 1
     nearest = np.argpartition(away, waves - 1, axis=1)[:, :waves]
-    votes = [int(np.bincount(kind.ravel()[near]).argmax()) for near in nearest]
+    votes = [int(np.bincount(kind[near]).argmax()) for near in nearest]
     stretches = [(k, len(list(group))) for k, group in groupby(votes)]
     if len(stretches) > 1 and stretches[0][0] == stretches[-1][0]:
         k, rest = stretches.pop()
         stretches[0] = k, stretches[0][1] + rest
-    return tuple(Stretch((*map(int, kinds[k][:-1]),), int(kinds[k][-1]), count / PHASES) for k, count in stretches)
+    return tuple(Stretch(kinds[k][:-1], kinds[k][-1], count / PHASES) for k, count in stretches)

@@ -153,7 +153,8 @@ class Case:
             return Ground(self.bit, wear=self.wear) if self.wear else None
         start = self._depth
         tops = tuple(formation.depth - start for formation in self.formations)
-        tops = tuple(0.0 if 0.0 < top <= CLOSE else top for top in tops)
+        near = max((top for top in tops if 0.0 < top <= CLOSE), default=0.0)  # the bit is on it: the column moves
+        tops = tuple(top - near if top <= near else top for top in tops)
         rock = [(0.0,) * len(ROCK)]
         for formation in self.formations:
             rock.append(tuple(formation.values.get(name, above) for name, above in zip(ROCK, rock[-1], strict=True)))

@@ -31,23 +31,24 @@ EXTRAS = {  # package → the extra that installs it
 def execute(app: typer.Typer) -> NoReturn:
     """Execute `app` with the arguments of the process, and exit."""
     write_plainly()
-    with endings_like_interrupt():
-        try:
-            sys.exit(app(standalone_mode=False))
-        except typer.TyperException as error:
-            context = getattr(error, "ctx", None)
-            fail(error.format_message() + (f" (see {context.command_path} --help)" if context else ""))
-        except BorepropError as error:
-            fail(str(error), error.exit_status)
-        except ModuleNotFoundError as error:
-            package = (error.name or "").partition(".")[0]
-            if package not in EXTRAS:
-                raise  # a bug
-            fail(f"{package} must be installed for this, got: {error}; pip install 'boreprop[{EXTRAS[package]}]'")
-        except OSError as error:
-            fail(f"{error.filename}: {error.strerror}" if error.filename else str(error))
-        except (KeyboardInterrupt, typer.Abort):
-            sys.exit(INTERRUPTED)
+    try:
+        with endings_like_interrupt():
+            try:
+                sys.exit(app(standalone_mode=False))
+            except typer.TyperException as error:
+                context = getattr(error, "ctx", None)
+                fail(error.format_message() + (f" (see {context.command_path} --help)" if context else ""))
+            except BorepropError as error:
+                fail(str(error), error.exit_status)
+            except ModuleNotFoundError as error:
+                package = (error.name or "").partition(".")[0]
+                if package not in EXTRAS:
+                    raise  # a bug
+                fail(f"{package} must be installed for this, got: {error}; pip install 'boreprop[{EXTRAS[package]}]'")
+            except OSError as error:
+                fail(f"{error.filename}: {error.strerror}" if error.filename else str(error))
+    except (KeyboardInterrupt, typer.Abort):
+        sys.exit(INTERRUPTED)
 
 
 def fail(message: str, status: int = BAD_INPUT) -> NoReturn:

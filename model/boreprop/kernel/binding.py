@@ -2,7 +2,7 @@
 
 import ctypes
 from collections.abc import Callable, Mapping
-from dataclasses import astuple, fields
+from dataclasses import fields
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple, Unpack
@@ -258,7 +258,7 @@ class NativeDrilling:
         self._run = self._call("start")(
             numbers(structure, np.intc),
             numbers([given[name] for name in scalar_names(SYSTEM, structure)]),
-            OptionsInC(*astuple(options)),
+            OptionsInC(**vars(options)),
             len(survey.measured_depth),
             numbers(survey.measured_depth),
             numbers(survey.inclination),

@@ -353,9 +353,9 @@ static inline void displacement(const Step *step, double xi, double *x, double *
     for (int k = 0; k < 3; k++) Theta[k] = polynomial_slope(step->x[LATERAL], nodes[k] * length / step->h) / step->h;
     double sine = sin(Theta[1]), cosine = cos(Theta[1]);
     for (int k = 0; k < 3; k++) {
-        double turn = Theta[k] - Theta[1], node_sine, node_cosine;
-        if (fabs(turn) <= SMALL_TURN) turn_by(turn, sine, cosine, &node_sine, &node_cosine);
-        else node_sine = sin(Theta[k]), node_cosine = cos(Theta[k]);
+        double turn = Theta[k] - Theta[1], node_sine = sine, node_cosine = cosine;
+        if (k != 1 && fabs(turn) <= SMALL_TURN) turn_by(turn, sine, cosine, &node_sine, &node_cosine);
+        else if (k != 1) node_sine = sin(Theta[k]), node_cosine = cos(Theta[k]);
         sideways += weights[k] * node_sine, down += weights[k] * node_cosine;
     }
     *x = sideways * length, *z = down * length;

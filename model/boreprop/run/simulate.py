@@ -146,12 +146,15 @@ def _legs(course: Course, count: int, sample_interval: float) -> tuple[Floats, I
 
     A leg ends at every row and, on no row, wherever another piece starts.
     """
-    at = sample_interval * np.arange(count)
+    on_rows: Indices = np.arange(count, dtype=np.intc)
+    at = sample_interval * np.arange(float(count))
     changes = course.starts[1:]
+    if not changes.size:
+        return at, np.zeros_like(on_rows), on_rows
     before = np.searchsorted(at + ROUNDING * sample_interval, changes)
     before = before[before < count]
     lengths = np.maximum.accumulate(np.insert(at, before, changes[: len(before)]))
-    rows = np.insert(np.arange(count, dtype=np.intc), before, -1)
+    rows = np.insert(on_rows, before, -1)
     changed = rows < 0
     return lengths, (np.cumsum(changed) - changed).astype(np.intc), rows
 
