@@ -81,8 +81,8 @@ def test_a_bit_that_turns_at_once_by_far_more_than_a_clearance_passes_its_contac
         inclination=(2.568, 2.568, -2.607),
         azimuth=(-2.957, -2.957, -2.93),
     )
-    ends = [direction(case.rows([1e-3], relative_tolerance=tolerance)[0], "bit") for tolerance in (1e-6, 1e-8)]
-    np.testing.assert_allclose(*ends, rtol=0, atol=SAME * 1e-6)
+    coarse, fine = (direction(case.rows([1e-3], relative_tolerance=tolerance)[0], "bit") for tolerance in (1e-6, 1e-8))
+    np.testing.assert_allclose(coarse, fine, rtol=0, atol=SAME * 1e-6)
 
 
 def test_hardly_a_step_is_tried_in_vain_with_a_body_on_the_wall_at_many_points() -> None:
