@@ -28,13 +28,15 @@ def begin(case: Case, options: Options) -> Engine:
         raise (stopped.__cause__ or stopped) from None
 
 
-def drill(case: Case, tolerance: float, stops: int = 1, saves: bool = False) -> Iterator[tuple[Engine, Case]]:
+def drill(
+    case: Case, tolerance: float, stops: int = 1, saves: bool = False, steps: int = STEPS
+) -> Iterator[tuple[Engine, Case]]:
     """A run row by row along a case, and the case as it is there; the bit stops so many times from row to row.
 
     From each row another run may go on.
     """
-    steps = int(STEPS * (1 + case.length / case.length_scale))
-    course, options = course_of(case), Options(relative_tolerance=tolerance, most_steps=steps)
+    most = int(steps * (1 + case.length / case.length_scale))
+    course, options = course_of(case), Options(relative_tolerance=tolerance, most_steps=most)
     run = begin(case, options)
     for piece, (from_here, end) in enumerate(pairwise([*course.starts, np.inf])):
         if from_here >= case.length:

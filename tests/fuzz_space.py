@@ -7,8 +7,8 @@ azimuths, walk angles, and toolfaces against gravity, north or the frame come to
 fuzz_along.py lets change along the way. Few runs are long, so that there are many. Of some cases it is looked at what
 must not matter: where the bit stops, whether the run is saved and another one goes on, where north is, and which side
 is right. A bit that turns over is no failure. Neither are many steps where the hole is rough; that a tighter tolerance
-needs fewer is one. What goes wrong is told with the number of its case, which `drill(*draw(seed, number))` drills
-again, and ends in exit status 1.
+needs less than half of them is one. What goes wrong is told with the number of its case, which
+`drill(*draw(seed, number))` drills again, and ends in exit status 1.
 """
 
 import argparse
@@ -33,14 +33,14 @@ from boreprop.run.course import course_of
 from boreprop.run.engines import start_in_space
 from fuzz_along import varied
 from fuzz_engines import EXPLAINED, any_tolerance, as_built, near_bit, wide
-from fuzz_legs import drill, goes_on_as_it_was
+from fuzz_legs import STEPS, drill, goes_on_as_it_was
 from space_runs import Outputs, Vector, direction, pair, place
 
 LENGTH = 300.0  # m, at most, …
 SHORT = 3.0  # … and in all but a few cases so many times the distance from the bit to the last stabilizer
 FEW = 0.01
 BUILT = 0.15  # of the length of a BHA as built
-TIGHTER = 1e-2  # a case is rough if with so much less of the tolerance it takes too many steps, too
+TIGHTER = 1e-2  # a case is rough if with so much less of the tolerance it takes many steps, too
 SYMMETRIC = 20  # every so many-th case is looked at for what must not matter
 HAIR, GROWS = 1e-12, 1e4  # relative; how much more than this a rounding may grow
 SAME = 100.0  # tolerances
@@ -140,9 +140,9 @@ def way(case: Case, tolerance: float, stops: int = 1) -> Vector:
 
 
 def is_rough(case: Case, tolerance: float) -> bool:
-    """Whether a case takes too many steps with a tighter tolerance, too."""
+    """Whether a case takes more than half of too many steps with a tighter tolerance, too."""
     try:
-        for _ in drill(case, TIGHTER * tolerance):
+        for _ in drill(case, TIGHTER * tolerance, steps=STEPS // 2):
             pass
     except CannotContinue as stop:
         return stop.code == "too many"

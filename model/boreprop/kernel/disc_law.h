@@ -45,7 +45,7 @@ typedef struct {
     ScaledInputs inputs;
     double inputs_xi; /* where the inputs are those that it was made under */
     double longest;   /* step of a law that changes */
-    double finest;    /* of the clearances in contact: by how little the wall is another */
+    double finest;    /* of the clearances, but those of zero */
     Touching touching;
     Linear q[MAX_PLACES], M, F_0; /* without contacts */
     double relaxation;
@@ -105,7 +105,8 @@ static inline void make_law(
         law->q[i] = linear_of(&mode->delta[i], places);
         law->y_star[i] = modes->y_star[support_at(&regime.contact, n, i)];
         if (law->y_star[i] == 0.0) continue;
-        if (regime.contact.of[i]) add_bound(law, i, 0.0, INFINITY), law->finest = smaller(law->finest, law->y_star[i]);
+        law->finest = smaller(law->finest, law->y_star[i]);
+        if (regime.contact.of[i]) add_bound(law, i, 0.0, INFINITY);
         else add_bound(law, i, -INFINITY, law->y_star[i]);
     }
     if (law->saturated) add_bound(law, n - 1, inputs.psi_star, INFINITY);

@@ -9,9 +9,10 @@ enum { MOST_ITERATIONS = 12 };
 #define REST 1e-3 /* what may be left of the solution of a step, over what it may err, since it adds up over steps, … */
 #define COARSEST 1e-7    /* … which counts no more than so, that a run of short steps is exact; … */
 #define LEAST_REST 3e-14 /* … at least this, above the rounding of Y */
-#define FINEST 1e-11     /* the least error in Y that is asked for: clearances in contact may be near rounding */
+#define OF_CLEARANCE 0.1 /* the error of a step, over the least clearance, at most, … */
+#define FINEST 1e-11     /* … or this, since clearances may be near rounding */
 #define SLOW 0.1         /* a correction, over the last one, after which derivatives are taken anew */
-#define AIMED 0.03       /* of ψ*: the error of a saturated tilt in a step, at most, … */
+#define OF_TILT 0.03     /* the error of the tilt in a step, over ψ*, at most, … */
 #define NO_WAY 1e-12     /* … or what adds so little to Y that it is near rounding */
 #define FARTHEST 2.0     /* over the last step, up to which its polynomial is taken as a guess */
 
@@ -101,17 +102,16 @@ static inline double find_correction(
     return size;
 }
 
-/* What a step may err in Y: a tolerance or, where that is smaller, the least clearance in contact. Steps that err more would
-   not tell whether a stabilizer stays on the wall. */
-static inline double may_err(const Law *law, const Options *options) {
-    return smaller(options->relative_tolerance, larger(law->finest, FINEST));
+/* What a step may err in a part of the state: as asked for or, where that is smaller, a share of the least clearance. Steps
+   that err more would not tell which stabilizers touch, and go on from contact to contact. A step in which θ `turns` by more
+   than a clearance passes contacts anyway, and errs by a share of that. */
+static inline double may_err(const Law *law, double asked, double turns) {
+    return smaller(asked, larger(OF_CLEARANCE * larger(law->finest, turns), FINEST));
 }
 
-/* What it may err in Y by a saturated tilt, in its residual and in what is left of its solution. The tilt turns with F_0, and
-   fast where that is small: steps so short that no tilt makes an error in Y would not tell which regime follows. */
-static inline double may_stray(const Law *law, double h) {
-    return law->saturated ? AIMED * h * law->inputs.psi_star + NO_WAY : INFINITY;
-}
+/* What it may err in Y by the tilt, in its residual and in what is left of its solution. The tilt turns with F_0, and fast
+   where that is small: steps so short that no tilt makes an error in Y would not tell which regime follows. */
+static inline double may_stray(const Law *law, double h) { return OF_TILT * h * law->inputs.psi_star + NO_WAY; }
 
 /* Solve the step, with the derivatives as they are at first, and anew where that is slow; returns 0 if no solution is
    found. */
@@ -119,7 +119,7 @@ static inline int solve_step(
     const Law *law, const Options *options, const double x[COMPONENTS], Solving *solving, Trial *trial
 ) {
     Stages stages;
-    double h = trial->step.h, least = smaller(may_err(law, options), may_stray(law, h));
+    double h = trial->step.h, least = smaller(may_err(law, options->relative_tolerance, 0.0), may_stray(law, h));
     double rest = larger(REST * smaller(least, COARSEST), LEAST_REST);
     double rate = INFINITY, before = INFINITY, by[S][COMPONENTS];
     for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
@@ -194,8 +194,10 @@ static inline void law_try(
         return;
     }
     memcpy(trial->step.x, solving.c, sizeof trial->step.x);
+    double in_theta = options->relative_tolerance / weight_of_theta(options), in_Y = options->relative_tolerance;
     for (int c = 0; c < COMPONENTS; c++) {
-        double allowed = c < LATERAL ? options->relative_tolerance / weight_of_theta(options) : may_err(law, options);
+        double turns = fabs(solving.change[S - 1][c]);
+        double allowed = c < LATERAL ? may_err(law, in_theta, turns) : may_err(law, in_Y, 0.0);
         trial->error = larger(trial->error, fabs(defect[c]) / allowed);
     }
 }
