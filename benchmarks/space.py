@@ -28,7 +28,7 @@ from reference.spatial import CASES, read_reference
 from space_runs import SpatialCase, referred
 
 LENGTH, PAIRS = 60.0, 9  # ℓ₁
-GRIDS = (500, 1000, 2000, 4000, 8000, 16000, 32000, 64000)  # steps for each ℓ₁
+GRIDS = [round(50 * 2 ** (k / 4)) * 10 for k in range(29)]  # steps for each ℓ₁; rows of the references are on them
 TOLERANCES = (RELATIVE_TOLERANCE, 1e-8)
 SPIRALS = ("spiral", "walk_spiral")
 

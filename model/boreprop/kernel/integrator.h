@@ -182,7 +182,7 @@ static inline Status stand(Integrator *p, double xi, const double x[COMPONENTS],
    ends at the first bound that it meets. */
 static inline int too_long(Integrator *p, const Law *law, Plan *plan, Trial *trial) {
     const Step *step = &trial->step;
-    if (trial->error <= 1.0 || (DIRECTIONS > 1 && trial->error != TOO_HARD))
+    if (trial->error <= 1.0 || (DIRECTIONS > 1 && trial->error != TOO_HARD)) /* which has no solution */
         cut_at_event(&p->now.places, &p->now.hole, law, plan->slack, trial);
     double way = step->end - step->xi;
     int far = DIRECTIONS > 1 && way >= shortest_step(p, step->xi) && way < FAR * plan->h;
