@@ -153,7 +153,7 @@ class Case:
             return Ground(self.bit, wear=self.wear) if self.wear else None
         start = self._depth
         tops = tuple(formation.depth - start for formation in self.formations)
-        near = max((top for top in tops if 0.0 < top <= CLOSE), default=0.0)  # the bit is on it: the column moves
+        near = max((top for top in tops if 0.0 < top <= CLOSE), default=0.0)  # the bit is at it, as if it were deeper
         tops = tuple(top - near if top <= near else top for top in tops)
         rock = [(0.0,) * len(ROCK)]
         for formation in self.formations:

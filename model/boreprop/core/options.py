@@ -27,7 +27,7 @@ class Options:
     theta_weight
         Weight of the error of θ in that of a step, in which the error of Y has weight 1: θ forgets an error within a
         relaxation length, whereas Y carries it for the length of the BHA. With a weight of 1 the reference cases would
-        take 1.4 times the trials. In space it counts three times (`kernel/kinks.h`).
+        take 1.4 times the trials. In space it counts three times (`kernel/step.h`).
     most_steps
         Number of steps after which a call gives up, so that it ends even if asked for a length without end.
 

@@ -179,10 +179,10 @@ static inline Status stand(Integrator *p, double xi, const double x[COMPONENTS],
 }
 
 /* Whether a trial is too long: it errs too much, or in space has led far beyond a bound. Then a shorter one is planned. Else it
-   ends at the first bound that it meets. */
+   ends at the first bound that it meets. A trial that is too hard has no solution, along which it could meet one. */
 static inline int too_long(Integrator *p, const Law *law, Plan *plan, Trial *trial) {
     const Step *step = &trial->step;
-    if (trial->error <= 1.0 || (DIRECTIONS > 1 && trial->error != TOO_HARD)) /* which has no solution */
+    if (trial->error <= 1.0 || (DIRECTIONS > 1 && trial->error != TOO_HARD))
         cut_at_event(&p->now.places, &p->now.hole, law, plan->slack, trial);
     double way = step->end - step->xi;
     int far = DIRECTIONS > 1 && way >= shortest_step(p, step->xi) && way < FAR * plan->h;

@@ -3,7 +3,7 @@
 #ifndef BOREPROP_KINKS_H
 #define BOREPROP_KINKS_H
 
-#include "system.h"
+#include "step.h"
 
 #define MERGE 1e-9 /* ℓ₁: kinks closer than this are one; far above the rounding of their sums ξ + s_i */
 /* The highest derivative of Y whose jumps are followed: what a jump in a higher one does is small, and the error
@@ -70,13 +70,6 @@ typedef struct {
    begins at any a in [0, 1], between the Radau nodes, and of the integral of that. */
 static const double PASSED_Y[SMOOTHEST_KINK + 1] = {0, 9.13e-3, 4.40e-4, 3.51e-5};
 static const double PASSED_THETA[SMOOTHEST_KINK + 1] = {0, 7.17e-2, 6.09e-3, 7.31e-4};
-
-/* The weight of the error of θ in that of a step. In space it is more: the largest errors of a run were those of θ within its
-   steps, and with three times the weight they are half as large, for one trial in eight. */
-#define HEAVIER 3.0
-static inline double weight_of_theta(const Options *options) {
-    return DIRECTIONS > 1 ? HEAVIER * options->theta_weight : options->theta_weight;
-}
 
 /* What passing a kink does to a step, per jump and gain, by the order of the kink: to θ, and by Θ. */
 typedef struct {
