@@ -64,7 +64,7 @@ def test_jumps_in_smoother_derivatives_are_not_kept() -> None:
 
 
 def test_a_step_may_pass_over_a_jump_that_changes_it_by_less_than_the_tolerance() -> None:
-    """By (2h)²/2 times the jump of Y' at a stabilizer, times the gain there, before inputs change."""
+    """By (2h)²/2 times the jump of Y' at a stabilizer, times the gain there, before the law changes."""
     kinks, harm = Kinks((1.0,)), harm_of(0.2, 0.1, False)
     kinks.add_images(0.0, 1, 1e-3)
     change = 5.0 * 1e-3 * 0.4**2 / 2
@@ -76,10 +76,11 @@ def test_a_step_may_pass_over_a_jump_that_changes_it_by_less_than_the_tolerance(
 def test_among_many_kinks_a_step_goes_as_far_as_any_of_half_the_length_or_less(jumps: list[float], h: float) -> None:
     """And it passes none that it must not."""
     kinks, options = Kinks(S), Options()
+    kinks.many = True
     for xi in sorted(jumps):
         kinks.add_images(xi, 1, 1e-3)
     lengths = [h / 2**k for k in range(40)]
-    length, way = kinks.reach(0.5, h, GAINS, options, True)
+    length, way = kinks.reach(0.5, h, GAINS, options)
     harm = harm_of(length, options.theta_weight, True)
     assert kinks.next_kink(0.5, min(length, way), GAINS, harm, options.relative_tolerance) == inf
     for other in lengths:

@@ -67,6 +67,10 @@ class Inputs(NamedTuple):
         chi = abs(self.chi_pi_slope / self.chi_pi) + sqrt(abs(self.chi_pi_curve / self.chi_pi))
         return max(eta, chi, abs(self.psi_star_slope / self.psi_star))
 
+    def changes_law(self, before: "Inputs") -> bool:
+        """Whether the law is another under them, which the force alone does not make it."""
+        return self[1:4] != before[1:4] or self.law_changes or before.law_changes
+
     def eta_pi_at(self, way: float) -> float:
         """ηΠ a length `way` ahead."""
         return self.eta_pi + way * (self.eta_pi_slope + way * self.eta_pi_curve)

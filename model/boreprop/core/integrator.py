@@ -112,13 +112,13 @@ class Integrator:
         with self._all_or_nothing():
             loads, (theta, Y), inputs = self.loads(), self.present.state(self.xi), self.inputs_here()
             Theta = self._inclination(theta, loads, inputs)
-            self._move_path(self.xi)
+            self.path = self.position()
             self.present = Step.standstill(self.xi, theta, Y)
             self._clear(y_star, self.xi)
             self._restart(loads, inputs, Theta)
 
     def _clear(self, y_star: tuple[float, ...], xi: float) -> None:
-        self.cleared = xi
+        self.cleared, self.kinks.many = xi, self.kinks.many or xi > 0.0
         if y_star != self.scaled.y_star:
             self.scaled = replace(self.scaled, y_star=y_star)
             self.modes = Modes(self.scaled)
@@ -177,8 +177,9 @@ class Integrator:
         """Take over inputs where the bit is. Where a slope or ε changes, the curvature jumps."""
         loads, (theta, Y), before = self.loads(), self.present.state(self.xi), self.inputs_here()
         Theta = self._inclination(theta, loads, before)
-        self._move_path(self.xi)
+        self.path = self.position()
         self.present = Step.standstill(self.xi, theta, Y)
+        self.kinks.many |= self.xi > 0.0 and inputs.changes_law(before)
         loads = loads._replace(F_rss=inputs.F_rss)
         self._restart(loads, inputs, Theta)
         bent = bend(self._law, self.modes[self.regime.contact], loads, before, inputs)
@@ -254,7 +255,10 @@ class Integrator:
 
     def position(self) -> tuple[float, float]:
         """Position of the bit in the vertical plane, sideways and down, from the start of the run."""
-        x, z = self.present.displacement(self.xi)
+        return self._path_to(self.xi)
+
+    def _path_to(self, xi: float) -> tuple[float, float]:
+        x, z = self.present.displacement(xi)
         return self.path[0] + x, self.path[1] + z
 
     # keeping
@@ -312,13 +316,9 @@ class Integrator:
     def _change_regime(self, regime: Regime) -> None:
         self.regime, self._law = regime, self._laws[regime]
 
-    def _move_path(self, xi: float) -> None:
-        x, z = self.present.displacement(xi)
-        self.path = (self.path[0] + x, self.path[1] + z)
-
     def _leave(self, last: Step) -> tuple[float, float, int | None]:
         """Go over the end of the last step, with its event: gives θ, Y and the order of the kink of Y there, if any."""
-        self._move_path(last.end)
+        self.path = self._path_to(last.end)
         theta, Y = last.state(last.end)
         if abs(Y) > ORIGIN_LIMIT:
             self.hole.shift(Y)
@@ -365,13 +365,13 @@ class Integrator:
         value may lie beyond its bound by a slack that grows as h falls; their product, what a wrong regime adds to the
         state, is the same each time.
         """
-        shortest = self.options.shortest_step(xi)
+        shortest, last = self.options.shortest_step(xi), self.present if self.stay else None
         while True:
             law = self._law
             h = self._choose_length(law, plan, xi)
             if h < shortest:
                 raise self._failure("too short", xi)
-            trial = try_step(law, self.hole, xi, h, theta, Y, self.options, self.present if self.stay else None)
+            trial = try_step(law, self.hole, xi, h, theta, Y, self.options, self.kinks.many, last)
             if not isfinite(trial.error):
                 raise self._failure("not finite", xi)
             if trial.error > 1.0:
@@ -392,7 +392,7 @@ class Integrator:
     def _choose_length(self, law: Law, plan: Plan, xi: float) -> float:
         """Length of the next trial: as planned, but no kink lies within it, and none is left a short step ahead."""
         largest = min(self.options.largest_step, law.longest)
-        h, to_kink = self.kinks.reach(xi, min(plan.h, largest), law.gains, self.options, self.inputs_xi > 0.0)
+        h, to_kink = self.kinks.reach(xi, min(plan.h, largest), law.gains, self.options)
         longest = h if plan.repeated else min(STRETCH * h, largest)
         return h if to_kink >= 2 * h else to_kink if to_kink <= longest else to_kink / 2
 

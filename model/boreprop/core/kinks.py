@@ -23,7 +23,7 @@ def harm_of(h: float, theta_weight: float, many: bool) -> tuple[float, ...]:
     """What passing a kink does to a step of length `h`, per jump and gain, by the order of the kink.
 
     Errors of θ have this weight. It is no more than what a kink changes over twice the step, which counts where there
-    are not many: before inputs change on the way. Such runs keep their steps to the last bit.
+    are not many: before the law changes on the way. Such runs keep their steps to the last bit.
     """
     orders = range(SMOOTHEST_KINK + 1)
     changes = [(2 * h) ** (m + 1) / factorial(m + 1) for m in orders]
@@ -43,10 +43,13 @@ class Kink(NamedTuple):
 
 
 class Kinks:
-    """The kinks ahead of the bit, in order: each jump in the hole comes back at ξ + s_i, once for every stabilizer."""
+    """The kinks ahead of the bit, in order: each jump in the hole comes back at ξ + s_i, once for every stabilizer.
+
+    They count as many once the law has changed on the way.
+    """
 
     def __init__(self, s: tuple[float, ...]) -> None:
-        self.s = s
+        self.s, self.many = s, False
         self.ahead: list[Kink] = []
         self._last: tuple[float, int, float] = (-inf, 0, 0.0)  # jump added: where, in which derivative, its size
 
@@ -86,26 +89,27 @@ class Kinks:
                 return kink.xi
         return inf
 
-    def reach(self, xi: float, h: float, gains: list[float], options: Options, many: bool) -> tuple[float, float]:
+    def reach(self, xi: float, h: float, gains: list[float], options: Options) -> tuple[float, float]:
         """The length of a step from `xi`, at most h, and how far the next kink is that such a step must not pass.
 
         Where there are many kinks, the length is halved until the step goes farther than to half of it: a shorter step
         may pass a kink that a longer one may not.
         """
         while True:
-            harm = harm_of(h, options.theta_weight, many)
+            harm = harm_of(h, options.theta_weight, self.many)
             to_kink = self.next_kink(xi, 2 * h, gains, harm, options.relative_tolerance) - xi
-            if not many or to_kink > h / 2:
+            if not self.many or to_kink > h / 2:
                 return h, to_kink
             h /= 2
 
     def save(self) -> dict[str, Any]:
         """The kinks, as plain lists."""
-        return {"ahead": self.ahead[:], "last": self._last}
+        return {"ahead": self.ahead[:], "last": self._last, "many": self.many}
 
     def restore(self, state: dict[str, Any]) -> None:
         """Take over the kinks from `save`."""
         ahead: Iterable[tuple[float, int, float, int]] = state["ahead"]
         self.ahead = [Kink(*kink) for kink in ahead]
+        self.many = state["many"]
         xi, order, jump = state["last"]
         self._last = xi, order, jump

@@ -10,7 +10,7 @@ from .options import Options
 
 GAUSS = [(0.5 - 0.15**0.5, 5 / 18), (0.5, 8 / 18), (0.5 + 0.15**0.5, 5 / 18)]  # nodes and weights on [0, 1]
 REST = 0.03  # what may be neglected of sin⟨Θ⟩_1, in tolerances of θ: little beside the error that a step may have
-LESS_REST = 0.003  # the same once inputs have changed on the way: steps that pass kinks leave no room for more
+LESS_REST = 0.003  # the same where kinks are many: steps that pass kinks leave no room for more
 MIDDLE = 2  # the point next to the middle of a step
 ITERATIONS = 10  # on what is neglected, at most; each gains two digits or more
 RAMP_ITERATIONS = 20  # the same under a changing ηΠ; each gains a digit or more
@@ -77,7 +77,15 @@ class Trial(NamedTuple):
 
 
 def try_step(
-    law: Law, hole: Hole, xi: float, h: float, theta: float, Y: float, options: Options, last: Step | None = None
+    law: Law,
+    hole: Hole,
+    xi: float,
+    h: float,
+    theta: float,
+    Y: float,
+    options: Options,
+    many_kinks: bool = False,
+    last: Step | None = None,
 ) -> Trial:
     """Collocation from (θ, Y) at `xi` over `h`, in the regime of `law`.
 
@@ -95,7 +103,7 @@ def try_step(
     if law.changes:
         return _try_ramp(law, J, Trial(Step(xi, h, (theta,), (Y,), xi + h), [], [], delayed, [], aheads, inf), options)
     frozen = sine.linear([Y - Y_1 for Y_1 in delayed[0]])
-    allowed = (LESS_REST if law.xi > 0.0 else REST) * options.relative_tolerance * (abs(law.theta_rate.theta) + 1 / h)
+    allowed = (LESS_REST if many_kinks else REST) * options.relative_tolerance * (abs(law.theta_rate.theta) + 1 / h)
     for _ in range(ITERATIONS):
         f_theta, f_Y = law.frozen(theta, Y, delayed, frozen, aheads)
         parts_theta, parts_Y = radau.collocate(h, J, f_theta, f_Y)

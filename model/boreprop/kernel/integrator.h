@@ -115,7 +115,7 @@ static inline Plan first_plan(const Step *last, int kink, const Law *law, double
 /* Choose the length of the trial: as planned, but no kink lies within it, and none is left a short step ahead. */
 static inline void choose_length(const Integrator *p, const Law *law, double xi, Plan *plan) {
     double largest = smaller(smaller(p->options.largest_step, p->now.places.nearest), law->longest);
-    int many = DIRECTIONS > 1 || p->now.inputs_xi > 0 || p->now.regime.contact.watched; /* kinks */
+    int many = p->now.kinks.many || p->now.regime.contact.watched;
     double h = smaller(plan->planned, largest);
     double way = reach(&p->now.kinks, &p->now.places, law->gains, &p->options, many, xi, &h);
     double longest = plan->repeated ? h : smaller(STRETCH * h, largest);
@@ -128,7 +128,7 @@ static inline void try_step(const Integrator *p, const Law *law, double h, const
     const Step *last = &p->now.step;
     Step *step = &trial->step;
     step->h = h, step->end = step->xi + h, step->event = NONE, step->side = 0;
-    trial->follows = p->now.stay > 0 && last->end > last->xi;
+    trial->follows = p->now.stay > 0 && last->end > last->xi, trial->passes = p->now.kinks.many;
     look_up(&p->now.hole, &p->now.places, trial);
     law_try(law, &p->options, last, x, trial);
 }
@@ -333,7 +333,7 @@ static inline void move_rings(Integrator *p, Piece *pieces, Kink *kinks, Count c
     State *now = &p->now;
     const State *oldest = p->under_way ? &p->before : now;
     Hole hole = {pieces, capacity, 0, 0, {0}};
-    Kinks ahead = {kinks, capacity, 0, {0}};
+    Kinks ahead = {kinks, capacity, 0, p->now.kinks.many, {0}};
     for (Count k = oldest->hole.first; k < now->hole.end; k++) *piece(&hole, k) = *piece(&now->hole, k);
     for (Count k = first_kink(&oldest->kinks, p->scaled.n); k < now->kinks.end; k++)
         *kink(&ahead, k) = *kink(&now->kinks, k);

@@ -17,10 +17,13 @@ typedef struct {
 } Kink;
 
 /* The kinks that are kept, up to the one before `end`; number k lies at k modulo the capacity of the ring, a power of
-   two. The support at place i will next pass number ahead[i]. */
+   two. They count as many in space, and once the law has changed on the way. The support at place i will next pass
+   number ahead[i]. */
 typedef struct {
     Kink *ring;
-    Count capacity, end, ahead[MAX_PLACES];
+    Count capacity, end;
+    int many;
+    Count ahead[MAX_PLACES];
 } Kinks;
 
 static inline Kink *kink(const Kinks *kinks, Count k) { return &kinks->ring[k & (kinks->capacity - 1)]; }
@@ -77,7 +80,7 @@ typedef struct {
 } Harm;
 
 /* Of a step of length `h`, where errors of θ have this weight. It is no more than what a kink changes over twice the step,
-   which counts where there are not many: in a plane, before inputs change on the way, while no point of the body is
+   which counts where there are not many: in a plane, before the law changes on the way, while no point of the body is
    watched. Such runs keep their steps to the last bit. */
 static inline void find_harm(double h, double theta_weight, int many, Harm *harm) {
     static const double factorial[] = {1, 1, 2, 6, 24};

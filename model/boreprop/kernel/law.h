@@ -178,7 +178,7 @@ static inline void linear_frozen(
 }
 
 #define REST 0.03       /* what may be neglected of the sine, in tolerances of θ: little beside the error of a step */
-#define LESS_REST 0.003 /* the same once inputs have changed on the way: steps that pass kinks leave no room for more */
+#define LESS_REST 0.003 /* the same where kinks are many: steps that pass them leave no room for more */
 #define ITERATIONS 10   /* on what is neglected, at most; each gains two digits or more */
 
 /* The sine about its value at an angle `from`, which is part ANGLE or LATERAL of the state, less what is `behind` at the
@@ -307,7 +307,7 @@ static inline void law_try(
     Jacobian J = {rate->theta, rate->Y, Theta->theta, Theta->Y};
     *(law->axial ? &J.theta_theta : &J.theta_Y) += rate->g * tangent.cosine;
     *(law->axial ? &J.Y_theta : &J.Y_Y) += Theta->g * tangent.cosine;
-    double rest = law->inputs_xi > 0 ? LESS_REST : REST;
+    double rest = trial->passes ? LESS_REST : REST;
     double allowed = rest * options->relative_tolerance * (fabs(rate->theta) + 1 / h);
     for (int k = 0; k < POINTS; k++) {
         trial->ahead[k] = trial->step.xi - law->inputs_xi + POINT[k] * h;

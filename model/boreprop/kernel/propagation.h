@@ -42,6 +42,7 @@ static inline Status steer(Integrator *p, ScaledInputs inputs, Problem *problem)
     step_state(&now->step, now->xi, x);
     Response so_far = respond(p, x, before), answer;
     int known = answer_is_known(p, x, inputs, before, &so_far, &answer);
+    now->kinks.many |= now->xi > 0 && changes_law(&inputs, &before);
     Status status = restart(p, inputs, x, so_far.Theta, known, &answer, problem);
     if (status != DONE) return status;
     double bent = curvature_jump(p, x, before, inputs, &answer);
@@ -87,7 +88,7 @@ static inline Status change_clearances(Integrator *p, const double *y_star, Prob
     step_state(&now->step, now->xi, x);
     Response so_far = respond(p, x, inputs), answer;
     memcpy(now->y_star, y_star, (size_t)(p->scaled.n - 1) * sizeof *y_star);
-    now->cleared = now->xi;
+    now->cleared = now->xi, now->kinks.many |= now->xi > 0;
     clear(p);
     Status status = restart(p, inputs, x, so_far.Theta, 0, &answer, problem);
     if (status != DONE) go_back(p);
@@ -146,6 +147,7 @@ static inline void prepare(
 ) {
     Axial unloaded = {0.0, 0.0};
     memset(&p->now, 0, sizeof p->now);
+    p->now.kinks.many = DIRECTIONS > 1;
     p->law.changes = p->law_known = p->exit_known = p->under_way = 0;
     p->scaled = *scaled;
     load_beam(&p->modes, scaled, unloaded);

@@ -76,6 +76,7 @@ static inline void pass_snapshot(Tape *tape, const Scaled *scaled, Snapshot *sna
     pass(tape, 1, &step->next_h);
     snapshot->pieces = pass_whole(tape, snapshot->pieces, 1, MOST_PIECES);
     snapshot->kinks = pass_whole(tape, snapshot->kinks, 0, MOST_PIECES);
+    now->kinks.many = (int)pass_whole(tape, now->kinks.many, DIRECTIONS > 1, 1);
     pass_contact(tape, scaled, &now->regime.contact);
     for (int i = 0; i < place_count(now->regime.contact, n); i++)
         snapshot->passed[i] = pass_whole(tape, snapshot->passed[i], 0, snapshot->kinks);
@@ -240,7 +241,7 @@ static inline Count snapshot_capacity(const Snapshot *snapshot) {
 static inline void become(Drilling *d, const Snapshot *snapshot, Tape tape) {
     Integrator *p = &d->integrator;
     Hole hole = {p->now.hole.ring, p->now.hole.capacity, 0, snapshot->pieces, {0}};
-    Kinks kinks = {p->now.kinks.ring, p->now.kinks.capacity, snapshot->kinks, {0}};
+    Kinks kinks = {p->now.kinks.ring, p->now.kinks.capacity, snapshot->kinks, snapshot->now.kinks.many, {0}};
     memcpy(kinks.ahead, snapshot->passed, sizeof kinks.ahead);
     for (Count k = 0; k < snapshot->pieces; k++) pass_piece(&tape, piece(&hole, k));
     for (Count k = 0; k < snapshot->kinks; k++) pass_kink(&tape, kink(&kinks, k));

@@ -41,6 +41,7 @@ typedef struct {
 typedef struct {
     Step step;
     int follows; /* on the last one, among layers, so that this tells where it leads */
+    int passes;  /* kinks, of which there are many */
     double delayed[MAX_PLACES][DIRECTIONS][POINTS]; /* the hole's lateral coordinate at ξ − s_i */
     double x[COMPONENTS][POINTS];
     double sines[POINTS],

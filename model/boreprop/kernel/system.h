@@ -242,6 +242,12 @@ static inline int aims_anew(const ScaledInputs *inputs, const ScaledInputs *befo
 #endif
 }
 
+/* Whether the law is another, which the force alone does not make it. */
+static inline int changes_law(const ScaledInputs *inputs, const ScaledInputs *before) {
+    return inputs->eta_pi != before->eta_pi || inputs->chi_pi != before->chi_pi ||
+           inputs->psi_star != before->psi_star || inputs->W != before->W || law_changes(inputs) || law_changes(before);
+}
+
 /* The largest share per ξ by which ηΠ, χΠ or ψ* changes, at first and at most on a short way. */
 static inline double growth_of(const ScaledInputs *inputs) {
     double eta = fabs(inputs->eta_pi_slope / inputs->eta_pi), chi = fabs(inputs->chi_pi_slope / inputs->chi_pi);
