@@ -83,12 +83,14 @@ typedef struct {
     State now;
     Surroundings around;
     Seen seen;
-    Law law;                   /* of the present regime and inputs, */
-    int law_known;             /* if it is made already */
-    double exit;               /* where the bit leaves its layer of the ground in the present step, … */
-    int exit_side, exit_known; /* … on this side, if it does, and if that is known already */
-    int under_way;             /* whether a call has set out and not yet arrived; then the way back leads to … */
-    State before;              /* … the state before it, */
+    Count earlier[MAX_STABILIZERS]; /* the pieces of the hole where the stabilizers were when Θ of one ℓ₁ ago was looked
+                                       for; as with what is seen, nothing but time depends on it */
+    Law law;                        /* of the present regime and inputs, */
+    int law_known;                  /* if it is made already */
+    double exit;                    /* where the bit leaves its layer of the ground in the present step, … */
+    int exit_side, exit_known;      /* … on this side, if it does, and if that is known already */
+    int under_way;                  /* whether a call has set out and not yet arrived; then the way back leads to … */
+    State before;                   /* … the state before it, */
     Surroundings around_before;
     Kink last_kink; /* with its last kink, whose jump may have changed since */
 } Integrator;
@@ -123,12 +125,15 @@ static inline const Law *present_law(Integrator *p) {
     return &p->law;
 }
 
+APART static void bear_anew(Integrator *p, Axial axial) {
+    load_beam(&p->modes, &p->scaled, axial);
+    p->law_known = 0;
+}
+
 /* Let the beam bear the weight on the bit W. */
 static inline void bear(Integrator *p, double W) {
     Axial axial = {W, p->now.cosine};
-    if (axial.W == p->modes.axial.W && axial.cosine == p->modes.axial.cosine) return;
-    load_beam(&p->modes, &p->scaled, axial);
-    p->law_known = 0;
+    if (axial.W != p->modes.axial.W || axial.cosine != p->modes.axial.cosine) bear_anew(p, axial);
 }
 
 /* Let the stabilizers have the clearances of the present state. */
@@ -167,17 +172,23 @@ static inline void change_places(Integrator *p, Contact contact, double xi) {
     p->law_known = 0;
 }
 
-/* What bends the beam with the bit at `xi` in the state `x`. */
-static inline void find_loads(const Integrator *p, double xi, const double x[COMPONENTS], double F_rss, Loads *loads) {
+/* What bends the beam with the bit in the state `x`, where the hole is `delayed` at the places. */
+static inline void find_loads(
+    const Integrator *p, double delayed[MAX_PLACES][DIRECTIONS], const double x[COMPONENTS], double F_rss, Loads *loads
+) {
     const Places *places = &p->now.places;
-    double behind[DIRECTIONS], turn = 0.0;
     loads->count = places->count, loads->F_rss = F_rss;
-    for (int i = 0; i < places->count; i++) {
-        hole_at_place(&p->now.hole, places, i, xi, behind);
-        loads->e[i] = x[LATERAL] - behind[0] - places->s[i] * x[ANGLE];
-        if (i == 0) turn = x[LATERAL] - behind[0];
-    }
-    loads->g = sin(p->scaled.axial ? x[ANGLE] : turn);
+    for (int i = 0; i < places->count; i++) loads->e[i] = x[LATERAL] - delayed[i][0] - places->s[i] * x[ANGLE];
+    loads->g = sin(p->scaled.axial ? x[ANGLE] : x[LATERAL] - delayed[0][0]);
+}
+
+/* The same with the bit at `xi`. */
+static inline void find_loads_at(
+    const Integrator *p, double xi, const double x[COMPONENTS], double F_rss, Loads *loads
+) {
+    double delayed[MAX_PLACES][DIRECTIONS];
+    hole_at_places(&p->now.hole, &p->now.places, xi, delayed);
+    find_loads(p, delayed, x, F_rss, loads);
 }
 
 /* The inputs with the bit at `xi`, ahead of where they were taken over. */

@@ -130,17 +130,25 @@ static inline void move_cursors(Hole *hole, const Places *places, double xi) {
     for (int i = 0; i < places->count; i++) hole->cursor[i] = find_from(hole, hole->cursor[i], xi - places->s[i]);
 }
 
-/* Lateral coordinates of the hole axis at a place with the bit at `xi`. */
-static inline void hole_at_place(const Hole *hole, const Places *places, int i, double xi, double Y[DIRECTIONS]) {
-    double at = xi - places->s[i];
-    piece_at(piece(hole, find_from(hole, hole->cursor[i], at)), at, Y);
-}
-
-/* The same at each place. */
+/* Lateral coordinates of the hole axis at each place with the bit at `xi`. */
 static inline void hole_at_places(
     const Hole *hole, const Places *places, double xi, double delayed[MAX_PLACES][DIRECTIONS]
 ) {
-    for (int i = 0; i < places->count; i++) hole_at_place(hole, places, i, xi, delayed[i]);
+    for (int i = 0; i < places->count; i++) {
+        double at = xi - places->s[i];
+        piece_at(piece(hole, find_from(hole, hole->cursor[i], at)), at, delayed[i]);
+    }
+}
+
+/* The same, looked for from the pieces `near` on, which become those where it is found. */
+static inline void hole_at_places_near(
+    const Hole *hole, const Places *places, double xi, Count near[], double delayed[MAX_PLACES][DIRECTIONS]
+) {
+    for (int i = 0; i < places->count; i++) {
+        double at = xi - places->s[i];
+        near[i] = find_near(hole, near[i], at);
+        piece_at(piece(hole, near[i]), at, delayed[i]);
+    }
 }
 
 /* The same at the points of a trial step: one search a place, then a walk from piece to piece. */

@@ -38,7 +38,7 @@ static inline Status touch_down(Integrator *p, double xi, const double x[COMPONE
     double Y[MAX_POINTS][DIRECTIONS];
     Contact contact;
     Loads loads;
-    find_loads(p, xi, x, force_at(&p->now, xi), &loads);
+    find_loads_at(p, xi, x, force_at(&p->now, xi), &loads);
     if (stays_off(p, xi, x, &loads)) return DONE;
     bent.F_rss = loads.F_rss, bent.g = loads.g;
     memcpy(bent.e, loads.e, (size_t)n * sizeof *bent.e);

@@ -212,12 +212,9 @@ static inline int sines_agree(
     Tangent tangent, const double x[COMPONENTS], double gain, double allowed, Trial *trial, double frozen[POINTS]
 ) {
     const double *at = trial->x[tangent.part], *behind = tangent.behind, start = x[tangent.part];
-    double far = 0.0, largest = 0.0;
-    for (int k = 0; k < POINTS; k++) {
-        double away = at[k] - behind[k] - tangent.from;
-        trial->sines[k] = tangent.sine + tangent.cosine * away;
-        far = larger(far, fabs(away));
-    }
+    double far = 0.0, largest = 0.0, away[POINTS];
+    for (int k = 0; k < POINTS; k++) away[k] = at[k] - behind[k] - tangent.from, far = larger(far, fabs(away[k]));
+    for (int k = 0; k < POINTS; k++) trial->sines[k] = tangent.sine + tangent.cosine * away[k];
     if (far * far / 2 * gain <= allowed) return 1; /* |sin(a + d) − sin a − d cos a| <= d²/2 */
     for (int k = 0; k < POINTS; k++) {
         double assumed = frozen[k] + tangent.cosine * (at[k] - start);
@@ -320,9 +317,10 @@ static inline void law_try(
         linear_frozen(Theta, law->count, x, trial, frozen, f_Y);
         collocate(h, J, f_theta, f_Y, parts_theta, parts_Y);
         radau_values(Y, parts_Y, trial->x[LATERAL]);
-        radau_values(theta, parts_theta, trial->x[ANGLE]);
+        if (law->axial) radau_values(theta, parts_theta, trial->x[ANGLE]); /* of which the sine is then */
         if (sines_agree(tangent, x, fabs(rate->g), allowed, trial, frozen)) break;
     }
+    radau_values(theta, parts_theta, trial->x[ANGLE]);
     radau_coefficients(theta, parts_theta, trial->step.x[ANGLE]);
     radau_coefficients(Y, parts_Y, trial->step.x[LATERAL]);
     double moved_theta = trial->x[ANGLE][AT_CHECK] - theta, moved_Y = trial->x[LATERAL][AT_CHECK] - Y;

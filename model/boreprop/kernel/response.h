@@ -6,7 +6,7 @@
 
 /* What bends the beam where the bit is. */
 static inline void find_present_loads(const Integrator *p, const double x[COMPONENTS], Loads *loads) {
-    find_loads(p, p->now.xi, x, force_at(&p->now, p->now.xi), loads);
+    find_loads_at(p, p->now.xi, x, force_at(&p->now, p->now.xi), loads);
 }
 
 /* Θ under given loads, eq. (16): algebraic, so it jumps with the inputs. */
@@ -18,7 +18,7 @@ static inline double inclination_under(Integrator *p, double theta, const Loads 
 /* How the BHA is bent with the bit at `xi` in the state `x`. */
 static inline void bend(Integrator *p, double xi, const double x[COMPONENTS], Bending bending[DIRECTIONS]) {
     Loads loads;
-    find_loads(p, xi, x, force_at(&p->now, xi), &loads);
+    find_loads_at(p, xi, x, force_at(&p->now, xi), &loads);
     find_bending(settle(&p->modes, &loads, &p->now.regime.contact), &loads, &p->scaled, bending);
 }
 
@@ -34,7 +34,7 @@ static inline void pull_at(
     Integrator *p, const Step *step, double xi, const double x[COMPONENTS], Pull pull[DIRECTIONS]
 ) {
     Loads loads;
-    find_loads(p, xi, x, force_at(&p->now, xi), &loads);
+    find_loads_at(p, xi, x, force_at(&p->now, xi), &loads);
     (void)step;
     pull_under(p, mode_of(&p->modes, &p->now.regime.contact), &loads, pull);
 }
@@ -74,7 +74,7 @@ static inline Response respond_in(ScaledInputs inputs, double theta, Contact con
 
 static inline Response respond(Integrator *p, const double x[COMPONENTS], ScaledInputs inputs) {
     Loads loads;
-    find_loads(p, p->now.xi, x, inputs.F_rss, &loads);
+    find_loads_at(p, p->now.xi, x, inputs.F_rss, &loads);
     const Mode *mode = settle(&p->modes, &loads, &p->now.regime.contact);
     return respond_in(inputs, x[ANGLE], mode->contact, row_value(&mode->F_0, &loads), row_value(&mode->M, &loads));
 }
@@ -118,8 +118,10 @@ static inline double earlier_inclination(Integrator *p, double xi) {
     double ahead = larger(xi - at->start, 0.0), x[COMPONENTS];
     for (int c = 0; c < COMPONENTS; c++) x[c] = polynomial(at->x[c], ahead * at->rate);
     ScaledInputs inputs = inputs_ahead(&at->inputs, ahead);
+    double delayed[MAX_PLACES][DIRECTIONS];
+    hole_at_places_near(hole, &p->now.places, at->start + ahead, p->earlier, delayed);
     Loads loads;
-    find_loads(p, at->start + ahead, x, inputs.F_rss, &loads);
+    find_loads(p, delayed, x, inputs.F_rss, &loads);
     bear(p, inputs.W);
     double Theta = inclination_under(p, x[ANGLE], &loads, inputs);
     bear(p, p->now.inputs.W);
