@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from boreprop.case.case import Case
 from boreprop.case.inputs import InputSchedule, Schedule
 from boreprop.case.paper import paper_case
+from boreprop.core.drilling import Drilling
 from boreprop.core.options import Options
 from boreprop.core.system import BitRock
 from boreprop.run.engines import Engine, start
@@ -106,6 +107,47 @@ def test_the_bit_turns_by_the_ratio_of_the_row(engine: str, case: Case, length: 
     moment = -run["bit_moment"][smooth]
     off = np.abs(moment - (scale * turn)[smooth])
     assert np.quantile(off, 0.9) < 1e-3 * np.abs(moment).max()  # the rest is where kinks come back
+
+
+CHANGES = {
+    "nothing": {},
+    "force": {"rss_force": (2e3, -3e3, 1e3)},
+    "weight": {"active_weight_on_bit": (2e3, 3e3, 1e3)},
+    "rock": {"bit_tilt_limit": (0.02, 0.01, 0.03)},
+    "clearance": {"stabilizer_clearance[1]": (2e-3, 3e-3, 4e-3)},
+}
+
+
+def drilled(engine: str, changed: str) -> Engine:
+    """A run in which one of the inputs changes twice, where another one stays as it is."""
+    values = CHANGES[changed]
+    run = start(CASE, engine, Options())
+    for k, length in enumerate((*LENGTHS[1:], 40.0)):
+        if "stabilizer_clearance[1]" in values:
+            run.change_clearances((values["stabilizer_clearance[1]"][k],))
+        force, weight, limit = (
+            values.get(name, (own,) * 3)[k]
+            for name, own in (
+                ("rss_force", 2e3),
+                ("active_weight_on_bit", CASE.active_weight_on_bit),
+                ("bit_tilt_limit", CASE.bit.tilt_limit),
+            )
+        )
+        run.advance(length, force, weight, bit=replace(CASE.bit, tilt_limit=limit))
+    return run
+
+
+@pytest.mark.parametrize("changed", CHANGES)
+def test_both_engines_take_the_same_steps_whatever_changes(changed: str) -> None:
+    python, native = (drilled(engine, changed).statistics for engine in ("python", "native"))
+    assert python == native
+
+
+@pytest.mark.parametrize("changed", CHANGES)
+def test_kinks_are_many_once_the_law_has_changed_which_the_force_alone_does_not_make_it(changed: str) -> None:
+    run = drilled("python", changed)
+    assert isinstance(run, Drilling)
+    assert run.integrator.kinks.many == (changed not in ("nothing", "force"))
 
 
 def test_a_state_saved_in_other_rock_goes_on_as_if_nothing_had_been(engine: str) -> None:

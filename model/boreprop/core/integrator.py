@@ -20,7 +20,7 @@ from .kinks import MERGE, Kinks
 from .law import Law, Laws, bend
 from .modes import Loads, Mode, Modes, Regime, bit_tilt, saturation
 from .options import Options, Statistics
-from .plan import CLOSER, LARGEST_GROWTH, SMALLEST_GROWTH, Plan, first_plan, growth
+from .plan import CLOSER, LARGEST_GROWTH, Plan, first_plan, growth
 from .problems import Problem
 from .sensors import Reading, Sensed
 from .step import Step, Trial, try_step
@@ -341,7 +341,7 @@ class Integrator:
         if inputs.law_changes:  # each step has laws of its own
             self._laws = Laws(self.modes, inputs, xi)
             self._change_regime(self.regime)
-        plan = first_plan(last, kink, self.options.layers * self._law.relaxation)
+        plan = first_plan(last, kink, self.options.layers * self._law.relaxation, self.kinks.many)
         trial, event = self._find_step(plan, xi, theta, Y)
         _, h, thetas, Ys, end, *_ = trial.step
         next_h = h * min(growth(trial.error), LARGEST_GROWTH)
@@ -375,7 +375,7 @@ class Integrator:
             if not isfinite(trial.error):
                 raise self._failure("not finite", xi)
             if trial.error > 1.0:
-                plan.shorten(h * max(growth(trial.error), SMALLEST_GROWTH))
+                plan.shorten(h, trial.error)
                 self._rejected += 1
                 continue
             event = first_event(law, self.hole, trial, plan.slack)

@@ -102,12 +102,12 @@ typedef struct {
 } Plan;
 
 /* The plan of the next step: as the last one left it, but after a kink no longer than `layers` allow. */
-static inline Plan first_plan(const Step *last, int kink, const Law *law, double layers) {
+static inline Plan first_plan(Integrator *p, const Step *last, int kink) {
     Plan plan = {last->next_h, last->next_h, 0, ROUNDING, 0, 0, 0.0, S + 1};
     if (kink <= SMOOTHEST_KINK || last->end == last->xi) {
-        plan.planned = smaller(plan.planned, layers * law->relaxation);
+        plan.planned = smaller(plan.planned, p->options.layers * present_law(p)->relaxation);
         if (last->event != NONE) plan.resumed = plan.planned;
-        if (DIRECTIONS > 1) plan.order = 2; /* of the transient; in a plane, runs keep their steps to the last bit */
+        if (p->now.kinks.many) plan.order = 2; /* of the transient; other runs keep their steps to the last bit */
     }
     return plan;
 }
@@ -254,7 +254,7 @@ static inline Status keep_clear(
         double shorter = plan->h / CLOSER;
         p->now.rejected++;
         forget_seen(p);
-        *plan = first_plan(last, kink, present_law(p), p->options.layers);
+        *plan = first_plan(p, last, kink);
         if (beyond < 0) plan->planned = shorter, plan->repeated = 1;
         if (beyond < 0 && shorter < shortest_step(p, last->end))
             return met(problem, TOO_CROWDED, MAX_WATCHED, last->end * p->length_scale);
@@ -276,7 +276,7 @@ static inline Status take_step(Integrator *p, Problem *problem) {
     read_sensors(p, last.end);
     int kink = leave(p, &last, x);
     if (p->law.changes) p->law_known = 0;
-    Plan plan = first_plan(&last, kink, present_law(p), p->options.layers);
+    Plan plan = first_plan(p, &last, kink);
     trial.step.xi = last.end;
     lead_on(&last, last.end, &trial.step);
     Status status = find_step(p, last.end, x, &plan, &trial, problem);
