@@ -74,7 +74,10 @@ def test_the_bit_is_in_the_layer_of_its_depth(
 
 @pytest.mark.parametrize("degrees", [0.0, 35.0, 130.0])
 def test_a_bit_that_goes_straight_meets_a_layer_where_its_measured_depth_says(engine: str, degrees: float) -> None:
-    """Without weight and force nothing turns the bit until a stabilizer is loaded: z = L cos Θ exactly."""
+    """Without weight and force nothing turns the bit until a stabilizer is loaded: z = L cos Θ exactly.
+
+    Contacts are located within 10⁻¹² ℓ₁, which forces feel some thousand times.
+    """
     down = cos(radians(degrees))
     lengths, etas = (0.77, 3.33, 7.97), (25.0, 4.0, 15.0)
     formations = tuple(layer(length * down, eta) for length, eta in zip(lengths, etas, strict=True))
@@ -89,7 +92,7 @@ def test_a_bit_that_goes_straight_meets_a_layer_where_its_measured_depth_says(en
     one, other = (simulate(case, engine=engine, sample_interval=0.1) for case in (layered, scheduled))
     for name in COLUMNS:
         scale = max(1.0, float(np.abs(other[name]).max()))
-        np.testing.assert_allclose(one[name], other[name], rtol=0, atol=1e-9 * scale, err_msg=name)
+        np.testing.assert_allclose(one[name], other[name], rtol=0, atol=1e-8 * scale, err_msg=name)
 
 
 @pytest.mark.usefixtures("kernel")
