@@ -177,9 +177,13 @@ static inline void find_loads(
     const Integrator *p, double delayed[MAX_PLACES][DIRECTIONS], const double x[COMPONENTS], double F_rss, Loads *loads
 ) {
     const Places *places = &p->now.places;
+    double turn = 0.0;
     loads->count = places->count, loads->F_rss = F_rss;
-    for (int i = 0; i < places->count; i++) loads->e[i] = x[LATERAL] - delayed[i][0] - places->s[i] * x[ANGLE];
-    loads->g = sin(p->scaled.axial ? x[ANGLE] : x[LATERAL] - delayed[0][0]);
+    for (int i = 0; i < places->count; i++) {
+        loads->e[i] = x[LATERAL] - delayed[i][0] - places->s[i] * x[ANGLE];
+        if (i == 0) turn = x[LATERAL] - delayed[i][0];
+    }
+    loads->g = sin(p->scaled.axial ? x[ANGLE] : turn);
 }
 
 /* The same with the bit at `xi`. */
