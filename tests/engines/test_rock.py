@@ -119,7 +119,7 @@ CHANGES = {
 
 
 def drilled(engine: str, changed: str) -> Engine:
-    """A run in which one of the inputs changes twice, where another one stays as it is."""
+    """A run of three legs in which this input, and no other, changes from leg to leg."""
     values = CHANGES[changed]
     run = start(CASE, engine, Options())
     for k, length in enumerate((*LENGTHS[1:], 40.0)):
@@ -137,6 +137,7 @@ def drilled(engine: str, changed: str) -> Engine:
     return run
 
 
+@pytest.mark.usefixtures("kernel")
 @pytest.mark.parametrize("changed", CHANGES)
 def test_both_engines_take_the_same_steps_whatever_changes(changed: str) -> None:
     python, native = (drilled(engine, changed).statistics for engine in ("python", "native"))

@@ -173,7 +173,7 @@ def test_going_on_from_a_state_is_bit_identical_after_a_kilometre(section: Path,
     assert first == host("far_again", section, tmp_path / "state")
     assert 1000 < first[-1]["drilled_length"] < 1010
     assert len({row["stabilizer_force[1]"] for row in first}) > 10
-    assert (tmp_path / "state").stat().st_size < 100_000  # the hole behind the BHA is forgotten
+    assert (tmp_path / "state").stat().st_size < 60_000  # the hole behind the BHA is forgotten
 
 
 @both_flavours
